@@ -1,0 +1,96 @@
+/* custom_constraint.c - a constraint of your own, given as data.
+
+   The library knows no spheres. A vertex v lies on the sphere with centre c and radius r when
+       (v - c)'(v - c) - r^2 = 0,
+   which is quadratic, so it can be written down as terms a x_i x_j, b x_i and a constant. Together with planar faces
+   it gives a dome of flat quads inscribed in a sphere: such faces have a circumcircle, too.
+
+   Build and run:   cc -O2 custom_constraint.c -lm -o custom_constraint && ./custom_constraint
+   Prints:          how far the vertices are from the sphere and the faces from planes, and the gradient check */
+
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "../guidedproj.h"
+
+enum { SIDE = 12 };
+
+static gproj_mesh *make_dome(gproj_error *error) {
+    static double position[3 * (SIDE + 1) * (SIDE + 1)];
+    static int32_t degree[SIDE * SIDE], corner[4 * SIDE * SIDE];
+    int32_t i, j, k = 0, f = 0;
+    for (i = 0; i <= SIDE; ++i) {
+        for (j = 0; j <= SIDE; ++j, ++k) {
+            double x = 8.0 * i / SIDE - 4, y = 8.0 * j / SIDE - 4;
+            position[3 * k] = x + 0.02 * y * y; /* a grid with curved lines */
+            position[3 * k + 1] = y;
+            position[3 * k + 2] = 6 - 0.09 * (x * x + y * y);
+        }
+    }
+    for (i = 0; i < SIDE; ++i) {
+        for (j = 0; j < SIDE; ++j, ++f) {
+            degree[f] = 4;
+            corner[4 * f] = i * (SIDE + 1) + j;
+            corner[4 * f + 1] = corner[4 * f] + SIDE + 1;
+            corner[4 * f + 2] = corner[4 * f] + SIDE + 2;
+            corner[4 * f + 3] = corner[4 * f] + 1;
+        }
+    }
+    return gproj_mesh_create(k, position, f, degree, corner, NULL, error);
+}
+
+/* One row a vertex, in the form's own units: x = (v - origin) * scale. */
+static void add_sphere(gproj_form *form, int32_t vertices, const double centre[3], double radius) {
+    gproj_system *system = gproj_form_system(form);
+    gproj_group group;
+    double origin[3], scale, constant;
+    int32_t number, v, k;
+    memset(&group, 0, sizeof group);
+    group.name = "sphere";
+    group.kind = GPROJ_CONSTRAINT;
+    group.place = GPROJ_PLACE_VERTEX;
+    group.schedule.weight = 1;
+    number = gproj_system_add_group(system, &group);
+    gproj_form_units(form, origin, &scale);
+    for (v = 0; v < vertices; ++v) {
+        gproj_term term[6];
+        constant = -radius * radius * scale * scale;
+        for (k = 0; k < 3; ++k) {
+            double c = (centre[k] - origin[k]) * scale;
+            term[2 * k].i = term[2 * k].j = 3 * v + k; /* x^2 */
+            term[2 * k].a = 1;
+            term[2 * k + 1].i = 3 * v + k; /* - 2 c x */
+            term[2 * k + 1].j = -1;
+            term[2 * k + 1].a = -2 * c;
+            constant += c * c; /* + c^2 */
+        }
+        gproj_system_add_row(system, number, 6, term, constant, v);
+    }
+}
+
+int main(void) {
+    static const double centre[3] = {0, 0, 0};
+    const double radius = 6;
+    gproj_error error;
+    gproj_mesh *mesh = make_dome(&error);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    double worst = 0;
+    int32_t v;
+    gproj_add_planarity(form, 1);
+    add_sphere(form, mesh ? mesh->vertex_count : 0, centre, radius);
+    printf("gradients right   %s\n", gproj_system_check_gradients(gproj_form_system(form)) < 1e-7 ? "yes" : "no");
+    result = gproj_solve(form, 15, NULL);
+    if (result.outcome != GPROJ_CONVERGED) {
+        printf("no dome: %s\n", result.message);
+        return 1;
+    }
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        const double *p = mesh->position + 3 * v;
+        double off = fabs(sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - radius);
+        if (off > worst) worst = off;
+    }
+    printf("vertices on it    %s\n", worst < 1e-11 ? "to 1e-11" : "no");
+    printf("faces planar      %s\n", gproj_measure(mesh, NULL, NULL).planarity_max < 1e-12 ? "to 1e-12" : "no");
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return 0;
+}

@@ -1,0 +1,8964 @@
+/* guidedproj.h - v0.1 - form-finding with polygon meshes by guided projection
+   Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
+
+   WHAT IT DOES
+     Take a polygon mesh and say what must hold (flat panels, boundaries on curves, fixed vertices, constraints of your
+     own) and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all constraints
+     together to machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
+     Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
+     and projection onto any system of quadratic equations.
+
+   WHAT IT DOES NOT DO
+     - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
+     - minimise: wishes guide the way to a mesh that satisfies the constraints, they do not find the one that is best;
+     - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
+     - treat meshes that are no orientable manifolds: they are refused with a sentence that names the place.
+
+   A FIRST PROGRAM (put this into one C or C++ file of your program, and plain #includes into the others)
+
+     #define GUIDEDPROJ_IMPLEMENTATION
+     #include "guidedproj.h"
+     #include <stdio.h>
+
+     int main(void) {
+         gproj_mesh *mesh = gproj_mesh_load("roof.obj", NULL, NULL);
+         gproj_form *form = gproj_form_create(mesh, NULL);
+         gproj_result result;
+         gproj_add_planarity(form, 1.0);      // each returns the number of its group;
+         gproj_add_fixed_boundary(form, 1.0); // after an error they do nothing:
+         gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
+         result = gproj_solve(form, 12, NULL);
+         printf("%s\n", result.message);
+         if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
+         gproj_form_destroy(form);
+         gproj_mesh_destroy(mesh);
+         return result.outcome == GPROJ_CONVERGED ? 0 : 1;
+     }
+
+   CONTENTS (search for the tag)
+     the interface
+       >>api-host       memory, threads, clock
+       >>api-error      codes, places, sentences
+       >>api-number     numbers as text, whatever the locale
+       >>api-cholesky   sparse Cholesky factorisation, usable by itself
+       >>api-system     quadratic equations and guided projection, without meshes
+       >>api-mesh       half-edge meshes, OBJ and OFF
+       >>api-reference  curves and surfaces with closest points
+       >>api-measure    planarity, deviation, folds, statistics
+       >>api-form       form-finding: a mesh, what must hold, what is wished
+     the implementation: each section uses only earlier ones
+       >>platform       compiler differences
+       >>number         decimal text to binary and back
+       >>memory         allocation with accounts
+       >>error          one door for all failures
+       >>parallel       the host's threads
+       >>vector         3-vectors
+       >>dense          small dense kernels
+       >>ordering       approximate minimum degree
+       >>symbolic       elimination tree, column counts, supernodes
+       >>cholesky       multifrontal factorisation, solves
+       >>system         rows, groups, the matrix of the normal equations
+       >>loop           steps, damping, verdict
+       >>mesh           half-edges from polygons
+       >>text           OBJ and OFF
+       >>hierarchy      bounding boxes
+       >>curve          polylines
+       >>surface        reference surfaces
+       >>measure        what a mesh is like
+       >>form           the catalogue of constraints and wishes
+
+   SWITCHES (define before the #include)
+     GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
+     GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
+     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>
+     GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler
+     GPROJ_USE_CBLAS            dense kernels by a CBLAS (link one, such as OpenBLAS)
+     GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
+
+   MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it is
+     destroyed. There are no globals. Iterations after the first allocate nothing. Every allocation may fail: the call
+     returns an error and nothing leaks.
+
+   THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used by
+     different threads at the same time; one object by one thread at a time. Reading an object that no one changes is
+     always safe.
+
+   DETERMINISM  The same input gives the same bytes on the same machine and build: on any number of threads, in any run.
+     Other compilers, other processors and GPROJ_USE_CBLAS may differ in the last digits.
+
+   ERRORS   See >>api-error: code, place, sentence. Objects that are built up keep their first error, so one check is
+     enough. Misuse that only a programmer can cause is reported like everything else.
+
+   REFERENCES
+     Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4), 2014.
+     Others stand in the sections that are based on them. */
+#ifndef GUIDEDPROJ_H
+#define GUIDEDPROJ_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define GPROJ_VERSION "0.1"
+
+/* Every public function is declared with GPROJ_API. In static mode (GPROJ_STATIC, defined before an inclusion) the
+   translation unit has its own private copy of the implementation and exports nothing. */
+#if defined(GPROJ_STATIC) && !defined(GUIDEDPROJ_IMPLEMENTATION)
+#define GUIDEDPROJ_IMPLEMENTATION
+#endif
+#if defined(GPROJ_STATIC) && (defined(__GNUC__) || defined(__clang__) || defined(__TINYC__))
+#define GPROJ_API __attribute__((unused)) static
+#elif defined(GPROJ_STATIC)
+#define GPROJ_API static
+#else
+#define GPROJ_API extern
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-host   What the library asks of the program around it: memory, threads, a clock.
+
+   A gproj_host is given when an object is created and copied into it. NULL or {0} means: malloc, one thread,
+   no clock. Nothing is ever process-wide; two objects may have two hosts. */
+
+/* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
+   be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
+   copies, or never gives back (an arena). `limit` > 0: an object that would hold more than `limit` bytes fails
+   with GPROJ_ERROR_MEMORY instead. */
+typedef struct gproj_allocator {
+    void *(*allocate)(void *user, size_t size);
+    void *(*reallocate)(void *user, void *block, size_t old_size, size_t new_size);
+    void (*release)(void *user, void *block, size_t size);
+    void *user;
+    size_t limit;
+} gproj_allocator;
+
+/* Threads. `run` calls task(data, index) once for each index in 0..count-1, in any order, on any threads, and
+   returns when all calls have returned. NULL: a plain loop. How work is cut into tasks depends on the problem
+   alone, and so do the results, bit for bit: neither the number of threads nor their speed matters. */
+typedef void (*gproj_task)(void *data, int32_t index);
+typedef struct gproj_parallel {
+    void (*run)(void *user, int32_t count, gproj_task task, void *data);
+    void *user;
+} gproj_parallel;
+
+/* A monotonic clock in seconds, for time budgets and for the seconds in reports. NULL: time is not measured
+   (all seconds are 0) and a time budget is an error. */
+typedef struct gproj_clock {
+    double (*now)(void *user);
+    void *user;
+} gproj_clock;
+
+typedef struct gproj_host {
+    gproj_allocator allocator;
+    gproj_parallel parallel;
+    gproj_clock clock;
+} gproj_host;
+
+/* What an object holds, in bytes, and how many allocations and reallocations it has asked for so far. */
+typedef struct gproj_memory {
+    size_t used;
+    size_t peak;
+    uint64_t allocations;
+} gproj_memory;
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-error   Failures: a code, a place in your terms, a sentence.
+
+   Functions that create an object take a `gproj_error *` (may be NULL) and return NULL on failure. Objects that
+   are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
+   return -1, so one check at the end is enough. "Not converged" and "not positive definite" are outcomes, not
+   errors. */
+#define GPROJ_CODES(X)                                              \
+    X(OK, "no error")                                               \
+    X(ERROR_MEMORY, "out of memory")                                \
+    X(ERROR_ARGUMENT, "an argument is out of its range")            \
+    X(ERROR_FILE, "a file could not be read or written")            \
+    X(ERROR_SYNTAX, "a text is not what its format says")           \
+    X(ERROR_NUMBER, "a number is infinite or not a number")         \
+    X(ERROR_INDEX, "an index is out of its range")                  \
+    X(ERROR_DEGENERATE, "an element is repeated or has no extent")  \
+    X(ERROR_NON_MANIFOLD, "a mesh is not a manifold")               \
+    X(ERROR_NON_ORIENTABLE, "a mesh has no consistent orientation") \
+    X(ERROR_SIZE, "a count is too large")                           \
+    X(ERROR_STATE, "a call came before the one it depends on")
+
+typedef enum gproj_code {
+#define GPROJ_X(name, sentence) GPROJ_##name,
+    GPROJ_CODES(GPROJ_X)
+#undef GPROJ_X
+    GPROJ_CODE_FORCE_INT = 0x7fffffff
+} gproj_code;
+
+/* What the index of an error, of a row or of a group's worst row counts. */
+typedef enum gproj_place {
+    GPROJ_PLACE_NONE,
+    GPROJ_PLACE_VERTEX,
+    GPROJ_PLACE_EDGE,
+    GPROJ_PLACE_FACE,
+    GPROJ_PLACE_LINE, /* of a text, from 1 */
+    GPROJ_PLACE_VARIABLE,
+    GPROJ_PLACE_GROUP,
+    GPROJ_PLACE_ROW,
+    GPROJ_PLACE_COLUMN,
+    GPROJ_PLACE_FORCE_INT = 0x7fffffff
+} gproj_place;
+
+enum {
+    GPROJ_MESSAGE_SIZE = 320
+};
+
+typedef struct gproj_error {
+    gproj_code code;
+    gproj_place place;
+    int64_t index;                    /* from 0 (lines: from 1); -1 where there is none */
+    char message[GPROJ_MESSAGE_SIZE]; /* one sentence, UTF-8, without a newline; "" for GPROJ_OK */
+} gproj_error;
+
+/* The general sentence of a code ("out of memory"), a constant string. */
+GPROJ_API const char *gproj_code_string(gproj_code code);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-number   Numbers as text, whatever the locale. */
+
+enum {
+    GPROJ_NUMBER_SIZE = 32
+};
+
+/* Reads a decimal number ([+-]digits[.digits][e[+-]digits], also "inf" and "nan" in any case, so that readers
+   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0
+   where there is no number. Numbers too large become infinite. */
+GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value);
+
+/* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns its length. */
+GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-cholesky   Sparse Cholesky factorisation P A P' = L L' of symmetric positive definite matrices.
+
+   Usable by itself. Analyse a pattern once, then factor any number of matrices that have this pattern; neither
+   the second and later gproj_cholesky_factor nor gproj_cholesky_solve allocates. One object is used by one
+   thread at a time. */
+typedef struct gproj_cholesky gproj_cholesky;
+
+typedef enum gproj_ordering {
+    GPROJ_ORDERING_AMD,     /* approximate minimum degree on the compressed graph */
+    GPROJ_ORDERING_GIVEN,   /* `permutation` of the options */
+    GPROJ_ORDERING_NATURAL, /* as the matrix stands */
+    GPROJ_ORDERING_FORCE_INT = 0x7fffffff
+} gproj_ordering;
+
+typedef struct gproj_cholesky_options {
+    gproj_ordering ordering;
+    const int32_t *permutation; /* n entries: permutation[k] = column of A that becomes column k of L */
+    bool disable_relaxation;    /* keep fundamental supernodes: less fill, slower */
+    bool disable_postorder;     /* keep the given order exactly; supernodes become small */
+} gproj_cholesky_options;
+
+/* What an analysis predicts and a factorisation has done. */
+typedef struct gproj_cholesky_info {
+    int32_t columns;        /* n */
+    int32_t supernodes;     /* after relaxation */
+    int64_t factor_entries; /* entries of L, lower triangle with diagonal, zeros of relaxed supernodes included */
+    int64_t exact_entries;  /* the same without relaxation */
+    double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
+    size_t factor_bytes;    /* memory for the values of L */
+    size_t work_bytes;      /* memory for the work arrays of factor and solve */
+    int32_t failed_column;  /* of A, where the last factorisation met a pivot that is not > 0; else -1 */
+} gproj_cholesky_info;
+
+typedef enum gproj_factor_outcome {
+    GPROJ_FACTORED,
+    GPROJ_NOT_POSITIVE_DEFINITE, /* see failed_column; there is no factor to solve with */
+    GPROJ_FACTOR_FAILED,         /* an error: see gproj_cholesky_error */
+    GPROJ_FACTOR_OUTCOME_FORCE_INT = 0x7fffffff
+} gproj_factor_outcome;
+
+/* `host` may be NULL. NULL only when there is no memory. */
+GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host);
+GPROJ_API void gproj_cholesky_destroy(gproj_cholesky *cholesky);
+GPROJ_API const gproj_error *gproj_cholesky_error(const gproj_cholesky *cholesky);
+GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky);
+
+/* Analyses the pattern of an n x n symmetric matrix in compressed columns: rows row[start[j]..start[j+1]-1] in
+   column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the
+   lower or in the upper triangle (all in one of the two, or mixed); diagonal entries may be left out (then 0).
+   Repeated entries are summed. `options` may be NULL. The arrays are not needed after the call. */
+GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
+                                            const int32_t *row, const gproj_cholesky_options *options);
+
+/* Factors the matrix with these values, in the order of `row` at the analysis. */
+GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, const double *values);
+
+/* Solves A X = B for `count` right-hand sides, each of n contiguous numbers. x may be b. */
+GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x);
+
+/* Iterative refinement: improves x by `steps` rounds of x += A^-1 (b - A x), one right-hand side. A is given by
+   the arrays of the analysis and the values of the factorisation. Returns the largest |b - A x| at the end. */
+GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *start, const int32_t *row,
+                                       const double *values, const double *b, double *x, int32_t steps);
+
+GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *cholesky);
+
+/* The permutation in use (n entries, owned by the object): see gproj_cholesky_options.permutation. */
+GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *cholesky);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-system   Systems of quadratic equations and their guided projection.
+
+   Variables x, and rows
+       phi(x) = sum_t a_t x_i(t) x_j(t) + sum_t b_t x_i(t) + c                                  (paper, eq. 1)
+   in groups. A group of kind GPROJ_CONSTRAINT must hold: phi = 0. A group of kind GPROJ_WISH guides: the sum of
+   its phi^2 should be small, and it fades so that the constraints can be met exactly. A group's weight
+   multiplies its rows, so it enters squared. One step from x solves                            (paper, eq. 3)
+       (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi(x) g,    g = grad phi(x),
+   over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes. */
+typedef struct gproj_system gproj_system;
+
+typedef enum gproj_kind {
+    GPROJ_CONSTRAINT,
+    GPROJ_WISH,
+    GPROJ_KIND_FORCE_INT = 0x7fffffff
+} gproj_kind;
+
+/* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
+   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations. So {w} is the
+   constant weight w. Needs weight >= 0, 0 <= decay <= 1, last >= 0. */
+typedef struct gproj_schedule {
+    double weight;
+    double decay;
+    int32_t last;
+} gproj_schedule;
+
+/* One term of a row: a x_i x_j, or a x_i where j is -1. i = j gives a x_i^2. */
+typedef struct gproj_term {
+    int32_t i, j;
+    double a;
+} gproj_term;
+
+/* Called before every evaluation that begins an iteration for groups whose rows depend on x in another way
+   than quadratic (closest points, tangent frames): reads x, and replaces its rows by gproj_system_set_row. */
+typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
+
+typedef struct gproj_group {
+    const char *name; /* for reports, e.g. "planarity"; copied (at most 31 characters) */
+    gproj_kind kind;
+    /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update, which
+       costs one more solve per row. */
+    bool global;
+    gproj_place place; /* what the element numbers of its rows count */
+    gproj_schedule schedule;
+    gproj_refresh refresh; /* NULL: the rows are as they were added */
+    void *refresh_user;
+} gproj_group;
+
+/* The state of a group at the current x, in the units of its rows, without weights. */
+typedef struct gproj_group_info {
+    const char *name;
+    gproj_kind kind;
+    gproj_place place;
+    gproj_schedule schedule;
+    int32_t rows;
+    double max;            /* largest |phi| */
+    double rms;            /* root of the mean of phi^2 */
+    int32_t worst_row;     /* where the largest is; -1 without rows */
+    int32_t worst_element; /* the element number of that row */
+} gproj_group_info;
+
+typedef enum gproj_phase {
+    GPROJ_PHASE_ANALYSE, /* pattern, ordering, symbolic factorisation: once */
+    GPROJ_PHASE_REFRESH, /* refresh callbacks, evaluation of rows */
+    GPROJ_PHASE_ASSEMBLE,
+    GPROJ_PHASE_FACTOR,
+    GPROJ_PHASE_SOLVE,
+    GPROJ_PHASE_COUNT,
+    GPROJ_PHASE_FORCE_INT = 0x7fffffff
+} gproj_phase;
+
+#define GPROJ_OUTCOMES(X)                                                                        \
+    X(CONVERGED, "all constraints hold to the tolerance")                                        \
+    X(ITERATION_LIMIT, "the iterations ran out before all constraints held")                     \
+    X(STALLED, "no step makes the constraints hold better: they conflict, or this is a minimum") \
+    X(CANCELLED, "cancelled by the caller")                                                      \
+    X(TIME_OUT, "the time budget ran out")                                                       \
+    X(FAILED, "not started or broken off by an error")
+
+typedef enum gproj_outcome {
+#define GPROJ_X(name, sentence) GPROJ_##name,
+    GPROJ_OUTCOMES(GPROJ_X)
+#undef GPROJ_X
+    GPROJ_OUTCOME_FORCE_INT = 0x7fffffff
+} gproj_outcome;
+
+/* What one iteration did; given to the callback after it. */
+typedef struct gproj_iteration {
+    int32_t number;   /* from 1 */
+    double residual;  /* largest |phi| of all constraint rows with weight > 0, after the step */
+    double merit;     /* sum of w^2 phi^2 over constraints and wishes, after the step */
+    double energy;    /* the wishes' part of it */
+    double step;      /* largest |dx| */
+    double epsilon;   /* the regularisation used */
+    double length;    /* the part of the step that was taken: 1, or another where the merit asked for it */
+    int32_t attempts; /* factorisations: 1, or more where the step was damped or guarded */
+    double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
+} gproj_iteration;
+
+/* Called after each iteration; groups may be read (gproj_system_group_info) and weights changed. Return false to
+   stop with GPROJ_CANCELLED; x then stays as it is after this iteration. */
+typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
+
+typedef struct gproj_solve_options {
+    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or 8 roundings of the largest |x| where that is
+       more. */
+    double tolerance;
+    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3) */
+    double time_budget; /* seconds by the host's clock; 0 means none */
+    gproj_on_iteration on_iteration; /* may be NULL */
+    void *user;
+    bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
+    bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
+    bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over */
+} gproj_solve_options;
+
+typedef struct gproj_result {
+    gproj_outcome outcome;
+    int32_t iterations;  /* steps taken */
+    int32_t damped;      /* of these, steps that were damped or shortened */
+    double residual;     /* largest |phi| of all constraint rows with weight > 0 */
+    double step;         /* largest |dx| of the last step */
+    int32_t worst_group; /* where that residual is; -1 without constraints */
+    int32_t worst_element;
+    double seconds[GPROJ_PHASE_COUNT];
+    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name */
+} gproj_result;
+
+GPROJ_API gproj_system *gproj_system_create(const gproj_host *host);
+GPROJ_API void gproj_system_destroy(gproj_system *system);
+GPROJ_API const gproj_error *gproj_system_error(const gproj_system *system);
+GPROJ_API gproj_memory gproj_system_memory(const gproj_system *system);
+
+/* Appends count variables with these start values (NULL: zeros), in blocks of `block` (1 to 8; count is a multiple
+   of it): the coordinates of one point, say. A block's variables stay together in the matrix when some row
+   couples them. Returns the number of the first variable, -1 after an error. */
+GPROJ_API int32_t gproj_system_add_variables(gproj_system *system, int32_t count, int32_t block, const double *values);
+GPROJ_API int32_t gproj_system_variable_count(const gproj_system *system);
+/* The variables, to read and to write; valid until variables are added. */
+GPROJ_API double *gproj_system_values(gproj_system *system);
+
+/* Adds an empty group; returns its number, from 0. */
+GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
+GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
+GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
+/* A new weight needs no new analysis; 0 switches a group off. */
+GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
+
+/* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
+   Returns its number within the group. Rows added after a solve make the next solve analyse anew. */
+GPROJ_API int32_t gproj_system_add_row(gproj_system *system, int32_t group, int32_t count, const gproj_term *terms,
+                                       double constant, int32_t element);
+/* Replaces the coefficients (in the order of the row's terms; NULL: as they are) and the constant of a row. */
+GPROJ_API gproj_code gproj_system_set_row(gproj_system *system, int32_t group, int32_t row, const double *coefficients,
+                                          double constant);
+/* The weight of one row, times its group's; 1 when it is added, 0 leaves it out. */
+GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *system, int32_t group, int32_t row, double weight);
+/* phi of one row at the current x; with `gradient` (as long as the variables, may be NULL) its dense gradient. */
+GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t group, int32_t row, double *gradient);
+
+/* Compares every gradient with central differences of the values; returns the largest difference found, relative
+   to the largest entry of that row's gradient and at least 1. About 1e-9 is right, 1e-3 is a wrong gradient. */
+GPROJ_API double gproj_system_check_gradients(gproj_system *system);
+
+/* Takes at most `iterations` steps. `options` may be NULL. */
+GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iterations, const gproj_solve_options *options);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-mesh   Half-edge meshes of any polygons.
+
+   Orientable 2-manifolds, with or without boundary, any number of components and holes, faces of degree >= 3
+   (convex or not), isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has
+   face -1, and those of a boundary loop are linked by next/prev in the direction opposite to the faces.
+
+   All arrays are owned by the mesh and read-only but for `position`, which you may change at any time.
+   Corner k of face f is the half-edge that follows face_halfedge[f] k times, in the order of the input. */
+typedef struct gproj_mesh {
+    int32_t vertex_count;
+    int32_t face_count;
+    int32_t edge_count;
+    int32_t halfedge_count;   /* 2 * edge_count: half-edges 2e and 2e + 1 are the two of edge e */
+    int32_t loop_count;       /* boundary loops */
+    int32_t component_count;  /* connected components, isolated vertices not counted */
+    int32_t isolated_count;   /* vertices without a face */
+    int32_t reoriented_count; /* faces turned round so that all of a component agree */
+
+    double *position;               /* 3 * vertex_count: x y z of each vertex */
+    const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1; -1: isolated */
+    const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
+    const int32_t *face_degree;     /* number of corners */
+    const int32_t *loop_halfedge;   /* a half-edge with face -1 of each boundary loop */
+
+    const int32_t *twin; /* of each half-edge h: the opposite one, h ^ 1 */
+    const int32_t *next; /* the following one in the same face or boundary loop */
+    const int32_t *prev;
+    const int32_t *origin; /* the vertex where it starts */
+    const int32_t *face;   /* the face on its left, or -1 */
+    const int32_t *edge;   /* h / 2 */
+
+    int32_t polyline_count;         /* polylines `l` of an OBJ file, by vertices of the mesh (often isolated ones) */
+    const int32_t *polyline_start;  /* polyline_count + 1 entries into polyline_vertex */
+    const int32_t *polyline_vertex; /* a closed polyline repeats its first vertex at its end */
+} gproj_mesh;
+
+/* Builds a mesh of at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face, face_vertex the corners of all faces one
+   after the other, from 0. The arrays are copied. Refuses, naming the element: indices out of range, a face with
+   fewer than 3 or with repeated vertices, coordinates that are not finite, edges with more than two faces,
+   vertices whose faces form more than one fan, components without a consistent orientation (the first face of a
+   component gives it; faces against it are turned round and counted). */
+GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
+                                        const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
+                                        gproj_error *error);
+GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
+GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
+GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
+
+/* The number of edges at a vertex. */
+GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex);
+GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex);
+/* The neighbours of a vertex in cyclic order, counter-clockwise seen from outside (at the boundary from the first to
+   the last along the faces). Writes at most `capacity` of them, returns the valence. */
+GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity);
+/* The vectorial area of a face: 1/2 sum v_i x v_(i+1); its length is the area of a planar face. */
+GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]);
+/* The mean length of all edges; 0 without edges. */
+GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh);
+
+typedef enum gproj_format {
+    GPROJ_FORMAT_DETECT, /* reading: by the first word; files: by the name's ending */
+    GPROJ_FORMAT_OBJ,
+    GPROJ_FORMAT_OFF,
+    GPROJ_FORMAT_FORCE_INT = 0x7fffffff
+} gproj_format;
+
+/* Reads a mesh from a text. OBJ: v, f (also negative indices and v/vt/vn), l; comments, CRLF and continued lines;
+   g, o, s, usemtl, mtllib, vt, vn and unknown words are passed over. OFF: OFF, COFF, NOFF, STOFF with their extra
+   numbers passed over. */
+GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_format format, const gproj_host *host,
+                                      gproj_error *error);
+
+/* Receives a piece of text; returns false to stop (then the writer returns GPROJ_ERROR_FILE). */
+typedef bool (*gproj_write)(void *user, const char *text, size_t size);
+/* Writes the mesh with vertices, faces and corners in their order and numbers that read back to the same bits. OFF has
+   no polylines. */
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
+
+#ifndef GPROJ_NO_STDIO
+/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. */
+GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
+/* Writes to a new file beside `path` and renames it, so an old file at `path` is lost only when the new one is
+   complete. The format follows the ending: .obj or .off. */
+GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
+#endif
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
+typedef struct gproj_curve gproj_curve;
+typedef struct gproj_surface gproj_surface;
+
+typedef struct gproj_curve_hit {
+    double point[3];   /* the closest point of the curve */
+    double tangent[3]; /* unit; of the segment on which the point lies */
+    double distance;
+    int32_t segment;  /* from point[segment] to the next one */
+    double parameter; /* 0..1 within the segment */
+} gproj_curve_hit;
+
+typedef struct gproj_surface_hit {
+    double point[3];
+    double normal[3]; /* unit; vertex normals interpolated at the point */
+    double distance;
+    int32_t face; /* of the mesh that the surface was made from */
+} gproj_surface_hit;
+
+/* A polyline through `count` >= 2 points (3 * count numbers); closed: with a segment from the last to the first. */
+GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, bool closed, const gproj_host *host,
+                                          gproj_error *error);
+/* Boundary loop `loop` of a mesh as a closed curve, in the direction of the faces' edges, from the origin of
+   loop_halfedge[loop]. */
+GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
+                                             gproj_error *error);
+/* Polyline `polyline` of a mesh; closed where its last vertex is its first. */
+GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
+                                                 gproj_error *error);
+GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
+GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
+
+/* The mesh's faces, cut into triangles. Refused where the mesh has no faces. */
+GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
+GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
+GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-measure   What a mesh is like. */
+typedef struct gproj_measures {
+    double mean_edge, min_edge, max_edge;
+    double area, min_face_area, max_face_area; /* lengths of vectorial areas */
+    /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the mesh. */
+    double planarity_max, planarity_mean;
+    int32_t planarity_face;              /* where the largest is; -1 without faces */
+    double diagonal_max;                 /* quads: distance of the lines through the diagonals, in mean edge lengths */
+    double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
+    double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
+    int32_t turned_faces;                /* vectorial area against the one of the original face */
+    int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
+    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along its vectorial area */
+    int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
+    /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
+       normals, as a sum of triangle areas about its mean. */
+    double gauss_variation;
+} gproj_measures;
+
+/* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
+   `planarity`: face_count numbers to be filled; may be NULL. */
+GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-form   A mesh, what must hold and what is wished: form-finding.
+
+   gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled
+   so that its mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives
+   the shape of the same model in km. Every gproj_add_... appends a group of rows to the form's system and
+   returns its number (-1 after an error); after an error they do nothing, so check once, at the solve.
+   Weights: 1 for what must hold. Wishes fade by default after half of the iterations of the solve (schedule
+   with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
+typedef struct gproj_form gproj_form;
+
+/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so. */
+GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
+GPROJ_API void gproj_form_destroy(gproj_form *form);
+GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
+GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form);
+/* The system underneath, for rows of your own. Variables 3i, 3i+1, 3i+2 are vertex i in the form's units:
+   internal = (position - centre) * scale. */
+GPROJ_API gproj_system *gproj_form_system(gproj_form *form);
+GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double *scale);
+
+/* -- what must hold -- */
+
+/* Faces with more than 3 sides are planar: a unit normal n_k per face as variables, n_k'n_k = 1, and
+   n_k'(v_i - v_j) = 0 for every edge of the face (paper 3.1). */
+GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight);
+/* These vertices stay where they were at gproj_form_create: v_i = p_i, 3 rows each. */
+GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
+GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight);
+/* The corners of the boundary: see gproj_form_is_corner. */
+GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight);
+/* Handles: vertices[k] goes to positions[3k..3k+2] (in the mesh's units). Move them by gproj_set_targets. */
+GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
+                                    double weight);
+GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions);
+/* The vertices stay on the curve: v_i on the tangent at the closest point, 2 rows each, anew in each iteration. The
+   curve must outlive the form. */
+GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
+                                    double weight);
+/* Every boundary vertex glides along the original of its boundary loop; corners stay. */
+GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
+
+/* -- what is wished -- */
+
+/* Closeness to the original: v_i = p_i. */
+GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight);
+/* Closeness to a reference surface: v_i on the tangent plane at its closest point, 1 row each. The surface must
+   outlive the form. */
+GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight);
+/* Fairness: v = (w1 + w3)/2 and v = (w2 + w4)/2 at interior vertices of valence 4, v = mean of its neighbours at
+   others; at the boundary v = (u + w)/2 along the boundary, nothing at corners (paper 3.2). */
+GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight);
+/* The boundary's part of it alone. */
+GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight);
+/* The same differences as gproj_add_fairness at interior vertices, projected to a tangent plane that is estimated anew
+   in each iteration. */
+GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight);
+/* Fairness of the Gauss image: the differences of face normals with those of the neighbouring faces, projected to the
+   plane orthogonal to the normal. */
+GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight);
+
+/* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
+GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
+GPROJ_API gproj_group_info gproj_get_group_info(const gproj_form *form, int32_t group);
+
+/* Is the boundary vertex a corner: only one face there, or the boundary turns by more than 45 degrees. */
+GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
+
+/* -- solving -- */
+
+/* Takes at most `iterations` steps and writes the positions to the mesh. Where no wish guides, closeness to the
+   original with weight 0.03 * 0.5^n, n <= 5, is added (options: skip_closeness). After an error nothing is written.
+   A second call goes on from the positions of the first. */
+GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* GUIDEDPROJ_H */
+
+/* ---------------------------------------- stop here if you only want the API ---------------------------------------- */
+
+#ifdef GUIDEDPROJ_IMPLEMENTATION
+#ifndef GPROJI_IMPLEMENTED
+#define GPROJI_IMPLEMENTED
+
+/* ============================================================================================================
+   >>platform   Compiler differences, and nothing else. Uses no other section. */
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#ifndef GPROJ_NO_STDIO
+#include <stdio.h>
+#endif
+#ifdef GPROJ_USE_CBLAS
+#include <cblas.h>
+#endif
+
+#ifndef GPROJ_ASSERT
+#include <assert.h>
+#define GPROJ_ASSERT(condition) assert(condition)
+#endif
+
+#if defined(__GNUC__) || defined(__clang__) || defined(__TINYC__)
+#define GPROJI_INTERNAL __attribute__((unused)) static
+#else
+#define GPROJI_INTERNAL static
+#endif
+
+#if defined(__GNUC__) || defined(__clang__)
+#define GPROJI_INLINE __attribute__((unused)) static inline
+#define GPROJI_NOINLINE __attribute__((noinline))
+#else
+#define GPROJI_INLINE static inline
+#define GPROJI_NOINLINE
+#endif
+
+#if defined(__cplusplus)
+#define GPROJI_RESTRICT
+#else
+#define GPROJI_RESTRICT restrict
+#endif
+
+/* Vector extensions of gcc and clang; every other compiler, and GPROJ_NO_SIMD, takes the scalar path; so does arithmetic
+   in registers of more than double precision (x87). */
+#if !defined(GPROJ_NO_SIMD) && (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__) && \
+    !(defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 2)
+#define GPROJI_SIMD 1
+#else
+#define GPROJI_SIMD 0
+#endif
+
+GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
+GPROJI_INLINE int32_t gproji_max(int32_t a, int32_t b) { return a > b ? a : b; }
+GPROJI_INLINE double gproji_fmin(double a, double b) { return a < b ? a : b; }
+GPROJI_INLINE double gproji_fmax(double a, double b) { return a > b ? a : b; }
+/* False for infinities and NaN, also under -ffast-math, where isfinite may be folded to true. */
+GPROJI_INLINE bool gproji_is_finite(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return ((bits >> 52) & 0x7ff) != 0x7ff;
+}
+/* ============================================================================================================
+   >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
+
+   Reading: digits up to 19 with small powers of ten go through one exact 128-bit product or quotient; everything
+   else through exact big integers. Both end in a 64-bit significand with a sticky bit, which is rounded once, to
+   nearest even, in integers: no floating-point operation takes part, so excess precision, rounding modes and
+   flushed denormals do not matter.
+   Writing: Steele and White 1990, in the form of Burger and Dybvig 1996: with v = R/S and half-gaps M/S to the
+   neighbouring doubles, digits are produced until what is left is inside the gap.
+   Invariant: a gproji_big has no leading zero limb; zero has count 0. */
+
+/* 768 digits and a sticky one decide every double; 10^1100 = 5^1100 2^1100, and 5^1100 has 80 limbs. */
+enum {
+    GPROJI_BIG_LIMBS = 96,
+    GPROJI_DIGITS_MAX = 800
+};
+
+typedef struct gproji_big {
+    int32_t count;
+    uint32_t limb[GPROJI_BIG_LIMBS]; /* least significant first */
+} gproji_big;
+
+GPROJI_INLINE int32_t gproji_bit_length(uint64_t x) {
+    int32_t length = 0, step;
+    for (step = 32; step; step >>= 1) {
+        if (x >> step) {
+            x >>= step;
+            length += step;
+        }
+    }
+    return length + (x ? 1 : 0);
+}
+
+GPROJI_INTERNAL void gproji_big_set(gproji_big *a, uint64_t value) {
+    a->limb[0] = (uint32_t)value;
+    a->limb[1] = (uint32_t)(value >> 32);
+    a->count = a->limb[1] ? 2 : (a->limb[0] ? 1 : 0);
+}
+
+GPROJI_INTERNAL int32_t gproji_big_bits(const gproji_big *a) {
+    return a->count ? 32 * (a->count - 1) + gproji_bit_length(a->limb[a->count - 1]) : 0;
+}
+
+/* a = a * factor + addend */
+GPROJI_INTERNAL void gproji_big_multiply(gproji_big *a, uint32_t factor, uint32_t addend) {
+    uint64_t carry = addend;
+    int32_t i;
+    for (i = 0; i < a->count; ++i) {
+        carry += (uint64_t)a->limb[i] * factor;
+        a->limb[i] = (uint32_t)carry;
+        carry >>= 32;
+    }
+    if (carry) a->limb[a->count++] = (uint32_t)carry;
+}
+
+GPROJI_INTERNAL void gproji_big_multiply_power5(gproji_big *a, int32_t power) {
+    for (; power >= 13; power -= 13) gproji_big_multiply(a, 1220703125u, 0);
+    for (; power > 0; --power) gproji_big_multiply(a, 5, 0);
+}
+
+/* a = a * 2^bits */
+GPROJI_INTERNAL void gproji_big_shift(gproji_big *a, int32_t bits) {
+    int32_t limbs = bits / 32, i;
+    bits %= 32;
+    if (!a->count) return;
+    if (bits) gproji_big_multiply(a, (uint32_t)1 << bits, 0);
+    if (!limbs) return;
+    memmove(a->limb + limbs, a->limb, (size_t)a->count * sizeof a->limb[0]);
+    for (i = 0; i < limbs; ++i) a->limb[i] = 0;
+    a->count += limbs;
+}
+
+/* The sign of a - b. */
+GPROJI_INTERNAL int32_t gproji_big_compare(const gproji_big *a, const gproji_big *b) {
+    int32_t i;
+    if (a->count != b->count) return a->count < b->count ? -1 : 1;
+    for (i = a->count - 1; i >= 0; --i) {
+        if (a->limb[i] != b->limb[i]) return a->limb[i] < b->limb[i] ? -1 : 1;
+    }
+    return 0;
+}
+
+/* The sign of a + 2^shift b - c, shift 0 or 1. */
+GPROJI_INTERNAL int32_t gproji_big_compare_sum(const gproji_big *a, const gproji_big *b, int32_t shift,
+                                               const gproji_big *c) {
+    gproji_big sum;
+    uint64_t carry = 0;
+    int32_t count = gproji_max(a->count, b->count), i;
+    if (count < c->count - 1) return -1;
+    for (i = 0; i < count; ++i) {
+        if (i < a->count) carry += a->limb[i];
+        if (i < b->count) carry += (uint64_t)b->limb[i] << shift;
+        sum.limb[i] = (uint32_t)carry;
+        carry >>= 32;
+    }
+    sum.count = count;
+    if (carry) sum.limb[sum.count++] = (uint32_t)carry;
+    return gproji_big_compare(&sum, c);
+}
+
+/* r = r mod s; returns floor(r / s). Needs r < 2^32 s and the highest bit of s's highest limb set (Knuth 1969, 4.3.1,
+   algorithm D, one quotient digit: the estimate from the leading limbs is at most 2 too large). */
+GPROJI_INTERNAL uint32_t gproji_big_divide(gproji_big *r, const gproji_big *s) {
+    int32_t n = s->count, i;
+    uint64_t q, product, carry = 0, borrow = 0, top;
+    for (i = r->count; i <= n; ++i) r->limb[i] = 0;
+    top = ((uint64_t)r->limb[n] << 32) | r->limb[n - 1];
+    q = top / s->limb[n - 1];
+    if (q > 0xffffffffu) q = 0xffffffffu;
+    if (q) {
+        for (i = 0; i <= n; ++i) { /* r -= q s, modulo 2^(32 (n + 1)) */
+            product = carry + (i < n ? q * s->limb[i] : 0);
+            carry = product >> 32;
+            top = (uint64_t)r->limb[i] - (uint32_t)product - borrow;
+            r->limb[i] = (uint32_t)top;
+            borrow = (top >> 32) & 1;
+        }
+        while (borrow) { /* q was too large: r += s until it wraps back */
+            --q;
+            carry = 0;
+            for (i = 0; i <= n; ++i) {
+                carry += (uint64_t)r->limb[i] + (i < n ? s->limb[i] : 0);
+                r->limb[i] = (uint32_t)carry;
+                carry >>= 32;
+            }
+            if (carry) borrow = 0;
+        }
+    }
+    r->count = n;
+    while (r->count && !r->limb[r->count - 1]) --r->count;
+    return (uint32_t)q;
+}
+
+GPROJI_INLINE double gproji_double_of_bits(uint64_t bits) {
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* (m + s) 2^exponent rounded to nearest even, where m has its highest bit set and 0 < s < 1 if sticky, else s = 0.
+   Returns the bits of the double. */
+GPROJI_INTERNAL uint64_t gproji_round_significand(uint64_t m, int32_t exponent, bool sticky) {
+    int32_t drop = 11; /* bits of m below the last one kept */
+    uint64_t kept, rest, half;
+    if (exponent + 63 > 1023) return (uint64_t)0x7ff << 52;
+    if (-1074 - exponent > drop) drop = -1074 - exponent;
+    if (drop > 64) return 0;
+    kept = drop == 64 ? 0 : m >> drop;
+    rest = drop == 64 ? m : m & (((uint64_t)1 << drop) - 1);
+    half = (uint64_t)1 << (drop - 1);
+    if (drop == 11) kept += (uint64_t)(exponent + 63 + 1022) << 52; /* the leading bit of m adds the missing 1 */
+    if (rest > half || (rest == half && (sticky || (kept & 1)))) kept++;
+    return kept;
+}
+
+/* high 2^64 + low = a b */
+GPROJI_INLINE uint64_t gproji_multiply_64(uint64_t a, uint64_t b, uint64_t *low) {
+    uint64_t a0 = a & 0xffffffffu, a1 = a >> 32, b0 = b & 0xffffffffu, b1 = b >> 32;
+    uint64_t p00 = a0 * b0, p01 = a0 * b1, p10 = a1 * b0;
+    uint64_t middle = (p00 >> 32) + (p01 & 0xffffffffu) + (p10 & 0xffffffffu);
+    *low = (middle << 32) | (p00 & 0xffffffffu);
+    return a1 * b1 + (p01 >> 32) + (p10 >> 32) + (middle >> 32);
+}
+
+/* floor((high 2^64 + low) / d) for high < d, with d's highest bit set; two digits of 32 bits (Knuth 1969, 4.3.1). */
+GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t d, uint64_t *remainder) {
+    uint64_t d1 = d >> 32, d0 = d & 0xffffffffu, q = 0, estimate, rest, next;
+    int32_t step;
+    for (step = 0; step < 2; ++step) {
+        next = step ? low & 0xffffffffu : low >> 32;
+        estimate = high / d1;
+        rest = high % d1;
+        while (estimate >> 32 || estimate * d0 > ((rest << 32) | next)) {
+            --estimate;
+            rest += d1;
+            if (rest >> 32) break;
+        }
+        high = ((high << 32) | next) - estimate * d; /* modulo 2^64; the true value is below d */
+        q = (q << 32) | estimate;
+    }
+    *remainder = high;
+    return q;
+}
+
+GPROJI_INLINE uint64_t gproji_power5_64(int32_t power) {
+    uint64_t p = 1, base = 5;
+    for (; power; power >>= 1) {
+        if (power & 1) p *= base;
+        base *= base; /* wraps after the last use for powers up to 27 */
+    }
+    return p;
+}
+
+/* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
+GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
+    int32_t shift = 64 - gproji_bit_length(w), shift5;
+    uint64_t five = gproji_power5_64(power < 0 ? -power : power), high, low;
+    w <<= shift;
+    shift5 = 64 - gproji_bit_length(five);
+    five <<= shift5;
+    if (power >= 0) { /* w 5^p, with 127 or 128 bits */
+        high = gproji_multiply_64(w, five, &low);
+        power += 64 - shift - shift5;
+        if (!(high >> 63)) {
+            high = (high << 1) | (low >> 63);
+            low <<= 1;
+            --power;
+        }
+        return gproji_round_significand(high, power, low != 0);
+    }
+    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved where that would have 65 bits */
+    if (w >= five) {
+        high = gproji_divide_128(w >> 1, w << 63, five, &low);
+        ++power;
+    } else {
+        high = gproji_divide_128(w, 0, five, &low);
+    }
+    return gproji_round_significand(high, power, low != 0);
+}
+
+/* The double nearest to 0.d1d2... 10^point, for `count` <= GPROJI_DIGITS_MAX digits of which the first is not 0. */
+GPROJI_INTERNAL uint64_t gproji_read_long(const uint8_t *digit, int32_t count, int64_t point) {
+    gproji_big a, b;
+    uint64_t m;
+    int32_t power, exponent, bits_a, bits_b, i;
+    if (point > 310) return (uint64_t)0x7ff << 52; /* >= 10^310 */
+    if (point < -330) return 0;
+    /* 1. The value is a 10^power with an integer a, so a 2^power times or over b = 5^|power|. */
+    gproji_big_set(&a, 0);
+    for (i = 0; i < count; ++i) gproji_big_multiply(&a, 10, digit[i]);
+    power = (int32_t)point - count;
+    exponent = power;
+    gproji_big_set(&b, 1);
+    gproji_big_multiply_power5(power < 0 ? &b : &a, power < 0 ? -power : power);
+    /* 2. Scale by powers of two: a and b get the same length, a whole number of limbs, and 1/2 <= a / b < 1. */
+    bits_a = gproji_big_bits(&a);
+    bits_b = gproji_big_bits(&b);
+    i = (gproji_max(bits_a, bits_b) + 31) / 32 * 32;
+    gproji_big_shift(&a, i - bits_a);
+    gproji_big_shift(&b, i - bits_b);
+    exponent += bits_a - bits_b;
+    if (gproji_big_compare(&a, &b) >= 0) { /* doubling b would spoil its leading bit: subtract b for the leading 1 */
+        gproji_big_divide(&a, &b);
+        gproji_big_shift(&a, 31);
+        m = (uint64_t)1 << 63 | (uint64_t)gproji_big_divide(&a, &b) << 32;
+        exponent -= 63;
+    } else {
+        gproji_big_shift(&a, 32);
+        m = (uint64_t)gproji_big_divide(&a, &b) << 32;
+        exponent -= 64;
+    }
+    /* 3. The second half of the 64 bits, and whether anything is left. */
+    gproji_big_shift(&a, 32);
+    m |= gproji_big_divide(&a, &b);
+    return gproji_round_significand(m, exponent, a.count != 0);
+}
+
+GPROJI_INLINE bool gproji_is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/* Does the text begin with this lower-case word, in any case? */
+GPROJI_INTERNAL bool gproji_begins_with(const char *text, size_t size, const char *word) {
+    size_t i;
+    for (i = 0; word[i]; ++i) {
+        if (i >= size || (text[i] != word[i] && text[i] != word[i] - 'a' + 'A')) return false;
+    }
+    return true;
+}
+
+/* What stands in a decimal text: 0.d1d2... 10^point, the digits without leading zeros. */
+typedef struct gproji_decimal {
+    uint8_t digit[GPROJI_DIGITS_MAX]; /* values 0..9 */
+    int32_t count;
+    uint64_t first; /* the first 19 digits as an integer */
+    int64_t point;
+    bool any;      /* there was a digit, maybe 0 */
+    bool fraction; /* the decimal point has been seen */
+} gproji_decimal;
+
+GPROJI_INLINE void gproji_decimal_push(gproji_decimal *decimal, uint8_t digit) {
+    decimal->any = true;
+    if (!decimal->count && !digit) {
+        if (decimal->fraction) --decimal->point;
+        return;
+    }
+    if (!decimal->fraction) ++decimal->point;
+    if (decimal->count < 19) decimal->first = decimal->first * 10 + digit;
+    if (decimal->count < GPROJI_DIGITS_MAX) {
+        decimal->digit[decimal->count++] = digit;
+    } else if (digit) {
+        decimal->digit[GPROJI_DIGITS_MAX - 1] |= 1; /* not 0, whatever follows: it can only break ties */
+    }
+}
+
+/* Reads [e[+-]digits] at text[at..] and adds it to point; returns the position behind it, or `at`. */
+GPROJI_INTERNAL size_t gproji_read_exponent(const char *text, size_t size, size_t at, int64_t *point) {
+    size_t i = at;
+    int64_t exponent = 0;
+    bool negative = false;
+    if (i >= size || (text[i] != 'e' && text[i] != 'E')) return at;
+    ++i;
+    if (i < size && (text[i] == '+' || text[i] == '-')) negative = text[i++] == '-';
+    if (i >= size || !gproji_is_digit(text[i])) return at;
+    for (; i < size && gproji_is_digit(text[i]); ++i) {
+        if (exponent < INT64_C(100000000000000000)) exponent = exponent * 10 + (text[i] - '0');
+    }
+    *point += negative ? -exponent : exponent;
+    return i;
+}
+
+GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value) {
+    gproji_decimal decimal;
+    size_t i = 0;
+    uint64_t sign = 0, bits = 0;
+    if (!text || !value) return 0;
+    if (i < size && (text[i] == '+' || text[i] == '-')) sign = (uint64_t)(text[i++] == '-') << 63;
+    if (gproji_begins_with(text + i, size - i, "inf") || gproji_begins_with(text + i, size - i, "nan")) {
+        bool nan = text[i] == 'n' || text[i] == 'N';
+        *value = gproji_double_of_bits(sign | (uint64_t)(nan ? 0xfff : 0xffe) << 51);
+        return i + (gproji_begins_with(text + i, size - i, "infinity") ? 8 : 3);
+    }
+    decimal.count = 0, decimal.first = 0, decimal.point = 0, decimal.any = false, decimal.fraction = false;
+    for (; i < size; ++i) {
+        if (gproji_is_digit(text[i]))
+            gproji_decimal_push(&decimal, (uint8_t)(text[i] - '0'));
+        else if (text[i] == '.' && !decimal.fraction)
+            decimal.fraction = true;
+        else
+            break;
+    }
+    if (!decimal.any) return 0;
+    i = gproji_read_exponent(text, size, i, &decimal.point);
+    if (decimal.count) {
+        int64_t power = decimal.point - decimal.count;
+        bool is_short = decimal.count <= 19 && power >= -27 && power <= 27;
+        bits = is_short ? gproji_read_short(decimal.first, (int32_t)power)
+                        : gproji_read_long(decimal.digit, decimal.count, decimal.point);
+    }
+    *value = gproji_double_of_bits(sign | bits);
+    return i;
+}
+
+/* floor(log10(2^b)) for |b| < 1100; 1292913986 = floor(2^32 log10(2)). */
+GPROJI_INLINE int32_t gproji_log10_of_power2(int32_t b) {
+    int64_t product = (int64_t)b * 1292913986;
+    return product >= 0 ? (int32_t)(product / INT64_C(4294967296)) : -(int32_t)((-product) / INT64_C(4294967296)) - 1;
+}
+
+/* The digits of v = fraction 2^exponent > 0: v is about 0.d1d2... 10^point. limit = 0: the fewest that round to v, the
+   nearest to v among those; else `limit` of them, correctly rounded. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent, int32_t limit, char digit[20],
+                                            int32_t *point) {
+    gproji_big r, s, m;
+    int32_t up = fraction == (uint64_t)1 << 52 && exponent > -1074; /* the gap below is half of the gap above */
+    int32_t k = gproji_log10_of_power2(exponent + gproji_bit_length(fraction) - 1) + 1;
+    int32_t two_m = gproji_max(exponent, 0) + gproji_max(-k, 0);
+    int32_t two_s = 1 + up + gproji_max(-exponent, 0) + gproji_max(k, 0);
+    int32_t common = gproji_min(two_m, two_s), count = 0, side;
+    bool even = !(fraction & 1), low = false, high = false;
+    /* 1. v / 10^k = r / s in [0.1, 10); the gap to the next double is 2 (m / s) 2^up above and 2 m / s below. */
+    gproji_big_set(&r, fraction);
+    gproji_big_set(&s, 1);
+    gproji_big_set(&m, 1);
+    gproji_big_multiply_power5(&s, gproji_max(k, 0));
+    gproji_big_multiply_power5(&r, gproji_max(-k, 0));
+    gproji_big_multiply_power5(&m, gproji_max(-k, 0));
+    two_m -= common, two_s -= common;
+    side = (32 - (gproji_big_bits(&s) + two_s) % 32) % 32; /* fills the highest limb of s */
+    gproji_big_shift(&s, two_s + side);
+    gproji_big_shift(&r, two_m + 1 + up + side);
+    gproji_big_shift(&m, two_m + side);
+    /* 2. Is it in [1, 10) already (for the shortest text: once rounded up)? */
+    side = limit ? gproji_big_compare(&r, &s) : gproji_big_compare_sum(&r, &m, up, &s);
+    *point = k + 1;
+    if (side < 0 || (side == 0 && !limit && !even)) {
+        *point = k;
+        gproji_big_multiply(&r, 10, 0);
+        gproji_big_multiply(&m, 10, 0);
+    }
+    /* 3. Digit by digit. */
+    for (;;) {
+        digit[count++] = (char)('0' + (int)gproji_big_divide(&r, &s));
+        if (limit) {
+            if (count == limit) break;
+        } else {
+            int32_t below = gproji_big_compare(&r, &m), above = gproji_big_compare_sum(&r, &m, up, &s);
+            low = below < 0 || (below == 0 && even);
+            high = above > 0 || (above == 0 && even);
+            if (low || high) break;
+            gproji_big_multiply(&m, 10, 0);
+        }
+        gproji_big_multiply(&r, 10, 0);
+    }
+    /* 4. The last digit: up if more than half is left, or half and that makes it even. */
+    side = gproji_big_compare_sum(&r, &r, 0, &s);
+    if (high && !low) side = 1;
+    if (low && !high) side = -1;
+    if (side > 0 || (side == 0 && (digit[count - 1] & 1))) {
+        int32_t i = count - 1;
+        while (i >= 0 && digit[i] == '9') digit[i--] = '0';
+        if (i < 0) {
+            digit[0] = '1';
+            ++*point;
+        } else {
+            ++digit[i];
+        }
+    }
+    while (count > 1 && digit[count - 1] == '0') --count;
+    return count;
+}
+
+/* Lays digits out as printf's %g does: with an exponent where it is below -4 or not below `precision`. */
+GPROJI_INTERNAL size_t gproji_layout_digits(const char *digit, int32_t count, int32_t point, int32_t precision,
+                                            char *text) {
+    int32_t exponent = point - 1, i;
+    char *at = text;
+    if (exponent < -4 || exponent >= precision) {
+        *at++ = digit[0];
+        if (count > 1) *at++ = '.';
+        for (i = 1; i < count; ++i) *at++ = digit[i];
+        *at++ = 'e';
+        *at++ = exponent < 0 ? '-' : '+';
+        if (exponent < 0) exponent = -exponent;
+        if (exponent >= 100) *at++ = (char)('0' + exponent / 100);
+        *at++ = (char)('0' + exponent / 10 % 10);
+        *at++ = (char)('0' + exponent % 10);
+    } else {
+        if (point <= 0) *at++ = '0', *at++ = '.';
+        for (i = point; i < 0; ++i) *at++ = '0';
+        for (i = 0; i < count; ++i) {
+            if (i == point && i > 0) *at++ = '.';
+            *at++ = digit[i];
+        }
+        for (; i < point; ++i) *at++ = '0';
+    }
+    *at = 0;
+    return (size_t)(at - text);
+}
+
+/* digits = 0: the shortest text that reads back to the same bits; 1..17: rounded to that many significant digits. */
+GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
+    char digit[20];
+    uint64_t bits, fraction;
+    int32_t exponent, count, point;
+    size_t sign = 0;
+    memcpy(&bits, &value, sizeof bits);
+    exponent = (int32_t)((bits >> 52) & 0x7ff);
+    fraction = bits & (((uint64_t)1 << 52) - 1);
+    if (exponent == 0x7ff && fraction) {
+        memcpy(text, "nan", 4);
+        return 3;
+    }
+    if (bits >> 63) text[sign++] = '-';
+    if (exponent == 0x7ff) {
+        memcpy(text + sign, "inf", 4);
+        return sign + 3;
+    }
+    if (!exponent && !fraction) {
+        memcpy(text + sign, "0", 2);
+        return sign + 1;
+    }
+    if (exponent) fraction |= (uint64_t)1 << 52;
+    exponent = exponent ? exponent - 1075 : -1074;
+    count = gproji_write_digits(fraction, exponent, digits, digit, &point);
+    return sign + gproji_layout_digits(digit, count, point, digits ? digits : 17, text + sign);
+}
+
+GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
+    return gproji_number_write_digits(value, 0, text);
+}
+
+
+/* ============================================================================================================
+   >>memory   The host's allocator with accounts. Uses platform.
+
+   Every object has one gproji_heap and takes all its memory from it; parts of an object use their owner's heap.
+   Sizes are counts times element sizes, checked for overflow here and nowhere else. A block is given back with
+   the same count and size it was taken with. A count of 0 gives a valid block. */
+typedef struct gproji_heap {
+    gproj_allocator hook;
+    gproj_memory account;
+} gproji_heap;
+
+GPROJI_INTERNAL void *gproji_malloc(void *user, size_t size) {
+    (void)user;
+    return malloc(size);
+}
+
+GPROJI_INTERNAL void *gproji_realloc(void *user, void *block, size_t old_size, size_t new_size) {
+    (void)user;
+    (void)old_size;
+    return realloc(block, new_size);
+}
+
+GPROJI_INTERNAL void gproji_free(void *user, void *block, size_t size) {
+    (void)user;
+    (void)size;
+    free(block);
+}
+
+GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
+    gproji_heap heap;
+    memset(&heap, 0, sizeof heap);
+    if (host) heap.hook = host->allocator;
+    if (!heap.hook.allocate) {
+        heap.hook.allocate = gproji_malloc;
+        heap.hook.reallocate = gproji_realloc;
+        heap.hook.release = gproji_free;
+    }
+    return heap;
+}
+
+/* count * size, at least 1; SIZE_MAX where that overflows (no allocator grants it: see gproji_grant). */
+GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
+    if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
+    return count ? count * size : size;
+}
+
+/* May the heap hold `more` bytes in place of `less` of those it has? */
+GPROJI_INTERNAL bool gproji_grant(const gproji_heap *heap, size_t less, size_t more) {
+    size_t held = heap->account.used - less;
+    if (more > SIZE_MAX / 2 || held > SIZE_MAX / 2) return false;
+    return heap->hook.limit == 0 || held + more <= heap->hook.limit;
+}
+
+GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more) {
+    heap->account.used = heap->account.used - less + more;
+    if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
+}
+
+/* NULL when there is no memory. The contents are undefined. */
+GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
+    size_t bytes = gproji_bytes(count, size);
+    void *block;
+    heap->account.allocations++;
+    if (!gproji_grant(heap, 0, bytes)) return NULL;
+    block = heap->hook.allocate(heap->hook.user, bytes);
+    if (block) gproji_account(heap, 0, bytes);
+    return block;
+}
+
+GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
+    void *block = gproji_take(heap, count, size);
+    if (block) memset(block, 0, count * size);
+    return block;
+}
+
+/* Gives a block back; NULL is allowed. */
+GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
+    size_t bytes = gproji_bytes(count, size);
+    if (!block) return;
+    gproji_account(heap, bytes, 0);
+    if (heap->hook.release) heap->hook.release(heap->hook.user, block, bytes);
+}
+
+/* Changes a block's count and keeps what fits; `block` may be NULL with old_count 0. On failure returns NULL and the
+   old block stays as it is. */
+GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
+    size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
+    void *moved;
+    if (!block) return gproji_take(heap, new_count, size);
+    if (!heap->hook.reallocate) {
+        moved = gproji_take(heap, new_count, size);
+        if (!moved) return NULL;
+        memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
+        gproji_give(heap, block, old_count, size);
+        return moved;
+    }
+    heap->account.allocations++;
+    if (!gproji_grant(heap, old_bytes, new_bytes)) return NULL;
+    moved = heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes);
+    if (moved) gproji_account(heap, old_bytes, new_bytes);
+    return moved;
+}
+
+/* Makes room in a growing array: *block has *capacity elements, `needed` are wanted. Doubles, so that n additions cost
+   O(n). False when there is no memory; the array is then unchanged. */
+GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+    size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
+    void *moved;
+    if (needed <= *capacity) return true;
+    if (wanted < needed) wanted = needed;
+    moved = gproji_retake(heap, *block, *block ? *capacity : 0, wanted, size);
+    if (!moved) return false;
+    *block = moved;
+    *capacity = wanted;
+    return true;
+}
+
+/* An object's own memory: its struct is taken from the heap that it then carries. The heap's struct must be the
+   object's first member. */
+GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
+    gproji_heap heap = gproji_heap_of(host);
+    void *object = gproji_take_zeroed(&heap, 1, size);
+    if (object) memcpy(object, &heap, sizeof heap);
+    return object;
+}
+
+GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
+    gproji_heap heap;
+    memcpy(&heap, object, sizeof heap);
+    gproji_give(&heap, object, 1, size);
+}
+
+/* ============================================================================================================
+   >>error   One door for all failures. Uses platform, number. */
+
+GPROJ_API const char *gproj_code_string(gproj_code code) {
+    static const char *const sentences[] = {
+#define GPROJ_X(name, sentence) sentence,
+        GPROJ_CODES(GPROJ_X)
+#undef GPROJ_X
+    };
+    int32_t index = (int32_t)code, count = (int32_t)(sizeof sentences / sizeof sentences[0]);
+    return index >= 0 && index < count ? sentences[index] : "unknown error";
+}
+
+/* Appends to a text that stays NUL-terminated; what does not fit is cut. Returns the new length. */
+GPROJI_INTERNAL size_t gproji_append(char *text, size_t size, size_t length, const char *piece, size_t piece_length) {
+    size_t room = size - 1 - length;
+    if (piece_length > room) piece_length = room;
+    memcpy(text + length, piece, piece_length);
+    text[length + piece_length] = 0;
+    return length + piece_length;
+}
+
+GPROJI_INTERNAL size_t gproji_append_integer(char *text, size_t size, size_t length, int64_t value) {
+    char digits[24];
+    size_t at = sizeof digits;
+    uint64_t rest = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+    do {
+        digits[--at] = (char)('0' + rest % 10);
+        rest /= 10;
+    } while (rest);
+    if (value < 0) digits[--at] = '-';
+    return gproji_append(text, size, length, digits + at, sizeof digits - at);
+}
+
+/* Writes a sentence: %s text, %d int32_t, %l int64_t, %g double with 3 digits, %% the sign. No locale, no stdio. */
+GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *format, va_list list) {
+    size_t length = 0;
+    text[0] = 0;
+    for (; *format; ++format) {
+        if (*format != '%') {
+            length = gproji_append(text, size, length, format, 1);
+            continue;
+        }
+        ++format;
+        switch (*format) {
+        case 's': {
+            const char *piece = va_arg(list, const char *);
+            length = gproji_append(text, size, length, piece, strlen(piece));
+            break;
+        }
+        case 'd': length = gproji_append_integer(text, size, length, va_arg(list, int32_t)); break;
+        case 'l': length = gproji_append_integer(text, size, length, va_arg(list, int64_t)); break;
+        case 'g': {
+            char number[GPROJ_NUMBER_SIZE];
+            size_t digits = gproji_number_write_digits(va_arg(list, double), 3, number);
+            length = gproji_append(text, size, length, number, digits);
+            break;
+        }
+        default: length = gproji_append(text, size, length, format, 1); break;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    gproji_format_list(text, size, format, list);
+    va_end(list);
+}
+
+/* Every failure of the library passes through here: a place for a breakpoint. The first error stays. `error` may be
+   NULL. Returns the code. */
+GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
+                                       const char *format, ...) {
+    va_list list;
+    if (!error || error->code != GPROJ_OK) return code;
+    error->code = code;
+    error->place = place;
+    error->index = index;
+    va_start(list, format);
+    gproji_format_list(error->message, sizeof error->message, format, list);
+    va_end(list);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
+    return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
+}
+
+GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
+    if (!error) return;
+    memset(error, 0, sizeof *error);
+    error->index = -1;
+}
+
+/* ============================================================================================================
+   >>parallel   The host's threads. Uses platform. */
+
+GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, gproj_task task, void *data) {
+    int32_t i;
+    if (parallel->run && count > 1) {
+        parallel->run(parallel->user, count, task, data);
+        return;
+    }
+    for (i = 0; i < count; ++i) task(data, i);
+}
+
+/* The first item of chunk `chunk` when `items` are cut into `chunks`; chunk `chunks` gives the end. */
+GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_t chunk) {
+    return (int32_t)((int64_t)items * chunk / chunks);
+}
+
+/* ============================================================================================================
+   >>vector   3-vectors and symmetric 3x3 matrices. Uses platform. */
+
+GPROJI_INLINE void gproji_copy3(const double a[3], double out[3]) { out[0] = a[0], out[1] = a[1], out[2] = a[2]; }
+GPROJI_INLINE void gproji_set3(double x, double y, double z, double out[3]) { out[0] = x, out[1] = y, out[2] = z; }
+GPROJI_INLINE void gproji_sub3(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[0] - b[0], out[1] = a[1] - b[1], out[2] = a[2] - b[2];
+}
+/* out += s a */
+GPROJI_INLINE void gproji_add_scaled3(double s, const double a[3], double out[3]) {
+    out[0] += s * a[0], out[1] += s * a[1], out[2] += s * a[2];
+}
+GPROJI_INLINE double gproji_dot3(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+GPROJI_INLINE double gproji_length3(const double a[3]) { return sqrt(gproji_dot3(a, a)); }
+GPROJI_INLINE double gproji_distance3(const double a[3], const double b[3]) {
+    double d[3];
+    gproji_sub3(a, b, d);
+    return gproji_length3(d);
+}
+GPROJI_INLINE void gproji_cross3(const double a[3], const double b[3], double out[3]) {
+    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x, out[1] = y, out[2] = z;
+}
+/* Makes a vector unit; a vector too short to have a direction becomes `fallback`. False then. */
+GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
+    double length = gproji_length3(a);
+    if (!(length > 1e-150)) {
+        gproji_copy3(fallback, a);
+        return false;
+    }
+    a[0] /= length, a[1] /= length, a[2] /= length;
+    return true;
+}
+
+/* Two unit vectors that complete a unit vector n to a right-handed orthonormal basis u, v, n. They are a continuous
+   function of n away from n = -e_z (Frisvad 2012, in the form of Duff et al. 2017 without its jump at n_z = 0 being
+   of any consequence here: all users are invariant under rotations in the plane of u and v). */
+GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3]) {
+    double sign = n[2] < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
+    gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
+    gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
+}
+
+/* ============================================================================================================
+   >>dense   Dense kernels of the Cholesky factorisation: small tiles kept in registers. Uses platform, parallel.
+
+   All matrices are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
+   ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
+   a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
+   rows [t B, t B + B) with B = GPROJI_BLOCK, and its columns (the first block may have fewer than B). Pivot j stands in
+   storage row j + q. Strides are multiples of B, so every tile is whole and aligned, and no kernel needs a masked edge:
+   what it computes in empty rows is zero, and what it writes above the diagonal of a diagonal tile is never read.
+
+   A tile is up to GPROJI_TILE_BLOCKS blocks of rows times one block of columns; it stays in registers while the
+   product of two strips is subtracted from it (Goto, van de Geijn 2008). The vectorised and the scalar version are the
+   same text: in the scalar one a `gproji_lanes` is a double.
+
+   The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
+   is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
+#if !GPROJI_SIMD || (defined(__i386__) && !defined(__SSE2_MATH__)) /* x87 has no vectors */
+#define GPROJI_LANES 1
+#define GPROJI_BLOCK 4
+#define GPROJI_TILE_BLOCKS 1
+#elif defined(__AVX512F__)
+#define GPROJI_LANES 8       /* doubles in a vector register */
+#define GPROJI_BLOCK 8       /* columns in a tile */
+#define GPROJI_TILE_BLOCKS 3 /* blocks of rows in the tallest tile */
+#elif defined(__AVX__)
+#define GPROJI_LANES 4
+#define GPROJI_BLOCK 4
+#define GPROJI_TILE_BLOCKS 3
+#elif defined(__aarch64__)
+#define GPROJI_LANES 2
+#define GPROJI_BLOCK 4
+#define GPROJI_TILE_BLOCKS 2
+#else
+#define GPROJI_LANES 2
+#define GPROJI_BLOCK 4
+#define GPROJI_TILE_BLOCKS 1
+#endif
+
+enum {
+    GPROJI_CHUNK = 128,    /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_STRIP = 48,     /* columns of an update matrix that are stored with the same rows; a multiple of B */
+    GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_ROW_BLOCK = 480 /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+};
+
+#if GPROJI_LANES == 1
+typedef double gproji_lanes;
+#define GPROJI_LOAD(p) (*(p))
+#define GPROJI_STORE(p, v) (*(p) = (v))
+#else
+typedef double gproji_lanes __attribute__((vector_size(8 * GPROJI_LANES)));
+/* the same in memory: aligned like a double only */
+typedef double gproji_lanes_at __attribute__((vector_size(8 * GPROJI_LANES), aligned(8), may_alias));
+#define GPROJI_LOAD(p) (*(const gproji_lanes_at *)(const void *)(p))
+#define GPROJI_STORE(p, v) (*(gproji_lanes_at *)(void *)(p) = (v))
+#endif
+
+/* A kernel is never inlined, may fuse multiplication and addition, and uses registers of full width. */
+#if defined(__clang__) && GPROJI_LANES == 8
+#define GPROJI_KERNEL __attribute__((noinline, min_vector_width(512), unused)) static
+#elif defined(__clang__)
+#define GPROJI_KERNEL __attribute__((noinline, unused)) static
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#define GPROJI_KERNEL __attribute__((noinline, unused, optimize("fp-contract=fast"))) static
+#else
+#define GPROJI_KERNEL GPROJI_INTERNAL
+#endif
+
+/* Rows 0..T-1 (vectors) of column j of a tile. The loops are written out, because compilers keep a tile in registers
+   only when every element of it is a variable of its own: tile_r_j is vector r of column j. */
+#define GPROJI_ROWS_1(X, j) X(0, j)
+#define GPROJI_ROWS_2(X, j) X(0, j) X(1, j)
+#define GPROJI_ROWS_3(X, j) X(0, j) X(1, j) X(2, j)
+#define GPROJI_ROWS_4(X, j) X(0, j) X(1, j) X(2, j) X(3, j)
+#define GPROJI_PAIRS_1(X, i, j) X(0, i, j)
+#define GPROJI_PAIRS_2(X, i, j) X(0, i, j) X(1, i, j)
+#define GPROJI_PAIRS_3(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j)
+#define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
+
+/* all columns of a tile, and the order of a triangular solve: S(j) finishes column j, E(i, j) takes it from column i */
+#if GPROJI_BLOCK == 4
+#define GPROJI_COLUMNS(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
+#define GPROJI_SUBSTITUTE(R, P, S, E) \
+    R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) R(S, 1) P(E, 2, 1) P(E, 3, 1) R(S, 2) P(E, 3, 2) R(S, 3)
+#else
+#define GPROJI_COLUMNS(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
+#define GPROJI_SUBSTITUTE(R, P, S, E)                                                                        \
+    R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) P(E, 4, 0) P(E, 5, 0) P(E, 6, 0) P(E, 7, 0)                      \
+    R(S, 1) P(E, 2, 1) P(E, 3, 1) P(E, 4, 1) P(E, 5, 1) P(E, 6, 1) P(E, 7, 1)                                 \
+    R(S, 2) P(E, 3, 2) P(E, 4, 2) P(E, 5, 2) P(E, 6, 2) P(E, 7, 2)                                            \
+    R(S, 3) P(E, 4, 3) P(E, 5, 3) P(E, 6, 3) P(E, 7, 3)                                                       \
+    R(S, 4) P(E, 5, 4) P(E, 6, 4) P(E, 7, 4) R(S, 5) P(E, 6, 5) P(E, 7, 5) R(S, 6) P(E, 7, 6) R(S, 7)
+#endif
+
+#define GPROJI_TILE_DECLARE(r, j) gproji_lanes tile_##r##_##j = zero;
+#define GPROJI_TILE_LOAD_A(r, j) gproji_lanes a_##r = GPROJI_LOAD(a + (r) * GPROJI_LANES);
+#define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
+#define GPROJI_TILE_PUT(r, j) GPROJI_STORE(c + (r) * GPROJI_LANES + (j) * ldc, tile_##r##_##j);
+#define GPROJI_TILE_ADD(r, j) tile_##r##_##j += GPROJI_LOAD(c + (r) * GPROJI_LANES + (j) * ldc);
+#define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[j];
+#define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + (j) * ldc];
+
+/* For a tile of T vectors by B columns:
+   gproji_tile_update_T:  C = -A B' (add false) or C - A B' (add true); A has k columns and the tile's rows, B has k
+   columns and B rows;
+   gproji_tile_solve_T:   C = (C - A B') L^-T, with the lower triangle L (stride ldc like C) and the inverses of its
+   diagonal. */
+#define GPROJI_DEFINE_TILE(T)                                                                                       \
+    GPROJI_KERNEL void gproji_tile_update_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,            \
+                                              ptrdiff_t ldb, double *c, ptrdiff_t ldc, bool add) {                  \
+        const gproji_lanes zero = {0};                                                                              \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                        \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                    \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                  \
+            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                   \
+        }                                                                                                           \
+        if (add) {                                                                                                  \
+            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                        \
+        }                                                                                                           \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                            \
+    }                                                                                                               \
+    GPROJI_KERNEL void gproji_tile_solve_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,             \
+                                             ptrdiff_t ldb, double *c, ptrdiff_t ldc, const double *triangle,       \
+                                             const double *inverse) {                                               \
+        const gproji_lanes zero = {0};                                                                              \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                        \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                    \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                  \
+            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                   \
+        }                                                                                                           \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                            \
+        GPROJI_SUBSTITUTE(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)              \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                            \
+    }
+
+#if GPROJI_LANES >= 4
+GPROJI_DEFINE_TILE(1)
+GPROJI_DEFINE_TILE(2)
+GPROJI_DEFINE_TILE(3)
+#define GPROJI_TILE_SWITCH(name, arguments)   \
+    switch (blocks) {                         \
+    case 1: name##1 arguments; break;         \
+    case 2: name##2 arguments; break;         \
+    default: name##3 arguments; break;        \
+    }
+#elif GPROJI_TILE_BLOCKS == 2
+GPROJI_DEFINE_TILE(2)
+GPROJI_DEFINE_TILE(4)
+#define GPROJI_TILE_SWITCH(name, arguments) \
+    if (blocks == 1)                        \
+        name##2 arguments;                  \
+    else                                    \
+        name##4 arguments;
+#elif GPROJI_LANES == 2
+GPROJI_DEFINE_TILE(2)
+#define GPROJI_TILE_SWITCH(name, arguments) (void)blocks, name##2 arguments;
+#else
+GPROJI_DEFINE_TILE(4)
+#define GPROJI_TILE_SWITCH(name, arguments) (void)blocks, name##4 arguments;
+#endif
+
+/* The tile kernels for 1..GPROJI_TILE_BLOCKS blocks of rows. */
+GPROJI_INLINE void gproji_tile_update(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
+                                      ptrdiff_t ldb, double *c, ptrdiff_t ldc, bool add) {
+    GPROJI_TILE_SWITCH(gproji_tile_update_, (k, a, lda, b, ldb, c, ldc, add))
+}
+
+GPROJI_INLINE void gproji_tile_solve(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
+                                     ptrdiff_t ldb, double *c, ptrdiff_t ldc, const double *triangle,
+                                     const double *inverse) {
+    GPROJI_TILE_SWITCH(gproji_tile_solve_, (k, a, lda, b, ldb, c, ldc, triangle, inverse))
+}
+
+/* The number of empty rows before the pivots of a panel with w pivots. */
+GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return (GPROJI_BLOCK - w % GPROJI_BLOCK) % GPROJI_BLOCK; }
+
+/* A stride of at least `rows`: a multiple of B, and not one that maps whole columns to the same few lines of a cache. */
+GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
+    int32_t stride = (rows + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
+    return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+}
+
+/* Cholesky of a diagonal tile in place, count <= B columns; `tile` points at its first pivot. Writes the inverses of
+   the diagonal. Returns -1, or the first column whose pivot is not > 0 (also NaN; an infinite one counts as that). */
+GPROJI_INTERNAL int32_t gproji_tile_factor(int32_t count, double *tile, ptrdiff_t stride, double *inverse) {
+    int32_t i, j, k;
+    for (j = 0; j < count; ++j) {
+        double *column = tile + j * stride, pivot = column[j], scale;
+        if (!(pivot > 0) || !gproji_is_finite(pivot)) return j;
+        pivot = sqrt(pivot);
+        scale = 1.0 / pivot;
+        column[j] = pivot;
+        inverse[j] = scale;
+        for (i = j + 1; i < count; ++i) column[i] *= scale;
+        for (k = j + 1; k < count; ++k) {
+            double *later = tile + k * stride, factor = column[k];
+            for (i = k; i < count; ++i) later[i] -= column[i] * factor;
+        }
+    }
+    return -1;
+}
+
+/* The first column block, which may have fewer than B columns and has nothing before it: storage rows [B, rows) of its
+   `count` columns become X = C L^-T. `shift` is the storage row of the first pivot. */
+GPROJI_KERNEL void gproji_first_block_solve(int32_t rows, int32_t count, int32_t shift, double *panel, ptrdiff_t stride,
+                                            const double *inverse) {
+    int32_t r, i, j;
+    for (r = GPROJI_BLOCK; r < rows; r += GPROJI_LANES) {
+        double *x = panel + r;
+        for (j = 0; j < count; ++j) {
+            gproji_lanes sum = GPROJI_LOAD(x + j * stride);
+            for (i = 0; i < j; ++i) sum -= GPROJI_LOAD(x + i * stride) * panel[shift + j + i * stride];
+            sum *= inverse[j];
+            GPROJI_STORE(x + j * stride, sum);
+        }
+    }
+}
+
+/* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
+   after the other, each with the rows from its first column on. A matrix has `rows` rows, a multiple of B. */
+
+/* The stride of the strip that holds a column. */
+GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) {
+    return rows - column / GPROJI_STRIP * GPROJI_STRIP;
+}
+
+/* Row r of a column is at this offset + r; r is at least the strip's first column. */
+GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
+    ptrdiff_t strip = column / GPROJI_STRIP, first = strip * GPROJI_STRIP;
+    ptrdiff_t before = first * rows - first * (first - GPROJI_STRIP) / 2;
+    return before + (column - first) * (rows - first) - first;
+}
+
+/* The number of entries. */
+GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
+    int64_t first = rows / GPROJI_STRIP * GPROJI_STRIP, rest = rows - first;
+    return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
+}
+
+/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of B; columns [first, last) are being eliminated
+   as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks
+   (or 0). */
+typedef struct gproji_panel {
+    int32_t rows, w, shift;
+    int32_t first, last;
+    int32_t stride;
+    double *values;
+    double *inverse; /* w: inverses of the diagonal of L */
+    double *update;  /* the update matrix */
+} gproji_panel;
+
+GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
+    return panel->values + row + (ptrdiff_t)column * panel->stride;
+}
+
+/* A strip of C = [C] - A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, and `rows` rows. A has
+   k columns and the strip's rows; B is the upper end of A. */
+GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t k, const double *a, ptrdiff_t lda,
+                                         double *c, ptrdiff_t ldc, bool add) {
+    const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
+    int32_t begin, column, row;
+    for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
+        int32_t end = gproji_min(rows, begin + GPROJI_ROW_BLOCK);
+        for (column = 0; column < gproji_min(columns, end); column += GPROJI_BLOCK) {
+            for (row = gproji_max(begin, column); row < end; row += tile) {
+                int32_t blocks = gproji_min(GPROJI_TILE_BLOCKS, (end - row) / GPROJI_BLOCK);
+                gproji_tile_update(blocks, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc, add);
+            }
+        }
+    }
+}
+
+/* Strip `index` of the update matrix: U = - L2 L2', where L2 stands below the pivots. A task. */
+GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
+    const gproji_panel *panel = (const gproji_panel *)data;
+    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
+    int32_t column = index * GPROJI_STRIP, rows = below - column, first, last;
+    double *strip = panel->update + gproji_update_offset(below, column) + column;
+    for (first = 0; first < panel->w; first = last) {
+        last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
+        gproji_strip_update(rows, gproji_min(GPROJI_STRIP, rows), last - first,
+                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, rows, first > 0);
+    }
+}
+
+/* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
+GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
+    const gproji_panel *panel = (const gproji_panel *)data;
+    int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
+    gproji_strip_update(panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column), panel->last - panel->first,
+                        gproji_panel_at(panel, row, panel->first), panel->stride, gproji_panel_at(panel, row, column),
+                        panel->stride, true);
+}
+
+/* A chunk's columns in some of the rows below its pivots, tile by tile: X = (C - A B') L^-T. A task. */
+GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
+    const gproji_panel *panel = (const gproji_panel *)data;
+    int32_t row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
+    int32_t end = gproji_min(panel->rows, row + GPROJI_TASK_ROWS), blocks, start;
+    /* the first column block, where it is not whole, has been dealt with: see gproji_pivots_factor */
+    int32_t begin = panel->first == 0 && panel->shift > 0 ? GPROJI_BLOCK - panel->shift : panel->first;
+    for (; row < end; row += blocks * GPROJI_BLOCK) {
+        blocks = gproji_min(GPROJI_TILE_BLOCKS, (end - row) / GPROJI_BLOCK);
+        for (start = begin; start < panel->last; start += GPROJI_BLOCK) {
+            int32_t at = start + panel->shift;
+            gproji_tile_solve(blocks, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
+                              gproji_panel_at(panel, at, panel->first), panel->stride,
+                              gproji_panel_at(panel, row, start), panel->stride, gproji_panel_at(panel, at, start),
+                              panel->inverse + start);
+        }
+    }
+}
+
+/* The chunk's pivot rows, column block by column block; and all rows of a first column block that is not whole. Returns
+   -1 or the failing column. */
+GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel) {
+    const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
+    int32_t shift = panel->shift, pivot_end = panel->last + shift, stride = panel->stride, row, start, next, failed;
+    for (start = panel->first; start < panel->last; start = next) {
+        int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
+        const double *strip = gproji_panel_at(panel, at, panel->first);
+        double *corner = gproji_panel_at(panel, at, start), *inverse = panel->inverse + start;
+        next = at + GPROJI_BLOCK - shift;
+        if (k > 0) gproji_tile_update(1, k, strip, stride, strip, stride, corner, stride, true);
+        failed = gproji_tile_factor(next - start, gproji_panel_at(panel, start + shift, start), stride, inverse);
+        if (failed >= 0) return start + failed;
+        if (start == 0 && shift > 0) {
+            gproji_first_block_solve(panel->rows, next, shift, panel->values, stride, inverse);
+            continue;
+        }
+        for (row = at + GPROJI_BLOCK; row < pivot_end; row += tile) {
+            int32_t blocks = gproji_min(GPROJI_TILE_BLOCKS, (pivot_end - row) / GPROJI_BLOCK);
+            gproji_tile_solve(blocks, k, gproji_panel_at(panel, row, panel->first), stride, strip, stride,
+                              gproji_panel_at(panel, row, start), stride, corner, inverse);
+        }
+    }
+    return -1;
+}
+
+/* Runs a panel's tasks: on the host's threads where they are given and the work, in flops, is worth it. */
+GPROJI_INTERNAL void gproji_panel_run(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
+                                      gproji_panel *panel) {
+    int32_t i;
+    if (parallel && flops > 4e6) {
+        gproji_for(parallel, count, task, panel);
+        return;
+    }
+    for (i = 0; i < count; ++i) task(panel, i);
+}
+
+/* The number of pieces of `size` that cover `all`. */
+GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
+
+#ifdef GPROJ_USE_CBLAS
+/* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
+   BLAS's own business. */
+GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
+    int32_t first = panel->first, last = panel->last, stride = panel->stride;
+    double *pivots = gproji_panel_at(panel, first + panel->shift, first);
+    double *below = gproji_panel_at(panel, last + panel->shift, first);
+    double *later = gproji_panel_at(panel, last + panel->shift, last);
+    int32_t more = panel->w - last, under = panel->rows - panel->w - panel->shift, width = last - first;
+    (void)parallel;
+    if (more + under > 0)
+        cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, more + under, width, 1.0, pivots,
+                    stride, below, stride);
+    if (more == 0) return;
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, more, width, -1.0, below, stride, 1.0, later, stride);
+    if (under > 0)
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, under, more, width, -1.0, below + more, stride, below,
+                    stride, 1.0, later + more, stride);
+}
+
+GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
+    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end, first, next;
+    (void)parallel;
+    for (first = 0; first < below; first = next) {
+        double *strip = panel->update + gproji_update_offset(below, first) + first;
+        const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
+        int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows);
+        next = first + columns;
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 0.0, strip,
+                    rows);
+        if (rows > columns)
+            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
+                        panel->stride, l2, panel->stride, 0.0, strip + columns, rows);
+    }
+}
+#else
+/* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
+GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
+    int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
+    double width = panel->last - panel->first;
+    gproji_panel_run(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
+    gproji_panel_run(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_STRIP), gproji_trailing_task,
+                     panel);
+}
+
+/* The update matrix of a factored panel. */
+GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
+    int32_t below = panel->rows - panel->w - panel->shift;
+    gproji_panel_run(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
+                     panel);
+}
+#endif
+
+/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
+GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
+    for (panel->last = 0; panel->last < panel->w;) {
+        int32_t failed;
+        panel->first = panel->last;
+        panel->last = gproji_min(panel->w, panel->first + GPROJI_CHUNK - (panel->first ? 0 : panel->shift));
+        failed = gproji_pivots_factor(panel);
+        if (failed >= 0) return failed;
+        gproji_chunk_finish(parallel, panel);
+    }
+    return -1;
+}
+
+/* z[from..to) -= the columns of L times x: the forward substitution below a column block. from, to: multiples of B. */
+GPROJI_KERNEL void gproji_columns_forward(int32_t from, int32_t to, int32_t count, const double *l, ptrdiff_t stride,
+                                          const double *x, double *z) {
+    int32_t j = 0, r;
+    for (; j + 4 <= count; j += 4, l += 4 * stride) {
+        const double x0 = x[j], x1 = x[j + 1], x2 = x[j + 2], x3 = x[j + 3];
+        for (r = from; r < to; r += GPROJI_LANES) {
+            const double *a = l + r;
+            gproji_lanes sum = GPROJI_LOAD(z + r);
+            sum -= GPROJI_LOAD(a) * x0;
+            sum -= GPROJI_LOAD(a + stride) * x1;
+            sum -= GPROJI_LOAD(a + 2 * stride) * x2;
+            sum -= GPROJI_LOAD(a + 3 * stride) * x3;
+            GPROJI_STORE(z + r, sum);
+        }
+    }
+    for (; j < count; ++j, l += stride) {
+        const double x0 = x[j];
+        for (r = from; r < to; r += GPROJI_LANES) {
+            gproji_lanes sum = GPROJI_LOAD(z + r);
+            sum -= GPROJI_LOAD(l + r) * x0;
+            GPROJI_STORE(z + r, sum);
+        }
+    }
+}
+
+/* The sum of a vector's lanes, always in the same order. */
+#if GPROJI_LANES == 1
+#define GPROJI_SUM_LANES(v) (v)
+#else
+#define GPROJI_SUM_LANES(v) gproji_sum_lanes(&(v))
+GPROJI_INLINE double gproji_sum_lanes(const gproji_lanes *v) {
+    double part[GPROJI_LANES], sum = 0;
+    int32_t i;
+    memcpy(part, v, sizeof part);
+    for (i = 0; i < GPROJI_LANES; ++i) sum += part[i];
+    return sum;
+}
+#endif
+
+/* x[j] -= the product of column j of L with z, rows from..to: the backward substitution of a column block. */
+GPROJI_KERNEL void gproji_columns_backward(int32_t from, int32_t to, int32_t count, const double *l, ptrdiff_t stride,
+                                           const double *z, double *x) {
+    const gproji_lanes zero = {0};
+    int32_t j = 0, r;
+    for (; j + 4 <= count; j += 4, l += 4 * stride) {
+        gproji_lanes s0 = zero, s1 = zero, s2 = zero, s3 = zero;
+        for (r = from; r < to; r += GPROJI_LANES) {
+            const double *a = l + r;
+            gproji_lanes right = GPROJI_LOAD(z + r);
+            s0 += GPROJI_LOAD(a) * right;
+            s1 += GPROJI_LOAD(a + stride) * right;
+            s2 += GPROJI_LOAD(a + 2 * stride) * right;
+            s3 += GPROJI_LOAD(a + 3 * stride) * right;
+        }
+        x[j] -= GPROJI_SUM_LANES(s0);
+        x[j + 1] -= GPROJI_SUM_LANES(s1);
+        x[j + 2] -= GPROJI_SUM_LANES(s2);
+        x[j + 3] -= GPROJI_SUM_LANES(s3);
+    }
+    for (; j < count; ++j, l += stride) {
+        gproji_lanes s0 = zero;
+        for (r = from; r < to; r += GPROJI_LANES) s0 += GPROJI_LOAD(l + r) * GPROJI_LOAD(z + r);
+        x[j] -= GPROJI_SUM_LANES(s0);
+    }
+}
+
+/* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
+   what it takes from the rows below. */
+GPROJI_INTERNAL void gproji_panel_forward(int32_t rows, int32_t w, const double *panel, ptrdiff_t stride, double *z) {
+    int32_t shift = gproji_panel_shift(w), start, next, i, j;
+    for (start = 0; start < w; start = next) {
+        int32_t block_end = start + shift - (start ? 0 : shift) + GPROJI_BLOCK;
+        next = block_end - shift;
+        for (j = start; j < next; ++j) {
+            const double *column = panel + j * stride;
+            double value = z[j + shift] / column[j + shift];
+            z[j + shift] = value;
+            for (i = j + 1 + shift; i < block_end; ++i) z[i] -= column[i] * value;
+        }
+        gproji_columns_forward(block_end, rows, next - start, panel + start * stride, stride, z + start + shift, z);
+    }
+}
+
+/* z = L^-T z on all storage rows of a panel, where the part below is known. */
+GPROJI_INTERNAL void gproji_panel_backward(int32_t rows, int32_t w, const double *panel, ptrdiff_t stride, double *z) {
+    int32_t shift = gproji_panel_shift(w), start, next, i, j;
+    for (next = w; next > 0; next = start) {
+        int32_t block_end = next + shift;
+        start = gproji_max(0, next - GPROJI_BLOCK);
+        gproji_columns_backward(block_end, rows, next - start, panel + start * stride, stride, z, z + start + shift);
+        for (j = next - 1; j >= start; --j) {
+            const double *column = panel + j * stride;
+            double value = z[j + shift];
+            for (i = j + 1 + shift; i < block_end; ++i) value -= column[i] * z[i];
+            z[j + shift] = value / column[j + shift];
+        }
+    }
+}
+
+/* ============================================================================================================
+   >>ordering   The order of elimination: graphs of nodes, approximate minimum degree. Uses platform, memory.
+
+   A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
+   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
+   ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
+   mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
+   are broken by the order in which nodes reach a degree list. */
+
+/* A pool holds the blocks of one piece of work, all given back by one call. */
+enum { GPROJI_POOL_BLOCKS = 48 };
+typedef struct gproji_pool {
+    gproji_heap *heap;
+    int32_t count;
+    void *block[GPROJI_POOL_BLOCKS];
+    size_t bytes[GPROJI_POOL_BLOCKS];
+} gproji_pool;
+
+GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
+    pool->heap = heap;
+    pool->count = 0;
+}
+
+GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
+    while (pool->count > 0) {
+        pool->count--;
+        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
+    }
+}
+
+/* NULL when there is no memory, also where the count is negative or too large for the address space. */
+GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+    size_t bytes;
+    void *block;
+    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
+    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
+    bytes = gproji_bytes((size_t)count, size);
+    block = gproji_take(pool->heap, bytes, 1);
+    if (!block) return NULL;
+    pool->block[pool->count] = block;
+    pool->bytes[pool->count++] = bytes;
+    return block;
+}
+
+GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+    void *block = gproji_pool_take(pool, count, size);
+    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    return block;
+}
+
+/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
+   a neighbour of each of them. */
+typedef struct gproji_graph {
+    int32_t nodes;
+    const int64_t *start;
+    const int32_t *adjacent;
+    const int32_t *weight;
+} gproji_graph;
+
+/* The state of the elimination. Each of the graph's nodes is, at any time, one of
+     variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; it has a list in `space`: first
+                              `elements[i]` elements, then variables, `length[i]` altogether
+     element   (kind ELEMENT) a pivot; its list holds the variables of its column of L that are not yet eliminated
+     gone      (kind GONE)    a variable absorbed by another one or by an element, or an element absorbed by a later one
+     dense     (kind DENSE)   put last, never looked at
+   While a new element is formed, the weight of its variables is negated. */
+enum { GPROJI_AMD_VARIABLE, GPROJI_AMD_ELEMENT, GPROJI_AMD_GONE, GPROJI_AMD_DENSE };
+
+typedef struct gproji_amd {
+    int32_t nodes;
+    int32_t total;      /* weight of all nodes that are not dense */
+    int32_t left;       /* of it, not yet eliminated */
+    int32_t lowest;     /* no variable has a smaller degree */
+    int64_t free;       /* space[free..size-1] is unused */
+    int64_t size;
+    int64_t stamp;      /* marks below it are old */
+    int32_t *space;     /* size: all lists */
+    int64_t *list;      /* nodes: where the list begins */
+    int32_t *length;    /* nodes */
+    int32_t *elements;  /* nodes: of a variable, the elements at the head of its list */
+    int32_t *weight;    /* nodes */
+    int32_t *degree;    /* nodes: variable: bound of the external degree; element: weight of its list */
+    unsigned char *kind;/* nodes */
+    int64_t *mark;      /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int32_t *head;      /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t buckets;    /* total + 1 */
+    int32_t *next;      /* nodes: in a degree list, in a hash list */
+    int32_t *previous;  /* nodes: in a degree list; while comparing, the hash value */
+    int32_t *hash_head; /* nodes: first variable with a hash value, or -1 */
+    int32_t *tail;      /* nodes: last node of the chain that a representative has absorbed */
+    int32_t *chain;     /* nodes: next node of that chain, or -1 */
+} gproji_amd;
+
+GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
+    int32_t d = amd->degree[i], first = amd->head[d];
+    amd->next[i] = first;
+    amd->previous[i] = -1;
+    if (first >= 0) amd->previous[first] = i;
+    amd->head[d] = i;
+    if (d < amd->lowest) amd->lowest = d;
+}
+
+GPROJI_INTERNAL void gproji_amd_list_remove(gproji_amd *amd, int32_t i) {
+    int32_t before = amd->previous[i], after = amd->next[i];
+    if (after >= 0) amd->previous[after] = before;
+    if (before >= 0)
+        amd->next[before] = after;
+    else
+        amd->head[amd->degree[i]] = after;
+}
+
+/* Node j, with all that it has absorbed, is from now on eliminated right after what `i` has absorbed. */
+GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
+    amd->chain[amd->tail[i]] = j;
+    amd->tail[i] = amd->tail[j];
+    amd->weight[j] = 0;
+    amd->kind[j] = GPROJI_AMD_GONE;
+}
+
+/* Moves all living lists to the front of the space. The first entry of a list lends its place to the node's number
+   (as -1 - i), so that a sweep over the space meets the lists in their order. */
+GPROJI_INTERNAL void gproji_amd_compact(gproji_amd *amd) {
+    int64_t from, to = 0;
+    int32_t i, k;
+    for (i = 0; i < amd->nodes; ++i) {
+        if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
+        from = amd->list[i];
+        amd->list[i] = amd->space[from];
+        amd->space[from] = -1 - i;
+    }
+    for (from = 0; from < amd->free;) {
+        if (amd->space[from] >= 0) {
+            ++from;
+            continue;
+        }
+        i = -1 - amd->space[from];
+        amd->space[to] = (int32_t)amd->list[i];
+        amd->list[i] = to++;
+        ++from;
+        for (k = 1; k < amd->length[i]; ++k) amd->space[to++] = amd->space[from++];
+    }
+    amd->free = to;
+}
+
+/* Takes the variables of a list into the new element, whose list is being written at `free`. */
+GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int32_t *from, int32_t count) {
+    int32_t k;
+    for (k = 0; k < count; ++k) {
+        int32_t i = from[k], weight = amd->weight[i];
+        if (weight <= 0 || amd->kind[i] != GPROJI_AMD_VARIABLE) continue; /* gone, or already in the new element */
+        amd->weight[i] = -weight;
+        amd->degree[pivot] += weight;
+        amd->space[amd->free++] = i;
+        gproji_amd_list_remove(amd, i);
+    }
+}
+
+/* Forms the element of a pivot: L_p = (A_p u union of L_e for all its elements e) \ p. The elements are absorbed. */
+GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
+    int32_t k, own = amd->length[pivot], heads = amd->elements[pivot];
+    int64_t needed = own - heads, begin;
+    for (k = 0; k < heads; ++k) needed += amd->length[amd->space[amd->list[pivot] + k]];
+    if (needed > amd->left) needed = amd->left; /* each variable at most once */
+    if (amd->free + needed > amd->size) gproji_amd_compact(amd);
+    GPROJ_ASSERT(amd->free + needed <= amd->size);
+    begin = amd->free;
+    amd->degree[pivot] = 0;
+    amd->weight[pivot] = -amd->weight[pivot]; /* not to be gathered */
+    for (k = 0; k < heads; ++k) {
+        int32_t e = amd->space[amd->list[pivot] + k];
+        gproji_amd_gather(amd, pivot, amd->space + amd->list[e], amd->length[e]);
+        amd->kind[e] = GPROJI_AMD_GONE;
+    }
+    gproji_amd_gather(amd, pivot, amd->space + amd->list[pivot] + heads, own - heads);
+    amd->weight[pivot] = -amd->weight[pivot];
+    amd->kind[pivot] = GPROJI_AMD_ELEMENT;
+    amd->list[pivot] = begin;
+    amd->length[pivot] = (int32_t)(amd->free - begin);
+    amd->elements[pivot] = 0;
+}
+
+/* For every element e that shares variables with the new one: mark[e] - stamp = weight of L_e \ L_p. */
+GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
+    const int32_t *element = amd->space + amd->list[pivot];
+    int32_t k, j;
+    amd->stamp += (int64_t)amd->total + 1;
+    for (k = 0; k < amd->length[pivot]; ++k) {
+        int32_t i = element[k], weight = -amd->weight[i];
+        const int32_t *list = amd->space + amd->list[i];
+        for (j = 0; j < amd->elements[i]; ++j) {
+            int32_t e = list[j];
+            if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
+            if (amd->mark[e] < amd->stamp) amd->mark[e] = amd->stamp + amd->degree[e];
+            amd->mark[e] -= weight;
+        }
+    }
+}
+
+/* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
+   not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
+   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
+GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
+    int32_t *list = amd->space + amd->list[i];
+    int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
+    int64_t degree = 0;
+    uint32_t hash = 0;
+    for (k = 0; k < heads; ++k) {
+        int32_t e = list[k];
+        int64_t outside;
+        if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
+        outside = amd->mark[e] - amd->stamp;
+        if (outside > 0) {
+            degree += outside;
+            hash += (uint32_t)e;
+            list[to++] = e;
+        } else {
+            amd->kind[e] = GPROJI_AMD_GONE; /* L_e lies in L_p: aggressive absorption */
+        }
+    }
+    heads = to;
+    for (k = amd->elements[i]; k < own; ++k) {
+        int32_t j = list[k];
+        if (amd->kind[j] != GPROJI_AMD_VARIABLE || amd->weight[j] <= 0) continue; /* gone, or in the new element */
+        degree += amd->weight[j];
+        hash += (uint32_t)j;
+        list[to++] = j;
+    }
+    if (degree == 0) return -1;
+    /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
+    GPROJ_ASSERT(to < own);
+    moved = list[heads];
+    if (to > heads) list[to] = moved;
+    if (heads > 0) list[heads] = list[0];
+    list[0] = pivot;
+    amd->elements[i] = heads + 1;
+    amd->length[i] = to + 1;
+    if (degree < amd->degree[i]) amd->degree[i] = (int32_t)degree;
+    hash += (uint32_t)pivot;
+    return (int32_t)(hash % (uint32_t)amd->nodes);
+}
+
+/* Have variables i and j the same elements and neighbours? Those of i are marked by the stamp. */
+GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j) {
+    const int32_t *list = amd->space + amd->list[j];
+    int32_t k;
+    if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
+    for (k = 1; k < amd->length[j]; ++k)
+        if (amd->mark[list[k]] != amd->stamp) return false;
+    return true;
+}
+
+/* Merges the variables of one hash list that cannot be told apart. */
+GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
+    int32_t i, j, before, k;
+    for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
+        amd->stamp++;
+        for (k = 1; k < amd->length[i]; ++k) amd->mark[amd->space[amd->list[i] + k]] = amd->stamp;
+        for (before = i, j = amd->next[i]; j >= 0; j = amd->next[j]) {
+            if (gproji_amd_same(amd, i, j)) {
+                amd->weight[i] += amd->weight[j]; /* both negative */
+                gproji_amd_absorb(amd, i, j);
+                amd->next[before] = amd->next[j];
+            } else {
+                before = j;
+            }
+        }
+    }
+}
+
+/* Eliminates one pivot: forms its element and brings all its variables up to date. */
+GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
+    int32_t k, to = 0, *element;
+    amd->left -= amd->weight[pivot];
+    gproji_amd_form_element(amd, pivot);
+    element = amd->space + amd->list[pivot];
+    gproji_amd_scan(amd, pivot);
+    for (k = 0; k < amd->length[pivot]; ++k) {
+        int32_t i = element[k], hash = gproji_amd_prune(amd, pivot, i);
+        if (hash < 0) { /* mass elimination */
+            int32_t weight = -amd->weight[i];
+            amd->left -= weight;
+            amd->degree[pivot] -= weight;
+            amd->weight[pivot] += weight;
+            gproji_amd_absorb(amd, pivot, i);
+            continue;
+        }
+        amd->previous[i] = hash;
+        amd->next[i] = amd->hash_head[hash];
+        amd->hash_head[hash] = i;
+    }
+    amd->stamp += (int64_t)amd->total + 1;
+    for (k = 0; k < amd->length[pivot]; ++k) { /* supervariables; empties the hash lists */
+        int32_t i = element[k], first;
+        if (amd->weight[i] == 0) continue;
+        first = amd->hash_head[amd->previous[i]];
+        amd->hash_head[amd->previous[i]] = -1;
+        if (first >= 0) gproji_amd_merge(amd, first);
+    }
+    for (k = 0; k < amd->length[pivot]; ++k) { /* final degrees; what was absorbed leaves the element's list */
+        int32_t i = element[k], weight = -amd->weight[i];
+        int64_t degree;
+        if (weight == 0) continue;
+        amd->weight[i] = weight;
+        degree = (int64_t)amd->degree[i] + amd->degree[pivot] - weight;
+        if (degree > amd->left - weight) degree = amd->left - weight;
+        amd->degree[i] = (int32_t)degree;
+        gproji_amd_list_add(amd, i);
+        element[to++] = i;
+    }
+    if (amd->list[pivot] + amd->length[pivot] == amd->free) amd->free = amd->list[pivot] + to;
+    amd->length[pivot] = to;
+    if (to == 0) amd->kind[pivot] = GPROJI_AMD_GONE;
+}
+
+GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph) {
+    int64_t n = graph->nodes;
+    amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
+    amd->space = (int32_t *)gproji_pool_take(pool, amd->size, sizeof(int32_t));
+    amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+    amd->length = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    amd->weight = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->degree = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
+    amd->head = (int32_t *)gproji_pool_take(pool, amd->buckets, sizeof(int32_t));
+    amd->next = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->previous = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->hash_head = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->tail = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    amd->chain = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+    return amd->space && amd->list && amd->length && amd->elements && amd->weight && amd->degree && amd->kind &&
+           amd->mark && amd->head && amd->next && amd->previous && amd->hash_head && amd->tail && amd->chain;
+}
+
+/* The weight of a node's neighbours. */
+GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t node) {
+    int64_t k, degree = 0;
+    for (k = graph->start[node]; k < graph->start[node + 1]; ++k) degree += graph->weight[graph->adjacent[k]];
+    return degree;
+}
+
+/* Dense nodes, more than 10 sqrt(n) variables next to them, are put last without looking at them: they would make every
+   degree meaningless and the search slow. Fills the lists with the others. */
+GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
+    double dense = gproji_fmax(16.0, 10.0 * sqrt((double)amd->buckets - 1.0));
+    int32_t i;
+    int64_t k;
+    amd->stamp = 1;
+    amd->lowest = 0;
+    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
+    for (i = 0; i < amd->nodes; ++i) {
+        amd->hash_head[i] = -1;
+        amd->tail[i] = i;
+        amd->chain[i] = -1;
+        amd->weight[i] = graph->weight[i];
+        if ((double)gproji_graph_degree(graph, i) > dense) amd->kind[i] = GPROJI_AMD_DENSE;
+    }
+    for (i = 0; i < amd->nodes; ++i) {
+        int32_t degree = 0;
+        amd->list[i] = amd->free;
+        amd->length[i] = 0;
+        if (amd->kind[i] == GPROJI_AMD_DENSE) continue;
+        amd->total += amd->weight[i];
+        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) {
+            int32_t j = graph->adjacent[k];
+            if (amd->kind[j] == GPROJI_AMD_DENSE) continue;
+            amd->space[amd->free++] = j;
+            degree += amd->weight[j];
+        }
+        amd->length[i] = (int32_t)(amd->free - amd->list[i]);
+        amd->degree[i] = degree;
+    }
+    amd->left = amd->total;
+    for (i = amd->nodes - 1; i >= 0; --i)
+        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
+    amd->lowest = 0;
+}
+
+/* Writes the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes. False when
+   there is no memory. */
+GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+    gproji_pool pool;
+    gproji_amd amd;
+    int32_t i, count = 0;
+    gproji_pool_start(&pool, heap);
+    memset(&amd, 0, sizeof amd);
+    amd.nodes = graph->nodes;
+    amd.buckets = total + 1;
+    if (!gproji_amd_take(&amd, &pool, graph)) {
+        gproji_pool_give_all(&pool);
+        return false;
+    }
+    gproji_amd_start(&amd, graph);
+    while (amd.left > 0) {
+        int32_t pivot, member;
+        while (amd.head[amd.lowest] < 0) amd.lowest++;
+        pivot = amd.head[amd.lowest];
+        gproji_amd_list_remove(&amd, pivot);
+        gproji_amd_eliminate(&amd, pivot);
+        for (member = pivot; member >= 0; member = amd.chain[member]) order[count++] = member;
+    }
+    for (i = 0; i < graph->nodes; ++i)
+        if (amd.kind[i] == GPROJI_AMD_DENSE) order[count++] = i;
+    GPROJ_ASSERT(count == graph->nodes);
+    gproji_pool_give_all(&pool);
+    return true;
+}
+
+/* ============================================================================================================
+   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering.
+
+   Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
+   postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
+   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel stands in
+   the factor, where its update matrix stands in the work memory, and which fronts make up a task.
+
+   A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
+   (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
+   whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
+   node among its pivots; all rows of a front are pivots or rows of its parent. */
+typedef struct gproji_front {
+    int64_t panel;      /* where its panel begins in the values of L */
+    int64_t update;     /* where its update matrix begins in the work memory */
+    int64_t rows;       /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int32_t row_nodes;
+    int32_t first_place, end_place; /* its pivot nodes */
+    int32_t first;      /* its first column of L */
+    int32_t width;
+    int32_t below;
+    int32_t stride;     /* of its panel, which has as many storage rows: see >>dense */
+    int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
+    int32_t parent;     /* -1: none */
+    int32_t child;      /* first child, or -1 */
+    int32_t sibling;    /* next child of the same parent, or -1 */
+    int32_t depth;      /* 0 without parent */
+} gproji_front;
+
+typedef struct gproji_symbolic {
+    int32_t columns;
+    int32_t nodes;
+    int32_t fronts;
+    int32_t tasks;          /* independent tasks; the fronts on top of them are one more group */
+    int32_t *order;         /* nodes: the node at each place */
+    int32_t *place;         /* nodes: the place of each node */
+    int32_t *column;        /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;      /* nodes: the front of each place */
+    gproji_front *front;    /* fronts */
+    int32_t *row_node;      /* row nodes of all fronts: their places */
+    int32_t *row_at;        /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;      /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;      /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start;    /* tasks + 2: where the groups begin in `schedule` */
+    int64_t *runs_start;    /* tasks + 2: where the groups' room for runs begins (in int32_t) */
+    int64_t work_size;      /* doubles for all update matrices */
+    int64_t values_size;    /* doubles for all panels */
+    int64_t factor_entries, exact_entries;
+    int32_t most_rows;      /* storage rows of the largest panel */
+    int32_t most_width;
+    double flops;
+} gproji_symbolic;
+
+enum { GPROJI_TASK_SHARE = 24 }; /* a task has at most about this part of all flops */
+
+/* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
+typedef struct gproji_analysis {
+    const gproji_graph *graph;
+    gproji_symbolic *out;
+    gproji_pool *keep; /* for what is kept */
+    gproji_pool pool;  /* for what is not */
+    int32_t *parent;   /* elimination tree, by place; -1: root */
+    int32_t *count;    /* weight of a place's column of L, its own weight included */
+    int32_t *rows;     /* the same in nodes */
+    int32_t *a, *b, *c, *d; /* of several uses */
+    /* supernodes */
+    int32_t supernodes;
+    int32_t *head, *tail;   /* first and last place of the chain of its nodes */
+    int32_t *chain;         /* by place: next place of the same supernode, or -1 */
+    int32_t *width, *below, *below_nodes;
+    int32_t *super_parent, *child, *sibling;
+} gproji_analysis;
+
+GPROJI_INTERNAL bool gproji_analysis_take(gproji_analysis *an) {
+    int64_t n = an->graph->nodes;
+    int32_t **all[16];
+    int32_t i;
+    all[0] = &an->parent, all[1] = &an->count, all[2] = &an->rows, all[3] = &an->a;
+    all[4] = &an->b, all[5] = &an->c, all[6] = &an->d, all[7] = &an->head;
+    all[8] = &an->tail, all[9] = &an->chain, all[10] = &an->width, all[11] = &an->below;
+    all[12] = &an->below_nodes, all[13] = &an->super_parent, all[14] = &an->child, all[15] = &an->sibling;
+    for (i = 0; i < 16; ++i) {
+        *all[i] = (int32_t *)gproji_pool_take(&an->pool, n, sizeof(int32_t));
+        if (!*all[i]) return false;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t *place) {
+    int32_t k;
+    for (k = 0; k < count; ++k) place[order[k]] = k;
+}
+
+/* parent[k] = min { i > k : L_ik != 0 }. ancestor: work, shortcuts towards the root. */
+GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const int32_t *order, const int32_t *place,
+                                             int32_t *parent, int32_t *ancestor) {
+    int32_t k, i, above;
+    int64_t e;
+    for (k = 0; k < graph->nodes; ++k) {
+        parent[k] = ancestor[k] = -1;
+        for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
+            for (i = place[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
+                above = ancestor[i];
+                ancestor[i] = k;
+                if (above < 0) parent[i] = k;
+            }
+        }
+    }
+}
+
+/* Lists of children of a forest, ascending. Returns the first root; the roots are siblings. */
+GPROJI_INTERNAL int32_t gproji_children(int32_t count, const int32_t *parent, int32_t *child, int32_t *sibling) {
+    int32_t k, roots = -1;
+    for (k = 0; k < count; ++k) child[k] = -1;
+    for (k = count - 1; k >= 0; --k) {
+        int32_t *list = parent[k] < 0 ? &roots : &child[parent[k]];
+        sibling[k] = *list;
+        *list = k;
+    }
+    return roots;
+}
+
+/* sequence[k] = the k-th node in postorder of the forest given by its lists of children, which are used up. */
+GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int32_t *child, const int32_t *sibling,
+                                      int32_t *sequence) {
+    int32_t count = 0, root;
+    for (root = roots; root >= 0; root = sibling[root]) {
+        int32_t at = root;
+        for (;;) {
+            while (child[at] >= 0) { /* down to a leaf */
+                int32_t down = child[at];
+                child[at] = sibling[down];
+                at = down;
+            }
+            sequence[count++] = at;
+            if (at == root) break;
+            at = parent[at];
+        }
+    }
+}
+
+/* Renumbers places by the postorder of the elimination tree: every subtree gets consecutive places. */
+GPROJI_INTERNAL void gproji_apply_postorder(gproji_analysis *an) {
+    gproji_symbolic *out = an->out;
+    int32_t n = out->nodes, k, *sequence = an->c, *renamed = an->d;
+    int32_t roots = gproji_children(n, an->parent, an->a, an->b);
+    gproji_postorder(roots, an->parent, an->a, an->b, sequence);
+    gproji_invert(n, sequence, renamed);
+    for (k = 0; k < n; ++k) {
+        int32_t up = an->parent[sequence[k]];
+        an->a[k] = out->order[sequence[k]];
+        an->b[k] = up < 0 ? -1 : renamed[up];
+    }
+    memcpy(out->order, an->a, (size_t)n * sizeof(int32_t));
+    memcpy(an->parent, an->b, (size_t)n * sizeof(int32_t));
+    gproji_invert(n, out->order, out->place);
+}
+
+/* The last node of the path from i to the root that `ancestor` leads to; shortens the path. */
+GPROJI_INTERNAL int32_t gproji_find(int32_t *ancestor, int32_t i) {
+    int32_t root = i, next;
+    while (ancestor[root] != root) root = ancestor[root];
+    for (; ancestor[i] != root; i = next) {
+        next = ancestor[i];
+        ancestor[i] = root;
+    }
+    return root;
+}
+
+/* Column counts of a postordered tree (Gilbert, Ng, Peyton 1994). Row i of L is a subtree of the elimination tree with
+   root i; its weight is added at its leaves, taken off where two of its branches meet and above its root, so that sums
+   over subtrees give each column what its rows weigh. */
+GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
+    const gproji_graph *graph = an->graph;
+    const int32_t *order = an->out->order, *place = an->out->place;
+    int32_t n = graph->nodes, k;
+    int32_t *first = an->a;    /* first place of the subtree of each place */
+    int32_t *last = an->b;     /* last leaf met of each row's subtree, or -1 */
+    int32_t *ancestor = an->c; /* see gproji_find */
+    int64_t e;
+    for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, an->count[k] = an->rows[k] = 0;
+    for (k = 0; k < n; ++k) {
+        int32_t i;
+        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* a leaf of its own row */
+        for (i = k; i >= 0 && first[i] < 0; i = an->parent[i]) first[i] = k;
+    }
+    for (k = 0; k < n; ++k) {
+        int32_t own = graph->weight[order[k]], up = an->parent[k];
+        if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
+        for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
+            int32_t i = place[graph->adjacent[e]], weight, meet;
+            if (i <= k || first[k] <= last[i]) continue; /* k is no leaf of the subtree of row i */
+            weight = graph->weight[order[i]];
+            an->count[k] += weight, an->rows[k] += 1;
+            if (last[i] >= 0) {
+                meet = gproji_find(ancestor, last[i]);
+                an->count[meet] -= weight, an->rows[meet] -= 1;
+            }
+            last[i] = k;
+        }
+        if (up >= 0) ancestor[k] = up;
+    }
+    for (k = 0; k < n; ++k) {
+        int32_t up = an->parent[k];
+        if (up >= 0) an->count[up] += an->count[k], an->rows[up] += an->rows[k];
+    }
+}
+
+/* The same for any numbering, by walking along the subtree of every row: O(entries of L). */
+GPROJI_INTERNAL void gproji_column_counts_by_rows(gproji_analysis *an) {
+    const gproji_graph *graph = an->graph;
+    int32_t n = graph->nodes, i, k, *mark = an->a;
+    int64_t e;
+    for (i = 0; i < n; ++i) {
+        int32_t node = an->out->order[i];
+        mark[i] = i;
+        an->count[i] = graph->weight[node], an->rows[i] = 1;
+        for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
+            k = an->out->place[graph->adjacent[e]];
+            for (; k < i && mark[k] != i; k = an->parent[k]) {
+                mark[k] = i;
+                an->count[k] += graph->weight[node], an->rows[k] += 1;
+            }
+        }
+    }
+}
+
+/* Cuts the places into chains k, k + 1, ... of columns with the same rows below: the supernodes without zeros. */
+GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
+    int32_t n = an->graph->nodes, k, s = -1, *super_of = an->a;
+    for (k = 0; k < n; ++k) {
+        int32_t weight = an->graph->weight[an->out->order[k]];
+        bool joins = k > 0 && an->parent[k - 1] == k && an->rows[k - 1] == an->rows[k] + 1;
+        an->chain[k] = -1;
+        if (joins) {
+            an->chain[k - 1] = k;
+        } else {
+            ++s;
+            an->head[s] = k;
+            an->width[s] = 0;
+        }
+        an->tail[s] = k;
+        an->width[s] += weight;
+        an->below[s] = an->count[k] - weight;
+        an->below_nodes[s] = an->rows[k] - 1;
+        super_of[k] = s;
+    }
+    an->supernodes = s + 1;
+    for (s = 0; s < an->supernodes; ++s) {
+        int32_t up = an->parent[an->tail[s]];
+        an->super_parent[s] = up < 0 ? -1 : super_of[up];
+    }
+}
+
+/* What a front costs, in units of about a processor cycle: a fixed part, arithmetic, its panel, its update matrix
+   (written once, added to the parent once). Wide panels compute faster. Fitted to measurements; only the choice of
+   supernodes depends on it. */
+GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
+    double rows = width + below;
+    double flops = width * (below * rows + width * width / 3.0);
+    return 200.0 + flops / 30.0 + 1.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
+}
+
+/* Keeps the supernodes that are not joined to their parent, numbered anew in the same order. joined: 0 or 1 for each on
+   entry; work. */
+GPROJI_INTERNAL void gproji_keep_supernodes(gproji_analysis *an, int32_t *joined) {
+    int32_t s, kept = 0, *host = an->c, *number = an->d; /* host: the supernode that s is now part of */
+    for (s = an->supernodes - 1; s >= 0; --s) host[s] = joined[s] ? host[an->super_parent[s]] : s;
+    for (s = 0; s < an->supernodes; ++s) {
+        number[s] = kept;
+        if (!joined[s]) kept++;
+    }
+    for (s = 0; s < an->supernodes; ++s) {
+        int32_t up = an->super_parent[s], to = number[s];
+        if (joined[s]) continue; /* to <= s: what is overwritten has been moved already */
+        an->super_parent[to] = up < 0 ? -1 : number[host[up]];
+        an->head[to] = an->head[s], an->tail[to] = an->tail[s];
+        an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
+    }
+    an->supernodes = kept;
+}
+
+/* Joins children to their parents where that is cheaper, although it puts zeros into the factor. Parents come after
+   their children, so p's children are final when p's turn comes; the children of a joined child become p's. */
+GPROJI_INTERNAL void gproji_relax_supernodes(gproji_analysis *an) {
+    int32_t p, *joined = an->b; /* is the supernode part of another one */
+    for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
+    for (p = 0; p < an->supernodes; ++p) {
+        int32_t *link = &an->child[p];
+        double cost = gproji_front_cost(an->width[p], an->below[p]);
+        while (*link >= 0) {
+            int32_t c = *link, width = an->width[p] + an->width[c];
+            double both = gproji_front_cost(width, an->below[p]);
+            if (both > cost + gproji_front_cost(an->width[c], an->below[c])) {
+                link = &an->sibling[c];
+                continue;
+            }
+            cost = both;
+            joined[c] = 1;
+            an->width[p] = width;
+            an->chain[an->tail[c]] = an->head[p];
+            an->head[p] = an->head[c];
+            if (an->child[c] >= 0) { /* its children take its place in the list */
+                int32_t *end = &an->child[c];
+                *link = an->child[c];
+                while (*end >= 0) end = &an->sibling[*end];
+                *end = an->sibling[c];
+            } else {
+                *link = an->sibling[c];
+            }
+        }
+        if (an->super_parent[p] >= 0) {
+            an->sibling[p] = an->child[an->super_parent[p]];
+            an->child[an->super_parent[p]] = p;
+        }
+    }
+    gproji_keep_supernodes(an, joined);
+}
+
+/* Turns the supernodes into fronts: in postorder of their tree, and the places with them, unless `keep_order`. */
+GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an, bool keep_order) {
+    gproji_symbolic *out = an->out;
+    int32_t n = out->nodes, count = an->supernodes, k, f, at = 0, column = 0;
+    int32_t *sequence = an->a, *number = an->b, *order = an->c;
+    int32_t roots = gproji_children(count, an->super_parent, an->child, an->sibling);
+    gproji_postorder(roots, an->super_parent, an->child, an->sibling, sequence);
+    if (keep_order)
+        for (k = 0; k < count; ++k) sequence[k] = k;
+    gproji_invert(count, sequence, number);
+    out->fronts = count;
+    out->front = (gproji_front *)gproji_pool_take_zeroed(an->keep, count, sizeof(gproji_front));
+    if (!out->front) return false;
+    for (f = 0; f < count; ++f) {
+        int32_t s = sequence[f], up = an->super_parent[s];
+        gproji_front *front = &out->front[f];
+        front->first_place = at;
+        front->first = column;
+        front->width = an->width[s];
+        front->below = an->below[s];
+        front->row_nodes = an->below_nodes[s];
+        front->parent = up < 0 ? -1 : number[up];
+        for (k = an->head[s]; k >= 0; k = an->chain[k]) {
+            order[at] = out->order[k];
+            out->front_of[at] = f;
+            out->column[at] = column;
+            column += an->graph->weight[order[at++]];
+        }
+        front->end_place = at;
+        GPROJ_ASSERT(column == front->first + front->width);
+    }
+    out->column[n] = column;
+    memcpy(out->order, order, (size_t)n * sizeof(int32_t));
+    gproji_invert(n, out->order, out->place);
+    return true;
+}
+
+/* The rows of every front: row i belongs to all fronts on the paths from its entries in A up to its own front. Going
+   through the rows in ascending order leaves every list sorted. */
+GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
+    gproji_symbolic *out = an->out;
+    const gproji_graph *graph = an->graph;
+    int32_t f, i, *filled = an->a, *mark = an->b;
+    int64_t total = 0, e, r;
+    for (f = 0; f < out->fronts; ++f) {
+        out->front[f].rows = total;
+        total += out->front[f].row_nodes;
+        filled[f] = 0, mark[f] = -1;
+    }
+    out->row_node = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
+    out->row_at = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
+    out->relative = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
+    if (!out->row_node || !out->row_at || !out->relative) return false;
+    for (i = 0; i < out->nodes; ++i) {
+        int32_t node = out->order[i], own = out->front_of[i];
+        for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
+            int32_t k = out->place[graph->adjacent[e]];
+            if (k >= i) continue;
+            for (f = out->front_of[k]; f != own && mark[f] != i; f = out->front[f].parent) {
+                gproji_front *front = &out->front[f];
+                mark[f] = i;
+                GPROJ_ASSERT(filled[f] < front->row_nodes);
+                out->row_node[front->rows + filled[f]++] = i;
+            }
+        }
+    }
+    for (f = 0; f < out->fronts; ++f) {
+        const gproji_front *front = &out->front[f];
+        int32_t at = front->width + gproji_panel_shift(front->width);
+        GPROJ_ASSERT(filled[f] == front->row_nodes);
+        for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+            out->row_at[r] = at;
+            at += graph->weight[out->order[out->row_node[r]]];
+        }
+    }
+    return true;
+}
+
+/* Where the rows of every front stand in its parent's panel: both lists are sorted. */
+GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
+    int32_t f;
+    for (f = 0; f < out->fronts; ++f) {
+        const gproji_front *front = &out->front[f], *parent;
+        int64_t r = front->rows, end = r + front->row_nodes, q;
+        if (front->parent < 0) continue;
+        parent = &out->front[front->parent];
+        for (; r < end && out->row_node[r] < parent->end_place; ++r)
+            out->relative[r] = out->column[out->row_node[r]] - parent->first + gproji_panel_shift(parent->width);
+        for (q = parent->rows; r < end; ++r) {
+            while (out->row_node[q] != out->row_node[r]) ++q;
+            out->relative[r] = out->row_at[q];
+        }
+    }
+}
+
+/* sum over the columns of a front, or of a node, of (column count)^2 */
+GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
+    return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
+}
+
+/* Strides, offsets and children of the fronts; sums. */
+GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
+    int32_t f;
+    for (f = 0; f < out->fronts; ++f) out->front[f].child = out->front[f].sibling = -1;
+    for (f = out->fronts - 1; f >= 0; --f) {
+        gproji_front *front = &out->front[f];
+        if (front->parent < 0) continue;
+        front->depth = out->front[front->parent].depth + 1;
+        front->sibling = out->front[front->parent].child;
+        out->front[front->parent].child = f;
+    }
+    for (f = 0; f < out->fronts; ++f) {
+        gproji_front *front = &out->front[f];
+        int64_t w = front->width;
+        front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
+        front->update_rows = (front->below + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
+        front->panel = out->values_size;
+        out->values_size += w * front->stride;
+        out->factor_entries += w * (w + 1) / 2 + w * front->below;
+        out->most_rows = gproji_max(out->most_rows, front->stride);
+        out->most_width = gproji_max(out->most_width, front->width);
+    }
+}
+
+/* The fronts in an order in which children come before parents and subtrees are consecutive. */
+GPROJI_INTERNAL void gproji_front_sequence(gproji_analysis *an, int32_t *sequence) {
+    gproji_symbolic *out = an->out;
+    int32_t f, roots, *parent = an->b;
+    for (f = 0; f < out->fronts; ++f) parent[f] = out->front[f].parent;
+    roots = gproji_children(out->fronts, parent, an->child, an->sibling);
+    gproji_postorder(roots, parent, an->child, an->sibling, sequence);
+}
+
+/* Groups the fronts: whole subtrees with at most a share of all flops go into tasks, small ones together; what lies
+   above them is the last group. Small problems are one task. group: fronts entries. */
+GPROJI_INTERNAL bool gproji_make_tasks(gproji_analysis *an, const int32_t *sequence, int32_t *group) {
+    gproji_symbolic *out = an->out;
+    double *flops, sum = 0, filled = 0, share;
+    int32_t f, k, tasks = 0, *top = an->d;
+    flops = (double *)gproji_pool_take(&an->pool, out->fronts, sizeof(double));
+    if (!flops) return false;
+    for (f = 0; f < out->fronts; ++f) {
+        flops[f] = gproji_front_flops(out->front[f].width, out->front[f].below);
+        sum += flops[f];
+    }
+    share = sum > 2e7 ? sum / (double)GPROJI_TASK_SHARE : sum * 2;
+    for (f = 0; f < out->fronts; ++f)
+        if (out->front[f].parent >= 0) flops[out->front[f].parent] += flops[f];
+    for (f = 0; f < out->fronts; ++f) top[f] = flops[f] > share;
+    for (k = 0; k < out->fronts; ++k) {
+        int32_t parent;
+        f = sequence[k];
+        if (top[f]) continue;
+        group[f] = tasks;
+        parent = out->front[f].parent;
+        if (parent >= 0 && !top[parent]) continue;
+        filled += flops[f]; /* a whole subtree is complete */
+        if (filled > share / 2) tasks++, filled = 0;
+    }
+    if (filled > 0) tasks++;
+    for (f = 0; f < out->fronts; ++f)
+        if (top[f]) group[f] = tasks;
+    out->tasks = tasks;
+    return true;
+}
+
+/* `schedule` and `task_start` from the groups. */
+GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *sequence, const int32_t *group) {
+    gproji_symbolic *out = an->out;
+    int32_t k, g;
+    out->schedule = (int32_t *)gproji_pool_take(an->keep, out->fronts, sizeof(int32_t));
+    out->task_start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
+    out->runs_start = (int64_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 2, sizeof(int64_t));
+    if (!out->schedule || !out->task_start || !out->runs_start) return false;
+    for (k = 0; k < out->fronts; ++k) out->task_start[group[k] + 2]++;
+    for (g = 0; g <= out->tasks; ++g) out->task_start[g + 2] += out->task_start[g + 1];
+    for (k = 0; k < out->fronts; ++k) out->schedule[out->task_start[group[sequence[k]] + 1]++] = sequence[k];
+    return true;
+}
+
+/* The update matrices of one group, from `base` on in the work memory. Fronts of even depth stack theirs from the lower
+   end, those of odd depth from the upper end: a front's matrix is thus never on the same stack as its children's, which
+   it needs until its own is finished, and they are on top of theirs. Matrices that another group consumes stay.
+   Returns the end of the group's memory. */
+GPROJI_INTERNAL int64_t gproji_stack_updates(gproji_symbolic *out, const int32_t *group, int32_t g, int64_t base) {
+    int64_t top[2] = {0, 0}, most = 0;
+    int32_t k, c, pass;
+    for (pass = 0; pass < 2; ++pass) { /* the first pass finds the size */
+        top[0] = top[1] = 0;
+        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
+            gproji_front *front = &out->front[out->schedule[k]];
+            int32_t side = front->depth & 1;
+            int64_t size = gproji_update_entries(front->update_rows);
+            front->update = side ? base + most - top[side] - size : base + top[side];
+            top[side] += size;
+            if (pass == 0 && top[0] + top[1] > most) most = top[0] + top[1];
+            for (c = front->child; c >= 0; c = out->front[c].sibling)
+                if (group[c] == g) top[!side] -= gproji_update_entries(out->front[c].update_rows);
+        }
+    }
+    return base + most;
+}
+
+GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
+    gproji_symbolic *out = an->out;
+    int32_t *sequence = an->a, *group = an->c, g, k;
+    gproji_place_panels(out);
+    gproji_front_sequence(an, sequence);
+    if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
+    for (g = 0; g <= out->tasks; ++g) {
+        int64_t most = 0;
+        out->work_size = gproji_stack_updates(out, group, g, out->work_size);
+        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
+            int32_t c = out->front[out->schedule[k]].child;
+            for (; c >= 0; c = out->front[c].sibling)
+                if (out->front[c].row_nodes > most) most = out->front[c].row_nodes;
+        }
+        out->runs_start[g + 1] = out->runs_start[g] + 3 * most;
+    }
+    return true;
+}
+
+/* Entries and flops of the factor without any zeros of relaxed supernodes. */
+GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
+    gproji_symbolic *out = an->out;
+    int32_t k;
+    for (k = 0; k < out->nodes; ++k) {
+        int64_t w = an->graph->weight[out->order[k]], below = an->count[k] - w;
+        out->exact_entries += w * (w + 1) / 2 + w * below;
+        out->flops += gproji_front_flops((double)w, (double)below);
+    }
+}
+
+/* The order of elimination asked for. permutation: of nodes. */
+GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
+    gproji_symbolic *out = an->out;
+    int32_t k;
+    if (ordering == GPROJ_ORDERING_AMD) return gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order);
+    for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_cholesky_options *options,
+                                          const int32_t *permutation) {
+    gproji_symbolic *out = an->out;
+    out->order = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
+    out->place = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
+    out->column = (int32_t *)gproji_pool_take(an->keep, (int64_t)out->nodes + 1, sizeof(int32_t));
+    out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
+    if (!out->order || !out->place || !out->column || !out->front_of) return false;
+    if (!gproji_choose_order(an, options->ordering, permutation) || !gproji_analysis_take(an)) return false;
+    gproji_invert(out->nodes, out->order, out->place);
+    gproji_elimination_tree(an->graph, out->order, out->place, an->parent, an->a);
+    if (options->disable_postorder) {
+        gproji_column_counts_by_rows(an);
+    } else {
+        gproji_apply_postorder(an);
+        gproji_column_counts(an);
+    }
+    gproji_sum_counts(an);
+    gproji_find_supernodes(an);
+    if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
+    if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
+    gproji_find_relative(out);
+    return gproji_layout(an);
+}
+
+/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN. All
+   that `out` holds is taken from the pool. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
+                                    const gproj_cholesky_options *options, const int32_t *permutation,
+                                    gproji_symbolic *out) {
+    gproji_analysis an;
+    bool done;
+    memset(&an, 0, sizeof an);
+    memset(out, 0, sizeof *out);
+    an.graph = graph;
+    an.out = out;
+    an.keep = keep;
+    gproji_pool_start(&an.pool, keep->heap);
+    out->columns = columns;
+    out->nodes = graph->nodes;
+    done = gproji_analyse_steps(&an, options, permutation);
+    gproji_pool_give_all(&an.pool);
+    return done;
+}
+
+/* Where the block of nodes a and b stands in the values of L: its entry in row r of the later node and column q of the
+   earlier one is at offset + r + q * stride. swapped: b is the later one. For a = b the lower triangle is meant. */
+GPROJI_INTERNAL void gproji_locate_block(const gproji_symbolic *sy, int32_t a, int32_t b, int64_t *offset,
+                                         int32_t *stride, bool *swapped) {
+    int32_t early = sy->place[a], late = sy->place[b], row;
+    const gproji_front *front;
+    *swapped = late > early;
+    if (!*swapped) early = sy->place[b], late = sy->place[a];
+    front = &sy->front[sy->front_of[early]];
+    if (late < front->end_place) {
+        row = sy->column[late] - front->first + gproji_panel_shift(front->width);
+    } else {
+        const int32_t *list = sy->row_node + front->rows;
+        int32_t low = 0, high = front->row_nodes - 1;
+        while (low < high) {
+            int32_t middle = low + (high - low) / 2;
+            if (list[middle] < late)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        GPROJ_ASSERT(list[low] == late);
+        row = sy->row_at[front->rows + low];
+    }
+    *offset = front->panel + (int64_t)(sy->column[early] - front->first) * front->stride + row;
+    *stride = front->stride;
+}
+
+/* ============================================================================================================
+   >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, dense, ordering, symbolic.
+
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, where the caller has put
+   A's values; the update matrices of its children are added to them; then they are eliminated, and what they do to the
+   rows below becomes the front's own update matrix, on a stack. The children's matrices are added in two steps: what
+   meets pivot columns before the elimination, the rest after the update matrix has been written by the product of the
+   panel with itself, so that it needs no clearing.
+
+   A matrix in compressed columns is first compressed: columns with the same entries become one node. The system section
+   gives its nodes itself and adds its values to gproji_cholesky_entries.
+
+   Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
+   matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
+enum { GPROJI_SOLVE_BATCH = 4 }; /* right-hand sides solved together */
+
+struct gproj_cholesky {
+    gproji_heap own;
+    gproj_parallel parallel;
+    gproj_error error;
+    bool analysed;
+    bool factored;
+    int32_t failed_column;
+    gproji_pool kept;    /* what the analysis has made */
+    gproji_pool numeric; /* what factorisation and solution need */
+    gproji_symbolic symbolic;
+    int32_t *permutation; /* columns: the column of A at each column of L */
+    /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
+    int64_t entries;
+    int64_t *entry;       /* entries: the number of each in the caller's arrays */
+    int64_t *target;      /* entries: where its value goes in L */
+    int64_t *entry_start; /* fronts + 1: where each front's entries begin */
+    const double *source; /* during gproj_cholesky_factor: the values of A */
+
+    double *values;   /* symbolic.values_size: all panels */
+    double *work;     /* symbolic.work_size: all update matrices */
+    double *inverse;  /* (tasks + 1) * most_width: inverses of pivots, for each group of fronts */
+    int32_t *runs;    /* see gproji_find_runs, for each group of fronts */
+    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution; /* columns * GPROJI_SOLVE_BATCH: right-hand sides in the order of L */
+    double *rows;     /* symbolic.most_rows: one front's part of a right-hand side */
+};
+
+/* -- life -- */
+
+GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
+    gproji_pool_give_all(&c->numeric);
+    gproji_pool_give_all(&c->kept);
+    memset(&c->symbolic, 0, sizeof c->symbolic);
+    c->analysed = c->factored = false;
+    c->failed_column = -1;
+    c->permutation = NULL;
+    c->entry = c->target = c->entry_start = NULL;
+    c->source = NULL;
+    c->entries = 0;
+    c->values = NULL;
+}
+
+GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
+    gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c);
+    if (!c) return NULL;
+    if (host) c->parallel = host->parallel;
+    gproji_error_clear(&c->error);
+    gproji_pool_start(&c->kept, &c->own);
+    gproji_pool_start(&c->numeric, &c->own);
+    c->failed_column = -1;
+    return c;
+}
+
+GPROJ_API void gproj_cholesky_destroy(gproj_cholesky *cholesky) {
+    if (!cholesky) return;
+    gproji_cholesky_forget(cholesky);
+    gproji_destroy_object(cholesky, sizeof *cholesky);
+}
+
+GPROJ_API const gproj_error *gproj_cholesky_error(const gproj_cholesky *cholesky) {
+    static const gproj_error none = {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "there is no Cholesky object"};
+    return cholesky ? &cholesky->error : &none;
+}
+
+GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky) {
+    gproj_memory memory;
+    memset(&memory, 0, sizeof memory);
+    return cholesky ? cholesky->own.account : memory;
+}
+
+GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *cholesky) {
+    return cholesky ? cholesky->permutation : NULL;
+}
+
+/* A number of bytes, also where the address space cannot hold it. */
+GPROJI_INTERNAL size_t gproji_size_of(double bytes) {
+    return bytes < (double)(SIZE_MAX / 2) ? (size_t)bytes : SIZE_MAX / 2;
+}
+
+GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *cholesky) {
+    gproj_cholesky_info info;
+    const gproji_symbolic *sy;
+    double work;
+    memset(&info, 0, sizeof info);
+    info.failed_column = -1;
+    if (!cholesky || !cholesky->analysed) return info;
+    sy = &cholesky->symbolic;
+    info.columns = sy->columns;
+    info.supernodes = sy->fronts;
+    info.factor_entries = sy->factor_entries;
+    info.exact_entries = sy->exact_entries;
+    info.flops = sy->flops;
+    info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
+    work = (double)sy->work_size + (double)GPROJI_SOLVE_BATCH * sy->columns + sy->most_rows +
+           (sy->tasks + 1.0) * sy->most_width + 0.5 * (double)sy->runs_start[sy->tasks + 1];
+    info.work_bytes = gproji_size_of(8.0 * work);
+    info.failed_column = cholesky->failed_column;
+    return info;
+}
+
+/* -- analysis -- */
+
+/* The order of L's columns: the members of the nodes, node by node. member[member_start[i]..] are the columns of A in
+   node i. */
+GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *member_start, const int32_t *member) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t k, i, at = 0;
+    c->permutation = (int32_t *)gproji_pool_take(&c->kept, sy->columns, sizeof(int32_t));
+    if (!c->permutation) return false;
+    for (k = 0; k < sy->nodes; ++k)
+        for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
+            c->permutation[at++] = member ? member[i] : i;
+    return true;
+}
+
+/* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
+   their graph (see gproji_graph). The options' permutation is one of the nodes. */
+GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
+                                                          const int32_t *node_size, const int64_t *adjacency_start,
+                                                          const int32_t *adjacency,
+                                                          const gproj_cholesky_options *options) {
+    gproj_cholesky_options choice;
+    gproji_graph graph;
+    int32_t i, *start, columns = 0;
+    bool done = false;
+    memset(&choice, 0, sizeof choice);
+    if (options) choice = *options;
+    gproji_cholesky_forget(c);
+    gproji_error_clear(&c->error);
+    for (i = 0; i < node_count; ++i) {
+        if (node_size[i] > INT32_MAX - 64 - columns)
+            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more than 2^31 variables");
+        columns += node_size[i];
+    }
+    graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
+    start = (int32_t *)gproji_take(&c->own, (size_t)node_count + 1, sizeof(int32_t));
+    if (start) {
+        start[0] = 0;
+        for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
+        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, &c->symbolic) &&
+               gproji_cholesky_permute(c, start, NULL);
+    }
+    gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
+    if (!done) {
+        gproji_cholesky_forget(c);
+        return gproji_fail_memory(&c->error);
+    }
+    c->analysed = true;
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL void gproji_cholesky_locate_block(const gproj_cholesky *c, int32_t node_a, int32_t node_b,
+                                                  int64_t *offset, int32_t *stride, bool *swapped) {
+    gproji_locate_block(&c->symbolic, node_a, node_b, offset, stride, swapped);
+}
+
+/* Are the arrays a matrix in compressed columns? */
+GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, const int64_t *start,
+                                                 const int32_t *row) {
+    int32_t j;
+    int64_t p;
+    if (n < 0 || n > INT32_MAX - 64)
+        return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "a matrix cannot have %d columns", n);
+    if (n == 0) return GPROJ_OK;
+    if (!start) return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the column starts are missing");
+    if (start[0] != 0)
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0, "the first column starts at %l, not 0",
+                           start[0]);
+    for (j = 0; j < n; ++j)
+        if (start[j + 1] < start[j])
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j, "column %d ends before it starts",
+                               j);
+    if (start[n] > INT64_MAX / 64)
+        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
+    if (!row && start[n] > 0)
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the row indices are missing");
+    for (j = 0; j < n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p)
+            if (row[p] < 0 || row[p] >= n)
+                return gproji_fail(&c->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
+                                   "column %d has an entry in row %d, which is not in 0..%d", j, row[p], n - 1);
+    return GPROJ_OK;
+}
+
+/* A matrix in compressed columns on its way to a graph of nodes. */
+typedef struct gproji_compression {
+    gproji_pool pool;
+    int32_t n;
+    int64_t *start;        /* n + 1: neighbours of the columns, */
+    int32_t *neighbour;    /* without the diagonal and without repetition */
+    uint32_t *hash;        /* n: sum over the column and its neighbours */
+    int32_t *mark;         /* n */
+    int32_t *node_of;      /* n: the node of each column, or -1 */
+    int32_t nodes;
+    int32_t *member_start; /* nodes + 1 */
+    int32_t *member;       /* n: the columns of each node */
+    int32_t *weight;       /* nodes */
+    int64_t *node_start;   /* nodes + 1: the graph of the nodes */
+    int32_t *adjacent;
+    int32_t *order;        /* n: the order given, or NULL */
+    int32_t *node_order;   /* nodes: the same for the nodes */
+} gproji_compression;
+
+/* Both triangles of the pattern without repeated entries. */
+GPROJI_INTERNAL bool gproji_compression_graph(gproji_compression *x, const int64_t *start, const int32_t *row) {
+    int32_t n = x->n, j;
+    int64_t p, q, to = 0;
+    x->start = (int64_t *)gproji_pool_take_zeroed(&x->pool, (int64_t)n + 2, sizeof(int64_t));
+    x->neighbour = (int32_t *)gproji_pool_take(&x->pool, 2 * (n ? start[n] : 0), sizeof(int32_t));
+    x->hash = (uint32_t *)gproji_pool_take(&x->pool, n, sizeof(uint32_t));
+    x->mark = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    if (!x->start || !x->neighbour || !x->hash || !x->mark) return false;
+    for (j = 0; j < n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p)
+            if (row[p] != j) x->start[j + 2]++, x->start[row[p] + 2]++;
+    for (j = 0; j < n; ++j) x->start[j + 2] += x->start[j + 1];
+    for (j = 0; j < n; ++j) {
+        for (p = start[j]; p < start[j + 1]; ++p) {
+            if (row[p] == j) continue;
+            x->neighbour[x->start[j + 1]++] = row[p];
+            x->neighbour[x->start[row[p] + 1]++] = j;
+        }
+        x->mark[j] = -1;
+    }
+    for (j = 0, p = 0; j < n; ++j) { /* repeated entries leave */
+        int64_t end = x->start[j + 1];
+        x->start[j] = to;
+        x->hash[j] = (uint32_t)j * 2654435761u;
+        for (q = p; q < end; ++q) {
+            int32_t i = x->neighbour[q];
+            if (x->mark[i] == j) continue;
+            x->mark[i] = j;
+            x->hash[j] += (uint32_t)i * 2654435761u;
+            x->neighbour[to++] = i;
+        }
+        p = end;
+    }
+    x->start[n] = to;
+    return true;
+}
+
+/* Has column i, a neighbour of the marked column j, the same neighbours? */
+GPROJI_INTERNAL bool gproji_compression_same(const gproji_compression *x, int32_t j, int32_t i) {
+    int64_t p;
+    if (x->hash[i] != x->hash[j] || x->start[i + 1] - x->start[i] != x->start[j + 1] - x->start[j]) return false;
+    for (p = x->start[i]; p < x->start[i + 1]; ++p)
+        if (x->mark[x->neighbour[p]] != j) return false;
+    return x->mark[i] == j;
+}
+
+GPROJI_INTERNAL void gproji_compression_mark(gproji_compression *x, int32_t j) {
+    int64_t p;
+    x->mark[j] = j;
+    for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
+}
+
+/* Finds the nodes: in a given order, runs of columns with the same neighbours; else all such columns. */
+GPROJI_INTERNAL void gproji_compression_nodes(gproji_compression *x) {
+    int32_t j, k, first = -1, at = 0;
+    int64_t p;
+    for (j = 0; j < x->n; ++j) x->mark[j] = x->node_of[j] = -1;
+    for (k = 0; k < x->n; ++k) {
+        j = x->order ? x->order[k] : k;
+        if (x->node_of[j] >= 0) continue;
+        if (x->order && first >= 0 && gproji_compression_same(x, first, j)) {
+            x->node_of[j] = x->nodes - 1;
+            x->member[at++] = j;
+            continue;
+        }
+        first = j;
+        x->member_start[x->nodes] = at;
+        x->node_of[j] = x->nodes++;
+        x->member[at++] = j;
+        gproji_compression_mark(x, j);
+        if (x->order) continue;
+        for (p = x->start[j]; p < x->start[j + 1]; ++p) {
+            int32_t i = x->neighbour[p];
+            if (x->node_of[i] >= 0 || !gproji_compression_same(x, j, i)) continue;
+            x->node_of[i] = x->nodes - 1;
+            x->member[at++] = i;
+        }
+    }
+    x->member_start[x->nodes] = at;
+}
+
+/* The graph of the nodes, from the neighbours of their first members. */
+GPROJI_INTERNAL bool gproji_compression_compress(gproji_compression *x) {
+    int32_t n = x->n, k, i;
+    int64_t p, to = 0;
+    x->node_of = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->member = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->member_start = (int32_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int32_t));
+    x->weight = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->node_order = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->node_start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
+    if (!x->node_of || !x->member || !x->member_start || !x->weight || !x->node_order || !x->node_start) return false;
+    gproji_compression_nodes(x);
+    x->adjacent = (int32_t *)gproji_pool_take(&x->pool, x->start[n], sizeof(int32_t));
+    if (!x->adjacent) return false;
+    for (k = 0; k < x->n; ++k) x->mark[k] = -1;
+    for (k = 0; k < x->nodes; ++k) {
+        int32_t column = x->member[x->member_start[k]];
+        x->weight[k] = x->member_start[k + 1] - x->member_start[k];
+        x->node_order[k] = k; /* nodes are numbered in the order given */
+        x->node_start[k] = to;
+        for (p = x->start[column]; p < x->start[column + 1]; ++p) {
+            i = x->node_of[x->neighbour[p]];
+            if (i == k || x->mark[i] == k) continue;
+            x->mark[i] = k;
+            x->adjacent[to++] = i;
+        }
+    }
+    x->node_start[x->nodes] = to;
+    return true;
+}
+
+/* mark: n entries of work. */
+GPROJI_INTERNAL bool gproji_is_permutation(int32_t n, const int32_t *permutation, int32_t *mark) {
+    int32_t k;
+    for (k = 0; k < n; ++k) mark[k] = 0;
+    for (k = 0; k < n; ++k) {
+        if (permutation[k] < 0 || permutation[k] >= n || mark[permutation[k]]) return false;
+        mark[permutation[k]] = 1;
+    }
+    return true;
+}
+
+/* The front that holds entry (i, j), by columns of A: that of the one eliminated first. */
+GPROJI_INTERNAL int32_t gproji_front_of_entry(const gproj_cholesky *c, const gproji_compression *x, int32_t i,
+                                              int32_t j) {
+    const int32_t *place = c->symbolic.place;
+    return c->symbolic.front_of[gproji_min(place[x->node_of[i]], place[x->node_of[j]])];
+}
+
+/* Sorts the entries by the front that holds them: `entry` and `entry_start`; `target` gets the columns, smaller + larger
+   * 2^32, in which they stand in L. */
+GPROJI_INTERNAL bool gproji_cholesky_sort_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
+                                                  const int32_t *row) {
+    int32_t fronts = c->symbolic.fronts, f, j, *place = x->mark; /* columns of A: their column of L */
+    int64_t p;
+    c->entry = (int64_t *)gproji_pool_take(&c->kept, c->entries, sizeof(int64_t));
+    c->target = (int64_t *)gproji_pool_take(&c->kept, c->entries, sizeof(int64_t));
+    c->entry_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)fronts + 2, sizeof(int64_t));
+    if (!c->entry || !c->target || !c->entry_start) return false;
+    gproji_invert(x->n, c->permutation, place);
+    for (j = 0; j < x->n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p) c->entry_start[gproji_front_of_entry(c, x, row[p], j) + 2]++;
+    for (f = 0; f < fronts; ++f) c->entry_start[f + 2] += c->entry_start[f + 1];
+    for (j = 0; j < x->n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p) {
+            int32_t a = place[j], b = place[row[p]];
+            int64_t at = c->entry_start[gproji_front_of_entry(c, x, row[p], j) + 1]++;
+            c->entry[at] = p;
+            c->target[at] = gproji_min(a, b) | (int64_t)gproji_max(a, b) << 32;
+        }
+    return true;
+}
+
+/* Turns the columns in `target` into places in the values of L. */
+GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_compression *x) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t *position = x->node_order; /* nodes, by place: first storage row in the front at hand */
+    int32_t f;
+    int64_t r;
+    for (f = 0; f < sy->fronts; ++f) {
+        const gproji_front *front = &sy->front[f];
+        for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
+        for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
+            int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
+            if (late < front->first + front->width) {
+                at = late - front->first + gproji_panel_shift(front->width);
+            } else {
+                place = sy->place[x->node_of[c->permutation[late]]];
+                at = position[place] + late - sy->column[place];
+            }
+            c->target[r] = front->panel + (int64_t)(early - front->first) * front->stride + at;
+        }
+    }
+}
+
+/* The steps of an analysis between taking and giving back its memory. */
+GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
+                                                         const int32_t *row, const gproj_cholesky_options *choice) {
+    gproji_graph graph;
+    int32_t k;
+    if (!gproji_compression_graph(x, start, row)) return gproji_fail_memory(&c->error);
+    if (choice->ordering != GPROJ_ORDERING_AMD) {
+        x->order = (int32_t *)gproji_pool_take(&x->pool, x->n, sizeof(int32_t));
+        if (!x->order) return gproji_fail_memory(&c->error);
+        for (k = 0; k < x->n; ++k) x->order[k] = k;
+    }
+    if (choice->ordering == GPROJ_ORDERING_GIVEN && x->n > 0) {
+        if (!choice->permutation || !gproji_is_permutation(x->n, choice->permutation, x->mark))
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the order given is no permutation");
+        memcpy(x->order, choice->permutation, (size_t)x->n * sizeof(int32_t));
+    }
+    if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
+    graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
+    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, &c->symbolic) ||
+        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
+        return gproji_fail_memory(&c->error);
+    gproji_cholesky_find_targets(c, x);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
+                                            const int32_t *row, const gproj_cholesky_options *options) {
+    gproj_cholesky_options choice;
+    gproji_compression compression;
+    gproj_code code;
+    if (!cholesky) return GPROJ_ERROR_ARGUMENT;
+    gproji_cholesky_forget(cholesky);
+    gproji_error_clear(&cholesky->error);
+    code = gproji_cholesky_check(cholesky, n, start, row);
+    if (code != GPROJ_OK) return code;
+    memset(&choice, 0, sizeof choice);
+    if (options) choice = *options;
+    memset(&compression, 0, sizeof compression);
+    compression.n = n;
+    gproji_pool_start(&compression.pool, &cholesky->own);
+    cholesky->entries = n ? start[n] : 0;
+    code = gproji_cholesky_analyse_steps(cholesky, &compression, start, row, &choice);
+    gproji_pool_give_all(&compression.pool);
+    if (code != GPROJ_OK)
+        gproji_cholesky_forget(cholesky);
+    else
+        cholesky->analysed = true;
+    return code;
+}
+
+/* -- factorisation -- */
+
+/* `count` doubles that begin at a cache line. */
+GPROJI_INTERNAL double *gproji_take_aligned(gproji_pool *pool, int64_t count) {
+    char *block = (char *)gproji_pool_take(pool, count + 8, sizeof(double));
+    return block ? (double *)(void *)(block + (64 - (uintptr_t)block % 64) % 64) : NULL;
+}
+
+/* Takes the memory of the numerical part, once for an analysis. */
+GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int64_t groups = (int64_t)sy->tasks + 1;
+    if (c->values) return true;
+    c->work = gproji_take_aligned(&c->numeric, sy->work_size);
+    c->inverse = gproji_take_aligned(&c->numeric, groups * sy->most_width);
+    c->rows = gproji_take_aligned(&c->numeric, sy->most_rows);
+    c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * GPROJI_SOLVE_BATCH);
+    c->runs = (int32_t *)gproji_pool_take(&c->numeric, sy->runs_start[groups], sizeof(int32_t));
+    c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
+    c->values = gproji_take_aligned(&c->numeric, sy->values_size);
+    if (c->work && c->inverse && c->rows && c->solution && c->runs && c->failed && c->values) return true;
+    gproji_pool_give_all(&c->numeric);
+    c->values = NULL;
+    gproji_fail_memory(&c->error);
+    return false;
+}
+
+/* The values of L, to which A's values are added before gproji_cholesky_factor_entries. NULL when there is no memory. */
+GPROJI_INTERNAL double *gproji_cholesky_entries(gproj_cholesky *c) {
+    GPROJ_ASSERT(c->analysed);
+    return gproji_cholesky_take_numeric(c) ? c->values : NULL;
+}
+
+GPROJI_INTERNAL void gproji_cholesky_clear(gproj_cholesky *c) {
+    memset(c->values, 0, (size_t)c->symbolic.values_size * sizeof(double));
+    c->factored = false;
+}
+
+#if GPROJI_LANES == 8
+typedef double gproji_four_at __attribute__((vector_size(32), aligned(8), may_alias));
+#endif
+
+/* d += s */
+GPROJI_INLINE void gproji_add_run(int32_t count, const double *s, double *d) {
+    int32_t i = 0;
+#if GPROJI_LANES > 1
+    for (; i + GPROJI_LANES <= count; i += GPROJI_LANES)
+        GPROJI_STORE(d + i, GPROJI_LOAD(d + i) + GPROJI_LOAD(s + i));
+#endif
+#if GPROJI_LANES == 8 /* runs are short: the rest, too, in few steps */
+    if (i + 4 <= count) {
+        *(gproji_four_at *)(void *)(d + i) += *(const gproji_four_at *)(const void *)(s + i);
+        i += 4;
+    }
+#endif
+    for (; i < count; ++i) d[i] += s[i];
+}
+
+/* The runs of a front's update matrix in its parent's panel: the count[k] rows of the matrix from from[k] on meet the
+   storage rows from to[k] on. Three arrays of row_nodes entries. Runs end where the parent's pivots end. Returns their
+   number. */
+GPROJI_INTERNAL int32_t gproji_find_runs(const gproji_symbolic *sy, const gproji_front *front, int32_t pivot_end,
+                                         int32_t *from, int32_t *to, int32_t *count) {
+    const int32_t *at = sy->row_at + front->rows, *relative = sy->relative + front->rows;
+    int32_t base = front->width + gproji_panel_shift(front->width), runs = 0, k;
+    for (k = 0; k < front->row_nodes; ++k) {
+        int32_t begin = at[k] - base, end = k + 1 < front->row_nodes ? at[k + 1] - base : front->below;
+        bool joins = runs > 0 && relative[k] == to[runs - 1] + count[runs - 1] && relative[k] != pivot_end;
+        if (joins) {
+            count[runs - 1] += end - begin;
+        } else {
+            from[runs] = begin;
+            to[runs] = relative[k];
+            count[runs++] = end - begin;
+        }
+    }
+    return runs;
+}
+
+/* One column of a child's update matrix, the j-th of run k, goes to a column of the parent: storage row r to column[r]. */
+GPROJI_INLINE void gproji_add_column(int32_t k, int32_t j, int32_t runs, const int32_t *from, const int32_t *to,
+                                     const int32_t *count, const double *source, double *column) {
+    int32_t i;
+    gproji_add_run(count[k] - j, source + from[k] + j, column + to[k] + j);
+    for (i = k + 1; i < runs; ++i) gproji_add_run(count[i], source + from[i], column + to[i]);
+}
+
+/* Adds a child's update matrix to its parent: the columns that meet pivots to the panel, or all others to the parent's
+   update matrix. */
+GPROJI_KERNEL void gproji_extend_add(const gproj_cholesky *c, const gproji_front *child, const gproji_front *front,
+                                     int32_t *from, bool to_panel) {
+    int32_t shift = gproji_panel_shift(front->width), pivot_end = shift + front->width, k, j;
+    int32_t *to = from + child->row_nodes, *count = to + child->row_nodes;
+    int32_t runs = gproji_find_runs(&c->symbolic, child, pivot_end, from, to, count);
+    const double *update = c->work + child->update;
+    for (k = 0; k < runs; ++k) {
+        if ((to[k] < pivot_end) != to_panel) continue;
+        for (j = 0; j < count[k]; ++j) {
+            const double *source = update + gproji_update_offset(child->update_rows, from[k] + j);
+            if (to_panel) {
+                double *column = c->values + front->panel + (ptrdiff_t)(to[k] + j - shift) * front->stride;
+                gproji_add_column(k, j, runs, from, to, count, source, column);
+            } else {
+                ptrdiff_t offset = gproji_update_offset(front->update_rows, to[k] + j - pivot_end) - pivot_end;
+                gproji_add_column(k, j, runs, from, to, count, source, c->work + front->update + offset);
+            }
+        }
+    }
+}
+
+/* Adds the children's update matrices: to the pivot columns, or to the front's own update matrix. */
+GPROJI_INTERNAL void gproji_add_children(gproj_cholesky *c, const gproji_front *front, int32_t *runs, bool to_panel) {
+    int32_t child;
+    for (child = front->child; child >= 0; child = c->symbolic.front[child].sibling)
+        gproji_extend_add(c, &c->symbolic.front[child], front, runs, to_panel);
+}
+
+/* Puts A's values into a front's panel, right before they are used. */
+GPROJI_INTERNAL void gproji_load_front(gproj_cholesky *c, int32_t f) {
+    const gproji_front *front = &c->symbolic.front[f];
+    int64_t r;
+    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
+    for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) c->values[c->target[r]] += c->source[c->entry[r]];
+}
+
+/* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
+GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
+                                            double *inverse, int32_t *runs) {
+    const gproji_front *front = &c->symbolic.front[f];
+    gproji_panel panel;
+    int32_t failed;
+    if (c->source) gproji_load_front(c, f);
+    gproji_add_children(c, front, runs, true);
+    panel.w = front->width, panel.shift = gproji_panel_shift(front->width);
+    panel.rows = panel.shift + panel.w + front->update_rows, panel.stride = front->stride;
+    panel.values = c->values + front->panel, panel.inverse = inverse, panel.update = c->work + front->update;
+    failed = gproji_panel_factor(parallel, &panel);
+    if (failed >= 0) return front->first + failed;
+    if (front->below == 0) return -1;
+    gproji_panel_update(parallel, &panel);
+    gproji_add_children(c, front, runs, false);
+    return -1;
+}
+
+/* Eliminates the fronts of one group: a task's, or those on top. */
+GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
+    gproj_cholesky *c = (gproj_cholesky *)data;
+    const gproji_symbolic *sy = &c->symbolic;
+    double *inverse = c->inverse + (size_t)group * (size_t)sy->most_width;
+    int32_t *runs = c->runs + sy->runs_start[group];
+    const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
+    int32_t k, failed = -1;
+    for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k)
+        failed = gproji_factor_front(c, sy->schedule[k], parallel, inverse, runs);
+    c->failed[group] = failed;
+}
+
+/* Factors the matrix whose values stand in gproji_cholesky_entries. */
+GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_entries(gproj_cholesky *c) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t g, failed = -1;
+    GPROJ_ASSERT(c->analysed && c->values);
+    c->factored = false;
+    gproji_for(&c->parallel, sy->tasks, gproji_factor_group, c);
+    for (g = 0; g < sy->tasks; ++g)
+        if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
+    if (failed < 0) {
+        gproji_factor_group(c, sy->tasks);
+        failed = c->failed[sy->tasks];
+    }
+    c->failed_column = failed < 0 ? -1 : c->permutation[failed];
+    c->factored = failed < 0;
+    return c->factored ? GPROJ_FACTORED : GPROJ_NOT_POSITIVE_DEFINITE;
+}
+
+GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, const double *values) {
+    gproj_cholesky *c = cholesky;
+    static const double none[1] = {0}; /* of a matrix without entries */
+    gproj_factor_outcome outcome;
+    if (!c) return GPROJ_FACTOR_FAILED;
+    gproji_error_clear(&c->error);
+    if (!c->analysed || (c->symbolic.columns > 0 && !c->target)) {
+        gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "factor: there is no analysis of a matrix");
+        return GPROJ_FACTOR_FAILED;
+    }
+    if (!values && c->entries > 0) {
+        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "factor: the values are missing");
+        return GPROJ_FACTOR_FAILED;
+    }
+    if (!gproji_cholesky_take_numeric(c)) return GPROJ_FACTOR_FAILED;
+    c->source = values ? values : none;
+    outcome = gproji_cholesky_factor_entries(c);
+    c->source = NULL;
+    return outcome;
+}
+
+/* -- solution -- */
+
+/* x (in the order of L) -> z: the front's rows of x. */
+GPROJI_INTERNAL void gproji_gather_rows(const gproji_symbolic *sy, const gproji_front *front, const double *x,
+                                        double *z) {
+    int32_t pivot_end = front->width + gproji_panel_shift(front->width), k;
+    const int32_t *node = sy->row_node + front->rows;
+    double *to = z + pivot_end;
+    for (k = 0; k < front->row_nodes; ++k) {
+        int32_t i = sy->column[node[k]], end = sy->column[node[k] + 1];
+        for (; i < end; ++i) *to++ = x[i];
+    }
+}
+
+/* Sets the storage rows of z that are no rows of the front to 0, and its pivot rows to x. */
+GPROJI_INTERNAL int32_t gproji_gather_pivots(const gproji_front *front, const double *x, double *z) {
+    int32_t shift = gproji_panel_shift(front->width), pivot_end = front->width + shift, i;
+    int32_t rows = pivot_end + front->update_rows;
+    for (i = 0; i < shift; ++i) z[i] = 0;
+    for (i = 0; i < front->width; ++i) z[shift + i] = x[front->first + i];
+    for (i = pivot_end + front->below; i < rows; ++i) z[i] = 0;
+    return rows;
+}
+
+/* One front of L y = b. */
+GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, double *x) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t shift = gproji_panel_shift(front->width), rows, i, k;
+    const int32_t *node = sy->row_node + front->rows;
+    double *z = c->rows, *from = z + shift + front->width;
+    rows = gproji_gather_pivots(front, x, z);
+    for (i = 0; i < front->below; ++i) from[i] = 0;
+    gproji_panel_forward(rows, front->width, c->values + front->panel, front->stride, z);
+    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
+    for (k = 0; k < front->row_nodes; ++k) {
+        int32_t end = sy->column[node[k] + 1];
+        for (i = sy->column[node[k]]; i < end; ++i) x[i] += *from++;
+    }
+}
+
+/* One front of L' x = y. */
+GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, double *x) {
+    double *z = c->rows;
+    int32_t rows = gproji_gather_pivots(front, x, z);
+    gproji_gather_rows(&c->symbolic, front, x, z);
+    gproji_panel_backward(rows, front->width, c->values + front->panel, front->stride, z);
+    memcpy(x + front->first, z + gproji_panel_shift(front->width), (size_t)front->width * sizeof(double));
+}
+
+/* Solves for `count` <= GPROJI_SOLVE_BATCH right-hand sides: every panel is read once, and is still in the cache for the
+   second and later ones. */
+GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+    const gproji_symbolic *sy = &c->symbolic;
+    size_t n = (size_t)sy->columns, i;
+    int32_t r, k;
+    for (r = 0; r < count; ++r)
+        for (i = 0; i < n; ++i) c->solution[(size_t)r * n + i] = b[(size_t)r * n + (size_t)c->permutation[i]];
+    for (k = 0; k < sy->fronts; ++k)
+        for (r = 0; r < count; ++r) gproji_forward_front(c, &sy->front[sy->schedule[k]], c->solution + (size_t)r * n);
+    for (k = sy->fronts - 1; k >= 0; --k)
+        for (r = 0; r < count; ++r) gproji_backward_front(c, &sy->front[sy->schedule[k]], c->solution + (size_t)r * n);
+    for (r = 0; r < count; ++r)
+        for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
+}
+
+GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x) {
+    gproj_cholesky *c = cholesky;
+    int32_t r;
+    if (!c) return GPROJ_ERROR_ARGUMENT;
+    gproji_error_clear(&c->error);
+    if (!c->factored)
+        return gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "solve: there is no factor to solve with");
+    if (count < 0 || (count > 0 && c->symbolic.columns > 0 && (!b || !x)))
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "solve: %d right-hand sides, or an array is missing", count);
+    if (c->symbolic.columns == 0) return GPROJ_OK;
+    for (r = 0; r < count; r += GPROJI_SOLVE_BATCH) {
+        size_t offset = (size_t)r * (size_t)c->symbolic.columns;
+        gproji_cholesky_solve_batch(c, gproji_min(count - r, GPROJI_SOLVE_BATCH), b + offset, x + offset);
+    }
+    return GPROJ_OK;
+}
+
+/* residual = b - A x; returns its largest absolute value. */
+GPROJI_INTERNAL double gproji_cholesky_residual(int32_t n, const int64_t *start, const int32_t *row,
+                                                const double *values, const double *b, const double *x,
+                                                double *residual) {
+    double largest = 0;
+    int32_t j;
+    int64_t p;
+    for (j = 0; j < n; ++j) residual[j] = b[j];
+    for (j = 0; j < n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p) {
+            residual[row[p]] -= values[p] * x[j];
+            if (row[p] != j) residual[j] -= values[p] * x[row[p]];
+        }
+    for (j = 0; j < n; ++j)
+        if (!(fabs(residual[j]) <= largest)) largest = fabs(residual[j]);
+    return largest;
+}
+
+GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *start, const int32_t *row,
+                                       const double *values, const double *b, double *x, int32_t steps) {
+    gproj_cholesky *c = cholesky;
+    int32_t n, j, step;
+    double *residual, largest;
+    if (!c) return HUGE_VAL;
+    gproji_error_clear(&c->error);
+    n = c->symbolic.columns;
+    if (!c->factored) {
+        gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "refine: there is no factor to solve with");
+        return HUGE_VAL;
+    }
+    if (n == 0) return 0;
+    if (!start || !row || !values || !b || !x) {
+        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "refine: an array is missing");
+        return HUGE_VAL;
+    }
+    residual = c->solution + n; /* the solution of one right-hand side uses only the first n */
+    largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
+    for (step = 0; step < steps; ++step) {
+        gproji_cholesky_solve_batch(c, 1, residual, residual);
+        for (j = 0; j < n; ++j) x[j] += residual[j];
+        largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
+    }
+    return largest;
+}
+
+/* ============================================================================================================
+   >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
+   error, parallel, cholesky.
+
+   Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
+
+   Rows come in any order and are kept as they were given, group by group. Before a solve they are compiled once:
+   - variables are joined to nodes: a block whose variables meet in some row is one node, else each is its own;
+   - every row gets its variables ("locals") in the order of elimination, cut into slots (one per node), and for
+     each pair of its slots the place of that pair's block in the factor;
+   so that an iteration evaluates rows into local gradients and adds their outer products straight into the factor's
+   storage, without a search and without an allocation.
+
+   Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
+   a row ends it. Coefficients, constants and weights may change freely. */
+
+enum {
+    GPROJI_BLOCK_MAX = 8,       /* variables of a block */
+    GPROJI_NAME_SIZE = 32,      /* of a group, with the final NUL */
+    GPROJI_WIDE_ROW = 512,      /* a row with more variables than this is treated as a global one */
+    GPROJI_ROWS_PER_TASK = 2048 /* of the evaluation */
+};
+
+/* Row r of a group has the terms term[row[r].term .. row[r + 1].term - 1], and likewise for the other starts; the array
+   has one more entry than there are rows. */
+typedef struct gproji_row {
+    int64_t term;
+    int64_t local; /* compiled: its variables and its gradient */
+    int64_t slot;  /* compiled: its slots; none for a wide row */
+    int64_t pair;  /* compiled: its blocks: for each slot b all slots a >= b */
+    double constant;
+    double weight; /* times the group's; 0: the row is left out of everything */
+    double phi;    /* the value at the last evaluation */
+    int32_t element;
+    bool wide; /* compiled: kept out of the matrix */
+} gproji_row;
+
+/* Where a term's variables stand among the row's locals. */
+typedef struct gproji_term_local {
+    int32_t i, j;
+} gproji_term_local;
+
+typedef struct gproji_group {
+    char name[GPROJI_NAME_SIZE];
+    gproj_kind kind;
+    gproj_place place;
+    bool global;
+    gproj_schedule schedule;
+    gproj_refresh refresh;
+    void *refresh_user;
+    double weight; /* in the present iteration */
+    bool guard;    /* acts on the steps only: no part of merit, residual and verdict */
+
+    int32_t row_count;
+    gproji_row *row;
+    gproj_term *term;
+    size_t row_capacity, term_capacity;
+
+    gproji_term_local *term_local; /* one per term; as many as term_local_count */
+    int32_t *local_variable;       /* of every row, one row after the other */
+    double *local_gradient;        /* at the last evaluation */
+    int64_t *slot_local;           /* first local of every slot, and the end of the last */
+    int64_t *pair_entry;           /* where the pair's block begins in the factor's entries */
+    size_t term_local_count, local_capacity, gradient_count, slot_count, pair_count;
+} gproji_group;
+
+/* Looks at x after a step that may be taken. True: it has switched rows on that the step must be found again with. */
+typedef bool (*gproji_check_step)(void *user, gproj_system *system);
+
+struct gproj_system {
+    gproji_heap own;
+    gproj_error error;
+    gproj_host host;
+    gproj_cholesky *cholesky;
+
+    int32_t variable_count;
+    int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
+    int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
+    gproji_check_step check_step; /* NULL: none */
+    void *check_user;
+    double *x;
+    int32_t *block; /* of each variable, the first variable of its block */
+    size_t x_capacity, block_capacity;
+
+    gproji_group *group;
+    int32_t group_count;
+    size_t group_capacity;
+
+    bool compiled;
+    int32_t compiled_variables; /* the size of the arrays below */
+    int32_t node_count, wide_count;
+    int32_t *node;         /* of each variable */
+    int32_t *node_first;   /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
+    int32_t *node_stride;  /* distance of columns in the factor's entries, of each node's diagonal block */
+    int64_t *node_entry;   /* where that block begins */
+    int32_t *position;     /* of each variable in the order of elimination */
+    double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;          /* dx */
+    double *saved;         /* x before the step */
+    double *residual;      /* work of refinement and of the low-rank update */
+    double *correction;    /* the same */
+    double *wide_response; /* wide_count columns A^-1 (w g) */
+    double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
+    double *wide_vector;   /* wide_count */
+    size_t wide_taken;     /* wide_count when the three were taken */
+};
+
+/* -- life and building -- */
+
+GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
+    gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system));
+    if (!s) return NULL;
+    gproji_error_clear(&s->error);
+    if (host) s->host = *host;
+    s->cholesky = gproj_cholesky_create(host);
+    if (!s->cholesky) {
+        gproji_destroy_object(s, sizeof *s);
+        return NULL;
+    }
+    return s;
+}
+
+/* Gives back what compilation made of a group. */
+GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
+    gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
+    gproji_give(heap, g->local_variable, g->local_capacity, sizeof *g->local_variable);
+    gproji_give(heap, g->local_gradient, g->gradient_count, sizeof *g->local_gradient);
+    gproji_give(heap, g->slot_local, g->slot_count, sizeof *g->slot_local);
+    gproji_give(heap, g->pair_entry, g->pair_count, sizeof *g->pair_entry);
+    g->term_local = NULL;
+    g->local_variable = NULL;
+    g->local_gradient = NULL;
+    g->slot_local = NULL;
+    g->pair_entry = NULL;
+    g->local_capacity = 0;
+}
+
+/* Ends the compiled state and gives its memory back. */
+GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
+    size_t n = (size_t)s->compiled_variables;
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) gproji_group_forget(&s->own, &s->group[i]);
+    gproji_give(&s->own, s->node, n, sizeof *s->node);
+    gproji_give(&s->own, s->node_first, n + 1, sizeof *s->node_first);
+    gproji_give(&s->own, s->node_stride, n, sizeof *s->node_stride);
+    gproji_give(&s->own, s->node_entry, n, sizeof *s->node_entry);
+    gproji_give(&s->own, s->position, n, sizeof *s->position);
+    gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
+    gproji_give(&s->own, s->step, n, sizeof *s->step);
+    gproji_give(&s->own, s->saved, n, sizeof *s->saved);
+    gproji_give(&s->own, s->residual, n, sizeof *s->residual);
+    gproji_give(&s->own, s->correction, n, sizeof *s->correction);
+    gproji_give(&s->own, s->wide_response, s->wide_taken * n, sizeof *s->wide_response);
+    gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
+    gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
+    s->node = s->node_first = s->node_stride = s->position = NULL;
+    s->node_entry = NULL;
+    s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
+    s->wide_response = s->wide_matrix = s->wide_vector = NULL;
+    s->wide_taken = 0;
+    s->compiled = false;
+}
+
+GPROJ_API void gproj_system_destroy(gproj_system *s) {
+    int32_t i;
+    if (!s) return;
+    gproji_system_forget(s);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
+        gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
+    }
+    gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
+    gproji_give(&s->own, s->x, s->x_capacity, sizeof *s->x);
+    gproji_give(&s->own, s->block, s->block_capacity, sizeof *s->block);
+    gproj_cholesky_destroy(s->cholesky);
+    gproji_destroy_object(s, sizeof *s);
+}
+
+/* The error that stands for an object which could not be made. */
+GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
+    static const gproj_error error = {GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
+                                      "there is no object: creating it failed"};
+    return &error;
+}
+
+GPROJ_API const gproj_error *gproj_system_error(const gproj_system *s) { return s ? &s->error : gproji_no_object(); }
+
+/* May the caller go on building? */
+GPROJI_INTERNAL bool gproji_system_ready(const gproj_system *s) { return s && s->error.code == GPROJ_OK; }
+
+GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
+    gproj_memory sum, part;
+    memset(&sum, 0, sizeof sum);
+    if (!s) return sum;
+    sum = s->own.account;
+    part = gproj_cholesky_memory(s->cholesky);
+    sum.used += part.used;
+    sum.peak += part.peak;
+    sum.allocations += part.allocations;
+    return sum;
+}
+
+GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
+    int32_t first, i;
+    size_t needed;
+    if (!gproji_system_ready(s)) return -1;
+    if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
+                    block);
+        return -1;
+    }
+    if (count > INT32_MAX / 2 - s->variable_count) {
+        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more variables than 32-bit numbers can count");
+        return -1;
+    }
+    for (i = 0; values && i < count; ++i) {
+        if (gproji_is_finite(values[i])) continue;
+        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
+                    "the start value of variable %d is not a finite number", s->variable_count + i);
+        return -1;
+    }
+    first = s->variable_count;
+    needed = (size_t)first + (size_t)count;
+    {
+        void *x = s->x, *blocks = s->block;
+        bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, needed, sizeof *s->x);
+        s->x = (double *)x;
+        enough = enough && gproji_reserve(&s->own, &blocks, &s->block_capacity, needed, sizeof *s->block);
+        s->block = (int32_t *)blocks;
+        if (!enough) {
+            gproji_fail_memory(&s->error);
+            return -1;
+        }
+    }
+    for (i = 0; i < count; ++i) {
+        s->x[first + i] = values ? values[i] : 0.0;
+        s->block[first + i] = first + i - i % block;
+    }
+    gproji_system_forget(s);
+    s->variable_count += count;
+    return first;
+}
+
+GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s ? s->variable_count : 0; }
+GPROJ_API double *gproj_system_values(gproj_system *s) { return s ? s->x : NULL; }
+GPROJ_API int32_t gproj_system_group_count(const gproj_system *s) { return s ? s->group_count : 0; }
+
+GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule schedule) {
+    return gproji_is_finite(schedule.weight) && schedule.weight >= 0 && schedule.decay >= 0 && schedule.decay <= 1 &&
+           schedule.last >= 0;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
+    return gproji_fail(
+        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+        "the schedule of group '%s' (weight %g, decay %g, last %d) needs weight >= 0, 0 <= decay <= 1, last >= 0", name,
+        schedule.weight, schedule.decay, schedule.last);
+}
+
+GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
+    gproji_group *g;
+    void *groups;
+    size_t length;
+    bool enough;
+    if (!gproji_system_ready(s)) return -1;
+    if (!group || !group->name) {
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
+        return -1;
+    }
+    if (!gproji_schedule_is_valid(group->schedule)) {
+        gproji_fail_schedule(s, group->name, group->schedule);
+        return -1;
+    }
+    groups = s->group;
+    enough = gproji_reserve(&s->own, &groups, &s->group_capacity, (size_t)s->group_count + 1, sizeof *s->group);
+    s->group = (gproji_group *)groups;
+    if (!enough) {
+        gproji_fail_memory(&s->error);
+        return -1;
+    }
+    g = &s->group[s->group_count];
+    memset(g, 0, sizeof *g);
+    {
+        void *rows = NULL;
+        if (!gproji_reserve(&s->own, &rows, &g->row_capacity, 1, sizeof *g->row)) {
+            gproji_fail_memory(&s->error);
+            return -1;
+        }
+        g->row = (gproji_row *)rows;
+        memset(&g->row[0], 0, sizeof g->row[0]);
+    }
+    length = strlen(group->name);
+    if (length >= GPROJI_NAME_SIZE) length = GPROJI_NAME_SIZE - 1;
+    memcpy(g->name, group->name, length);
+    g->kind = group->kind;
+    g->place = group->place;
+    g->global = group->global;
+    g->schedule = group->schedule;
+    g->refresh = group->refresh;
+    g->refresh_user = group->refresh_user;
+    gproji_system_forget(s);
+    return s->group_count++;
+}
+
+GPROJI_INTERNAL bool gproji_system_has_group(const gproj_system *s, int32_t group) {
+    return s && group >= 0 && group < s->group_count;
+}
+
+GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_t group) {
+    gproj_group_info info;
+    const gproji_group *g;
+    double sum = 0;
+    int32_t r;
+    memset(&info, 0, sizeof info);
+    info.name = "";
+    info.worst_row = info.worst_element = -1;
+    if (!gproji_system_has_group(s, group)) return info;
+    g = &s->group[group];
+    info.name = g->name;
+    info.kind = g->kind;
+    info.place = g->place;
+    info.schedule = g->schedule;
+    info.rows = g->row_count;
+    for (r = 0; r < g->row_count; ++r) {
+        double phi = fabs(g->row[r].phi);
+        sum += phi * phi;
+        if (info.worst_row >= 0 && !(phi > info.max)) continue;
+        info.max = phi;
+        info.worst_row = r;
+        info.worst_element = g->row[r].element;
+    }
+    if (g->row_count) info.rms = sqrt(sum / g->row_count);
+    return info;
+}
+
+GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, gproj_schedule schedule) {
+    if (!s) return GPROJ_ERROR_ARGUMENT;
+    if (s->error.code) return s->error.code;
+    if (!gproji_system_has_group(s, group))
+        return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group, "there is no group %d", group);
+    if (!gproji_schedule_is_valid(schedule)) return gproji_fail_schedule(s, s->group[group].name, schedule);
+    s->group[group].schedule = schedule;
+    return GPROJ_OK;
+}
+
+/* Refuses terms that are no terms of this system. */
+GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group *g, int32_t count,
+                                            const gproj_term *terms, double constant) {
+    int32_t t;
+    bool finite = gproji_is_finite(constant);
+    for (t = 0; t < count; ++t) {
+        if (terms[t].i < 0 || terms[t].i >= s->variable_count || terms[t].j < -1 || terms[t].j >= s->variable_count) {
+            gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
+                        "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
+                        terms[t].i, terms[t].j);
+            return false;
+        }
+        finite = finite && gproji_is_finite(terms[t].a);
+    }
+    if (!finite)
+        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
+    return finite;
+}
+
+GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
+                                       double constant, int32_t element) {
+    gproji_group *g;
+    gproji_row *row;
+    void *rows, *all_terms;
+    bool enough;
+    if (!gproji_system_ready(s)) return -1;
+    if (!gproji_system_has_group(s, group) || count < 0) {
+        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                    "a row of %d terms for group %d of %d groups", count, group, s->group_count);
+        return -1;
+    }
+    g = &s->group[group];
+    if (!gproji_terms_are_valid(s, g, count, terms, constant)) return -1;
+    if (g->row_count == INT32_MAX - 1) {
+        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, group, "group '%s' has too many rows", g->name);
+        return -1;
+    }
+    rows = g->row;
+    all_terms = g->term;
+    enough = gproji_reserve(&s->own, &rows, &g->row_capacity, (size_t)g->row_count + 2, sizeof *g->row);
+    g->row = (gproji_row *)rows;
+    enough = enough && gproji_reserve(&s->own, &all_terms, &g->term_capacity,
+                                      (size_t)g->row[g->row_count].term + (size_t)count, sizeof *g->term);
+    g->term = (gproj_term *)all_terms;
+    if (!enough) {
+        gproji_fail_memory(&s->error);
+        return -1;
+    }
+    row = &g->row[g->row_count];
+    row->constant = constant;
+    row->weight = 1;
+    row->element = element;
+    if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
+    memset(row + 1, 0, sizeof row[1]);
+    row[1].term = row->term + count;
+    if (s->compiled) gproji_system_forget(s);
+    return g->row_count++;
+}
+
+GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group, int32_t row) {
+    return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
+}
+
+GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
+                                          double constant) {
+    gproji_group *g;
+    int64_t t;
+    if (!s) return GPROJ_ERROR_ARGUMENT;
+    if (s->error.code) return s->error.code;
+    if (!gproji_system_has_row(s, group, row))
+        return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, row, "there is no row %d in group %d", row,
+                           group);
+    g = &s->group[group];
+    for (t = g->row[row].term; coefficients && t < g->row[row + 1].term; ++t) g->term[t].a = *coefficients++;
+    g->row[row].constant = constant;
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group, int32_t row, double weight) {
+    if (!s) return GPROJ_ERROR_ARGUMENT;
+    if (s->error.code) return s->error.code;
+    if (!gproji_system_has_row(s, group, row) || !gproji_is_finite(weight) || weight < 0)
+        return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
+                           "weight %g for row %d of group %d: there is no such row, or the weight is not >= 0", weight,
+                           row, group);
+    s->group[group].row[row].weight = weight;
+    return GPROJ_OK;
+}
+
+/* phi at x without the compiled state; adds grad phi to `gradient` unless it is NULL. */
+GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t row, const double *x, double *gradient) {
+    double phi = g->row[row].constant;
+    int64_t t;
+    for (t = g->row[row].term; t < g->row[row + 1].term; ++t) {
+        const gproj_term *term = &g->term[t];
+        if (term->j < 0) {
+            phi += term->a * x[term->i];
+            if (gradient) gradient[term->i] += term->a;
+        } else {
+            phi += term->a * x[term->i] * x[term->j];
+            if (!gradient) continue;
+            gradient[term->i] += term->a * x[term->j];
+            gradient[term->j] += term->a * x[term->i];
+        }
+    }
+    return phi;
+}
+
+GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, int32_t row, double *gradient) {
+    if (!gproji_system_has_row(s, group, row)) return 0;
+    if (gradient) memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
+    return gproji_row_value(&s->group[group], row, s->x, gradient);
+}
+
+/* -- compilation -- */
+
+GPROJI_INTERNAL int gproji_compare_int32(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Sorts and removes what is repeated; returns the new count. */
+GPROJI_INTERNAL int32_t gproji_sort_unique(int32_t *item, int32_t count) {
+    int32_t i, j, kept = 0;
+    if (count > 32) {
+        qsort(item, (size_t)count, sizeof *item, gproji_compare_int32);
+    } else {
+        for (i = 1; i < count; ++i) {
+            int32_t moving = item[i];
+            for (j = i; j > 0 && item[j - 1] > moving; --j) item[j] = item[j - 1];
+            item[j] = moving;
+        }
+    }
+    for (i = 0; i < count; ++i)
+        if (kept == 0 || item[kept - 1] != item[i]) item[kept++] = item[i];
+    return kept;
+}
+
+/* The largest number of variables that a row names, repeated ones counted each time. */
+GPROJI_INTERNAL int32_t gproji_longest_row(const gproj_system *s) {
+    int64_t longest = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            int64_t count = 2 * (g->row[r + 1].term - g->row[r].term);
+            if (count > longest) longest = count;
+        }
+    }
+    return longest > INT32_MAX ? INT32_MAX : (int32_t)longest;
+}
+
+/* Step 1: every row's variables, each once, ascending; which rows are wide. `scratch` has room for a row. */
+GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, int32_t *scratch) {
+    int64_t filled = 0, t;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        int32_t count = 0;
+        void *locals = g->local_variable;
+        bool enough;
+        for (t = row->term; t < row[1].term; ++t) {
+            scratch[count++] = g->term[t].i;
+            if (g->term[t].j >= 0) scratch[count++] = g->term[t].j;
+        }
+        count = gproji_sort_unique(scratch, count);
+        enough =
+            gproji_reserve(&s->own, &locals, &g->local_capacity, (size_t)(filled + count), sizeof *g->local_variable);
+        g->local_variable = (int32_t *)locals;
+        if (!enough) return false;
+        if (count) memcpy(g->local_variable + filled, scratch, (size_t)count * sizeof *scratch);
+        row->wide = g->global || count > GPROJI_WIDE_ROW;
+        s->wide_count += row->wide;
+        row->local = filled;
+        filled += count;
+    }
+    g->row[g->row_count].local = filled;
+    return true;
+}
+
+/* Step 2: joins the variables of coupled blocks to nodes. Uses `position` as marks: coupled[first of block]. */
+GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+    int32_t *coupled = s->position;
+    int32_t i, r, v;
+    int64_t l;
+    memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            if (g->row[r].wide) continue;
+            for (l = g->row[r].local + 1; l < g->row[r + 1].local; ++l) {
+                int32_t block = s->block[g->local_variable[l]];
+                if (s->block[g->local_variable[l - 1]] == block) coupled[block] = 1;
+            }
+        }
+    }
+    s->node_count = 0;
+    for (v = 0; v < s->variable_count; ++v) {
+        if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
+        s->node[v] = s->node_count - 1;
+    }
+    s->node_first[s->node_count] = s->variable_count;
+}
+
+/* The nodes of all narrow rows, row after row, and the rows of each node: the incidence that gives the graph. */
+typedef struct gproji_incidence {
+    int64_t row_count, entry_count;
+    int64_t *row_start;  /* row_count + 1 */
+    int32_t *row_node;   /* entry_count: nodes of each row */
+    int64_t *node_start; /* node_count + 1 */
+    int64_t *node_row;   /* entry_count: rows of each node */
+    int32_t node_count;
+} gproji_incidence;
+
+GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
+    gproji_give(heap, in->row_start, (size_t)in->row_count + 1, sizeof *in->row_start);
+    gproji_give(heap, in->row_node, (size_t)in->entry_count, sizeof *in->row_node);
+    gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
+    gproji_give(heap, in->node_row, (size_t)in->entry_count, sizeof *in->node_row);
+}
+
+/* Calls for each narrow row of the system; with `row_node` NULL only counts. */
+GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in) {
+    int32_t i, r;
+    int64_t l;
+    in->row_count = in->entry_count = 0;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            int32_t last = -1;
+            if (g->row[r].wide) continue;
+            if (in->row_start) in->row_start[in->row_count] = in->entry_count;
+            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
+                int32_t node = s->node[g->local_variable[l]];
+                if (node == last) continue;
+                if (in->row_node) in->row_node[in->entry_count] = node;
+                in->entry_count++;
+                last = node;
+            }
+            in->row_count++;
+        }
+    }
+    if (in->row_start) in->row_start[in->row_count] = in->entry_count;
+}
+
+GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
+    int64_t r, e;
+    int32_t v;
+    memset(in, 0, sizeof *in);
+    gproji_incidence_scan(s, in);
+    in->node_count = s->node_count;
+    in->row_start = (int64_t *)gproji_take(&s->own, (size_t)in->row_count + 1, sizeof *in->row_start);
+    in->row_node = (int32_t *)gproji_take(&s->own, (size_t)in->entry_count, sizeof *in->row_node);
+    in->node_start = (int64_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
+    in->node_row = (int64_t *)gproji_take(&s->own, (size_t)in->entry_count, sizeof *in->node_row);
+    if (!in->row_start || !in->row_node || !in->node_start || !in->node_row) return false;
+    gproji_incidence_scan(s, in);
+    /* transpose: count, sum up, fill backwards */
+    for (e = 0; e < in->entry_count; ++e) in->node_start[in->row_node[e]]++;
+    for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
+    for (r = in->row_count - 1; r >= 0; --r)
+        for (e = in->row_start[r]; e < in->row_start[r + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = r;
+    return true;
+}
+
+/* Step 3: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
+GPROJI_INTERNAL gproj_code gproji_compile_graph(gproj_system *s) {
+    gproji_incidence in;
+    int64_t *start = NULL;
+    int32_t *adjacent = NULL, *size = NULL, *mark = NULL;
+    size_t capacity = 0, nodes = (size_t)s->node_count;
+    int64_t filled = 0, e, f;
+    int32_t v;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (!gproji_incidence_take(s, &in)) goto done;
+    start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
+    size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size);
+    mark = (int32_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    if (!start || !size || !mark) goto done;
+    for (v = 0; v < s->node_count; ++v) {
+        mark[v] = -1;
+        size[v] = s->node_first[v + 1] - s->node_first[v];
+    }
+    for (v = 0; v < s->node_count; ++v) {
+        start[v] = filled;
+        mark[v] = v;
+        for (e = in.node_start[v]; e < in.node_start[v + 1]; ++e) {
+            int64_t row = in.node_row[e];
+            void *room = adjacent;
+            bool enough =
+                gproji_reserve(&s->own, &room, &capacity, (size_t)(filled + in.row_start[row + 1] - in.row_start[row]),
+                               sizeof *adjacent);
+            adjacent = (int32_t *)room;
+            if (!enough) goto done;
+            for (f = in.row_start[row]; f < in.row_start[row + 1]; ++f) {
+                int32_t other = in.row_node[f];
+                if (mark[other] == v) continue;
+                mark[other] = v;
+                adjacent[filled++] = other;
+            }
+        }
+    }
+    start[s->node_count] = filled;
+    code = gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, size, start, adjacent, NULL);
+done:
+    gproji_incidence_give(&s->own, &in);
+    gproji_give(&s->own, start, nodes + 1, sizeof *start);
+    gproji_give(&s->own, size, nodes, sizeof *size);
+    gproji_give(&s->own, mark, nodes, sizeof *mark);
+    gproji_give(&s->own, adjacent, capacity, sizeof *adjacent);
+    return code;
+}
+
+/* The place of a variable among the locals of a row that are sorted by position. */
+GPROJI_INTERNAL int32_t gproji_find_local(const gproj_system *s, const int32_t *local, int32_t count,
+                                          int32_t variable) {
+    int32_t low = 0, high = count - 1, position = s->position[variable];
+    while (low < high) {
+        int32_t middle = (low + high) / 2;
+        if (s->position[local[middle]] < position) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* Sorts the locals of every row by the order of elimination and counts slots and pairs. `order`: the variable at each
+   position; `scratch` has room for a row. */
+GPROJI_INTERNAL void gproji_compile_slots(gproj_system *s, gproji_group *g, const int32_t *order, int32_t *scratch) {
+    int64_t slots = 0, pairs = 0, l;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        int32_t *local = g->local_variable + row->local, count = (int32_t)(row[1].local - row->local), last = -1;
+        int64_t own_slots = 0;
+        for (l = 0; l < count; ++l) scratch[l] = s->position[local[l]];
+        gproji_sort_unique(scratch, count);
+        for (l = 0; l < count; ++l) local[l] = order[scratch[l]];
+        row->slot = slots;
+        row->pair = pairs;
+        if (row->wide) continue;
+        for (l = 0; l < count; ++l) {
+            own_slots += s->node[local[l]] != last;
+            last = s->node[local[l]];
+        }
+        slots += own_slots;
+        pairs += own_slots * (own_slots + 1) / 2;
+    }
+    g->row[g->row_count].slot = slots;
+    g->row[g->row_count].pair = pairs;
+}
+
+/* Fills the slots, the places of the blocks and the places of the terms' variables. */
+GPROJI_INTERNAL void gproji_compile_places(gproj_system *s, gproji_group *g) {
+    int32_t r;
+    int64_t l, t, a, b;
+    for (r = 0; r < g->row_count; ++r) {
+        const gproji_row *row = &g->row[r];
+        const int32_t *local = g->local_variable + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local), last = -1;
+        int64_t slot = row->slot, pair = row->pair;
+        for (t = row->term; t < row[1].term; ++t) {
+            g->term_local[t].i = gproji_find_local(s, local, count, g->term[t].i);
+            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_find_local(s, local, count, g->term[t].j);
+        }
+        if (row->wide) continue;
+        for (l = 0; l < count; ++l) {
+            if (s->node[local[l]] != last) g->slot_local[slot++] = row->local + l;
+            last = s->node[local[l]];
+        }
+        for (b = row->slot; b < slot; ++b) {
+            for (a = b; a < slot; ++a) {
+                int32_t stride;
+                bool swapped;
+                gproji_cholesky_locate_block(s->cholesky, s->node[g->local_variable[g->slot_local[a]]],
+                                             s->node[g->local_variable[g->slot_local[b]]], &g->pair_entry[pair++],
+                                             &stride, &swapped);
+            }
+        }
+    }
+    g->slot_local[g->row[g->row_count].slot] = g->row[g->row_count].local;
+}
+
+/* Step 4: every row's places in the factor. */
+GPROJI_INTERNAL bool gproji_compile_group(gproj_system *s, gproji_group *g, const int32_t *order, int32_t *scratch) {
+    const gproji_row *end = &g->row[g->row_count];
+    gproji_compile_slots(s, g, order, scratch);
+    g->term_local_count = (size_t)end->term;
+    g->gradient_count = (size_t)end->local;
+    g->slot_count = (size_t)end->slot + 1;
+    g->pair_count = (size_t)end->pair;
+    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
+    g->local_gradient = (double *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_gradient);
+    g->slot_local = (int64_t *)gproji_take(&s->own, g->slot_count, sizeof *g->slot_local);
+    g->pair_entry = (int64_t *)gproji_take(&s->own, g->pair_count, sizeof *g->pair_entry);
+    if (!g->term_local || !g->local_gradient || !g->slot_local || !g->pair_entry) return false;
+    gproji_compile_places(s, g);
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
+    s->compiled_variables = s->variable_count;
+    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    s->node_stride = (int32_t *)gproji_take(&s->own, n, sizeof *s->node_stride);
+    s->node_entry = (int64_t *)gproji_take(&s->own, n, sizeof *s->node_entry);
+    s->position = (int32_t *)gproji_take(&s->own, n, sizeof *s->position);
+    s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
+    s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
+    s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
+    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
+    s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
+    return s->node && s->node_first && s->node_stride && s->node_entry && s->position && s->gradient && s->step &&
+           s->saved && s->residual && s->correction;
+}
+
+GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
+    size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
+    if (n > 0 && k > SIZE_MAX / 2 / sizeof(double) / n) return false;
+    s->wide_taken = k;
+    s->wide_response = (double *)gproji_take(&s->own, k * n, sizeof *s->wide_response);
+    s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
+    s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
+    return s->wide_response && s->wide_matrix && s->wide_vector;
+}
+
+/* All steps; `scratch` has room for a row. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratch) {
+    const int32_t *order;
+    gproj_code code;
+    int32_t i;
+    s->wide_count = 0;
+    for (i = 0; i < s->group_count; ++i)
+        if (!gproji_compile_locals(s, &s->group[i], scratch)) return GPROJ_ERROR_MEMORY;
+    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s)) return GPROJ_ERROR_MEMORY;
+    gproji_compile_nodes(s);
+    code = gproji_compile_graph(s);
+    if (code) return code;
+    if (!gproji_cholesky_entries(s->cholesky)) return GPROJ_ERROR_MEMORY;
+    order = gproj_cholesky_permutation(s->cholesky);
+    for (i = 0; i < s->variable_count; ++i) s->position[order[i]] = i;
+    for (i = 0; i < s->group_count; ++i)
+        if (!gproji_compile_group(s, &s->group[i], order, scratch)) return GPROJ_ERROR_MEMORY;
+    for (i = 0; i < s->node_count; ++i) {
+        bool swapped;
+        gproji_cholesky_locate_block(s->cholesky, i, i, &s->node_entry[i], &s->node_stride[i], &swapped);
+    }
+    return GPROJ_OK;
+}
+
+/* Makes the rows ready for iterations; nothing to do when they are. */
+GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
+    size_t longest = (size_t)gproji_longest_row(s);
+    int32_t *scratch;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (s->compiled) return GPROJ_OK;
+    scratch = (int32_t *)gproji_take(&s->own, longest, sizeof *scratch);
+    if (scratch) code = gproji_compile_steps(s, scratch);
+    gproji_give(&s->own, scratch, longest, sizeof *scratch);
+    if (code == GPROJ_OK) {
+        s->compiled = true;
+        return code;
+    }
+    gproji_system_forget(s);
+    if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK) {
+        const gproj_error *error = gproj_cholesky_error(s->cholesky);
+        return gproji_fail(&s->error, error->code, error->place, error->index, "%s", error->message);
+    }
+    return gproji_fail_memory(&s->error);
+}
+
+/* -- evaluation -- */
+
+typedef struct gproji_evaluation {
+    gproji_group *group;
+    const double *x;
+    int32_t chunks;
+} gproji_evaluation;
+
+/* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. */
+GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
+    const gproji_evaluation *e = (const gproji_evaluation *)data;
+    gproji_group *g = e->group;
+    int32_t r = gproji_chunk_start(g->row_count, e->chunks, chunk),
+            end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
+    for (; r < end; ++r) {
+        gproji_row *row = &g->row[r];
+        double *gradient = g->local_gradient + row->local, phi = row->constant;
+        int64_t t;
+        memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+        row->phi = 0;
+        if (!(row->weight > 0)) continue;
+        for (t = row->term; t < row[1].term; ++t) {
+            const gproj_term *term = &g->term[t];
+            const gproji_term_local *place = &g->term_local[t];
+            if (term->j < 0) {
+                phi += term->a * e->x[term->i];
+                gradient[place->i] += term->a;
+            } else {
+                phi += term->a * e->x[term->i] * e->x[term->j];
+                gradient[place->i] += term->a * e->x[term->j];
+                gradient[place->j] += term->a * e->x[term->i];
+            }
+        }
+        row->phi = phi;
+    }
+}
+
+/* The values and gradients of all rows at the current x. */
+GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_evaluation e;
+        e.group = &s->group[i];
+        e.x = s->x;
+        e.chunks = e.group->row_count / GPROJI_ROWS_PER_TASK + 1;
+        gproji_for(&s->host.parallel, e.chunks, gproji_evaluate_chunk, &e);
+    }
+}
+
+/* Lets the groups with a weight re-linearise their rows at the current x. */
+GPROJI_INTERNAL void gproji_refresh_groups(gproj_system *s) {
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].refresh && s->group[i].weight > 0) s->group[i].refresh(s->group[i].refresh_user, s, i);
+}
+
+/* The weight of a row in this iteration, squared. */
+GPROJI_INLINE double gproji_weight2(const gproji_group *g, const gproji_row *row) {
+    return g->weight * g->weight * row->weight * row->weight;
+}
+
+/* gradient' v over the locals of a row. */
+GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row *row, const double *v) {
+    double sum = 0;
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) sum += g->local_gradient[l] * v[g->local_variable[l]];
+    return sum;
+}
+
+/* out += scale * gradient */
+GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row, double scale, double *out) {
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) out[g->local_variable[l]] += scale * g->local_gradient[l];
+}
+
+/* gradient = sum w^2 phi grad phi: half the gradient of the merit. */
+GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
+    int32_t i, r;
+    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
+            gproji_row_add(g, &g->row[r], gproji_weight2(g, &g->row[r]) * g->row[r].phi, s->gradient);
+    }
+}
+
+/* -- the matrix -- */
+
+/* Adds the outer product w2 g g' of one narrow row: for each pair of slots the block g_a g_b', lower triangle. */
+GPROJI_INTERNAL void gproji_assemble_row(const gproj_system *s, const gproji_group *g, const gproji_row *row, double w2,
+                                         double *entries) {
+    const int64_t *place = g->pair_entry + row->pair;
+    int64_t a, b, p, q;
+    for (b = row->slot; b < row[1].slot; ++b) {
+        int32_t node = s->node[g->local_variable[g->slot_local[b]]], first_b = s->node_first[node];
+        int64_t stride = s->node_stride[node];
+        for (a = b; a < row[1].slot; ++a) {
+            int32_t first_a = s->node_first[s->node[g->local_variable[g->slot_local[a]]]];
+            double *block = entries + *place++;
+            for (q = g->slot_local[b]; q < g->slot_local[b + 1]; ++q) {
+                double *column = block + (g->local_variable[q] - first_b) * stride;
+                double scale = w2 * g->local_gradient[q];
+                for (p = a == b ? q : g->slot_local[a]; p < g->slot_local[a + 1]; ++p)
+                    column[g->local_variable[p] - first_a] += scale * g->local_gradient[p];
+            }
+        }
+    }
+}
+
+/* The sum of w^2 g g' over narrow rows, and eps^2 on the diagonal, in the factor's storage. */
+GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
+    double *entries = gproji_cholesky_entries(s->cholesky);
+    int32_t i, r, v;
+    gproji_cholesky_clear(s->cholesky);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
+            if (!g->row[r].wide && g->row[r].weight > 0)
+                gproji_assemble_row(s, g, &g->row[r], gproji_weight2(g, &g->row[r]), entries);
+    }
+    for (v = 0; v < s->variable_count; ++v) {
+        int32_t node = s->node[v];
+        entries[s->node_entry[node] + (int64_t)(v - s->node_first[node]) * (s->node_stride[node] + 1)] +=
+            epsilon * epsilon;
+    }
+}
+
+/* out = (sum w^2 g g' + eps^2 I) v over all rows, wide ones too. */
+GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, const double *v, double *out) {
+    int32_t i, r;
+    for (i = 0; i < s->variable_count; ++i) out[i] = epsilon * epsilon * v[i];
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
+            gproji_row_add(g, &g->row[r], gproji_weight2(g, &g->row[r]) * gproji_row_times(g, &g->row[r], v), out);
+    }
+}
+
+/* -- wide rows: the matrix is A + U U', U = (w g_1, w g_2, ...); Sherman, Morrison, Woodbury -- */
+
+/* Calls `visit` for the wide rows with a weight in a fixed order; returns how many there are. */
+typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
+
+GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide visit) {
+    int32_t i, r, index = 0;
+    if (s->wide_count == 0) return 0;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
+            if (g->row[r].wide && g->row[r].weight > 0) visit(s, g, &g->row[r], index++);
+    }
+    return index;
+}
+
+/* Column `index` of A^-1 U, and the entries of I + U' A^-1 U that columns 0..index give. */
+GPROJI_INTERNAL void gproji_wide_response(gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                          int32_t index) {
+    int64_t n = s->variable_count;
+    double *column = s->wide_response + n * index;
+    double weight = sqrt(gproji_weight2(g, row));
+    int32_t k;
+    memset(column, 0, (size_t)n * sizeof *column);
+    gproji_row_add(g, row, weight, column);
+    gproj_cholesky_solve(s->cholesky, 1, column, column);
+    for (k = 0; k <= index; ++k)
+        s->wide_matrix[(int64_t)index * s->wide_count + k] =
+            weight * gproji_row_times(g, row, s->wide_response + n * k) + (k == index);
+}
+
+GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * gproji_row_times(g, row, s->correction);
+}
+
+/* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix. */
+GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride) {
+    int32_t i, j, k;
+    for (i = 0; i < n; ++i) {
+        for (j = 0; j <= i; ++j) {
+            double sum = m[(int64_t)i * stride + j];
+            for (k = 0; k < j; ++k) sum -= m[(int64_t)i * stride + k] * m[(int64_t)j * stride + k];
+            m[(int64_t)i * stride + j] = i == j ? sqrt(gproji_fmax(sum, 1e-300)) : sum / m[(int64_t)j * stride + j];
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t stride, double *b) {
+    int32_t i, k;
+    for (i = 0; i < n; ++i) {
+        for (k = 0; k < i; ++k) b[i] -= m[(int64_t)i * stride + k] * b[k];
+        b[i] /= m[(int64_t)i * stride + i];
+    }
+    for (i = n - 1; i >= 0; --i) {
+        for (k = i + 1; k < n; ++k) b[i] -= m[(int64_t)k * stride + i] * b[k];
+        b[i] /= m[(int64_t)i * stride + i];
+    }
+}
+
+/* correction = (A + U U')^-1 residual with the factor of A. `wide`: columns of U. */
+GPROJI_INTERNAL void gproji_solve_factored(gproj_system *s, int32_t wide) {
+    int64_t n = s->variable_count, i;
+    int32_t k;
+    gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
+    if (wide == 0) return;
+    gproji_for_wide_rows(s, gproji_wide_project);
+    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < wide; ++k)
+        for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
+}
+
+/* ============================================================================================================
+   >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, error,
+   parallel, system.
+
+   Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
+   that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
+   grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
+       M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx):
+   - while wishes guide, a step may raise the merit (it trades wishes for constraints), but not tenfold: then the t of
+     smallest merit is taken;
+   - without wishes a step that raises the merit is found again with a larger eps, as in the method of Levenberg (1944)
+     and Marquardt (1963); and where the merit goes on falling beyond t = 1, as it does near singular points of the
+     constraints, the step is lengthened. */
+
+static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
+enum {
+    GPROJI_ATTEMPTS = 8,    /* factorisations of one iteration */
+    GPROJI_PATIENCE = 5,    /* iterations without progress before the loop stops */
+    GPROJI_REFINEMENTS = 2, /* rounds for systems with wide rows */
+    GPROJI_LINE_SAMPLES = 40
+};
+
+/* Where the rows stand: sums over all groups with their present weights. */
+typedef struct gproji_standing {
+    double merit;    /* sum w^2 phi^2 */
+    double energy;   /* the wishes' part of it */
+    double residual; /* largest |phi| of constraints with weight > 0 */
+    int32_t group;   /* where that is; -1 without constraints */
+    int32_t row;
+} gproji_standing;
+
+/* What a solve carries along. */
+typedef struct gproji_loop {
+    gproj_system *system;
+    gproj_solve_options options;
+    double tolerance;
+    double started, lap; /* clock readings */
+    gproj_result result;
+    gproj_iteration iteration;
+    gproji_standing standing;
+} gproji_loop;
+
+/* The terms of a row, to change their coefficients in place. */
+GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
+    gproji_group *g = &s->group[group];
+    *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
+    return g->term + g->row[row].term;
+}
+
+GPROJI_INTERNAL const char *gproji_place_word(gproj_place place) {
+    switch (place) {
+    case GPROJ_PLACE_VERTEX: return "vertex";
+    case GPROJ_PLACE_EDGE: return "edge";
+    case GPROJ_PLACE_FACE: return "face";
+    case GPROJ_PLACE_VARIABLE: return "variable";
+    default: return "element";
+    }
+}
+
+GPROJI_INTERNAL const char *gproji_outcome_string(gproj_outcome outcome) {
+    static const char *const sentences[] = {
+#define GPROJ_X(name, sentence) sentence,
+        GPROJ_OUTCOMES(GPROJ_X)
+#undef GPROJ_X
+    };
+    return sentences[outcome];
+}
+
+GPROJI_INTERNAL double gproji_now(const gproj_system *s) {
+    return s->host.clock.now ? s->host.clock.now(s->host.clock.user) : 0;
+}
+
+/* Books the time since the last call to a phase. */
+GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
+    double now = gproji_now(loop->system);
+    loop->iteration.seconds[phase] += now - loop->lap;
+    loop->result.seconds[phase] += now - loop->lap;
+    loop->lap = now;
+}
+
+/* The weight of a group in iteration n. */
+GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
+    int32_t last = g->schedule.last;
+    if (last == 0 && g->kind == GPROJ_WISH) last = s->default_last;
+    if (last > 0 && n > last) return 0;
+    return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
+}
+
+/* Sets the weights of iteration n; true when a group came back that had none before. */
+GPROJI_INTERNAL bool gproji_set_weights(gproj_system *s, int32_t n) {
+    bool back = false;
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        double weight = gproji_weight_in(s, &s->group[i], n);
+        back = back || (s->group[i].weight == 0 && weight > 0);
+        s->group[i].weight = weight;
+    }
+    return back;
+}
+
+GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0 && s->group[i].row_count > 0) return true;
+    return false;
+}
+
+/* Does the group count in merit and residual? */
+GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && !g->guard; }
+
+GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
+    gproji_standing standing;
+    int32_t i, r;
+    memset(&standing, 0, sizeof standing);
+    standing.group = standing.row = -1;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        double sum = 0;
+        if (!gproji_group_counts(g)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            double phi = fabs(g->row[r].phi);
+            sum += gproji_weight2(g, &g->row[r]) * phi * phi;
+            if (g->kind != GPROJ_CONSTRAINT || (standing.group >= 0 && phi <= standing.residual)) continue;
+            standing.residual = phi;
+            standing.group = i;
+            standing.row = r;
+        }
+        standing.merit += sum;
+        if (g->kind == GPROJ_WISH) standing.energy += sum;
+    }
+    return standing;
+}
+
+/* Rows, gradients and standing at the current x. */
+GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
+    gproji_refresh_groups(loop->system);
+    gproji_evaluate(loop->system);
+    loop->standing = gproji_take_standing(loop->system);
+    gproji_lap(loop, GPROJ_PHASE_REFRESH);
+}
+
+/* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
+GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
+    gproj_system *s = loop->system;
+    int32_t wide, v, round;
+    gproj_factor_outcome outcome;
+    gproji_assemble(s, epsilon);
+    gproji_merit_gradient(s);
+    gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
+    outcome = gproji_cholesky_factor_entries(s->cholesky);
+    loop->iteration.attempts++;
+    gproji_lap(loop, GPROJ_PHASE_FACTOR);
+    if (outcome != GPROJ_FACTORED) return false;
+    wide = gproji_for_wide_rows(s, gproji_wide_response);
+    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
+    for (v = 0; v < s->variable_count; ++v) s->residual[v] = -s->gradient[v];
+    gproji_solve_factored(s, wide);
+    memcpy(s->step, s->correction, (size_t)s->variable_count * sizeof *s->step);
+    for (round = 0; wide > 0 && round < GPROJI_REFINEMENTS; ++round) {
+        gproji_matrix_times(s, epsilon, s->step, s->residual);
+        for (v = 0; v < s->variable_count; ++v) s->residual[v] = -s->gradient[v] - s->residual[v];
+        gproji_solve_factored(s, wide);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
+    }
+    gproji_lap(loop, GPROJ_PHASE_SOLVE);
+    return true;
+}
+
+/* x = saved + t dx; returns the largest |t dx|, infinite where it is not a number. */
+GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
+    double largest = 0;
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) {
+        double d = fabs(t * s->step[v]);
+        if (!(d <= DBL_MAX)) return HUGE_VAL;
+        if (d > largest) largest = d;
+        s->x[v] = s->saved[v] + t * s->step[v];
+    }
+    return largest;
+}
+
+GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
+    memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
+}
+
+/* The coefficients of M(t) along dx, for x = saved + dx and rows linearised at `saved`:
+   phi(saved + t dx) = phi + t h + t^2 q with h = grad phi'dx, q = phi(saved + dx) - phi - h. */
+GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, double c[5]) {
+    int32_t i, r;
+    memset(c, 0, 5 * sizeof *c);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_group_counts(g) && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            double w2 = gproji_weight2(g, row), h, q;
+            if (!(w2 > 0)) continue;
+            h = gproji_row_times(g, row, s->step);
+            q = gproji_row_value(g, r, s->x, NULL) - row->phi - h;
+            c[0] += w2 * row->phi * row->phi;
+            c[1] += w2 * 2 * row->phi * h;
+            c[2] += w2 * (h * h + 2 * row->phi * q);
+            c[3] += w2 * 2 * h * q;
+            c[4] += w2 * q * q;
+        }
+    }
+}
+
+GPROJI_INTERNAL double gproji_quartic(const double c[5], double t) {
+    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * c[4])));
+}
+
+/* The t in [low, high] with the smallest value: the best of evenly spaced samples, then golden section around it. */
+GPROJI_INTERNAL double gproji_minimise_quartic(const double c[5], double low, double high) {
+    double step = (high - low) / (double)GPROJI_LINE_SAMPLES, best = low;
+    int32_t i;
+    for (i = 1; i <= GPROJI_LINE_SAMPLES; ++i)
+        if (gproji_quartic(c, low + i * step) < gproji_quartic(c, best)) best = low + i * step;
+    low = gproji_fmax(low, best - step);
+    high = gproji_fmin(high, best + step);
+    for (i = 0; i < 40; ++i) {
+        double third = 0.38196601125010515 * (high - low);
+        if (gproji_quartic(c, low + third) < gproji_quartic(c, high - third)) {
+            high = high - third;
+        } else {
+            low = low + third;
+        }
+    }
+    return (low + high) / 2;
+}
+
+/* The part of the step to take, from the merit along it; 0: none, the step is no good. */
+GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const double c[5]) {
+    double full = gproji_quartic(c, 1), t;
+    if (!(full <= DBL_MAX)) return 0;
+    if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
+    if (gproji_wishes_are_on(loop->system)) return full <= 10 * c[0] ? 1 : gproji_minimise_quartic(c, 0.05, 1);
+    if (full > c[0]) return 0;
+    t = gproji_minimise_quartic(c, 0.1, 2);
+    return t >= 1.3 ? t : 1;
+}
+
+/* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
+GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
+    gproj_system *s = loop->system;
+    double c[5];
+    loop->iteration.epsilon = epsilon;
+    if (!gproji_find_step(loop, epsilon)) return false;
+    loop->iteration.step = gproji_take_step(s, 1);
+    if (loop->iteration.step <= DBL_MAX && s->check_step && s->check_step(s->check_user, s)) {
+        gproji_step_back(s);
+        gproji_evaluate(s);
+        if (!gproji_find_step(loop, epsilon)) return false;
+        loop->iteration.step = gproji_take_step(s, 1);
+    }
+    if (!(loop->iteration.step <= DBL_MAX)) {
+        gproji_step_back(s);
+        return false;
+    }
+    gproji_merit_along(s, c);
+    loop->iteration.length = gproji_step_length(loop, c);
+    loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+    gproji_lap(loop, GPROJ_PHASE_REFRESH);
+    return loop->iteration.length > 0;
+}
+
+/* One iteration from a linearised x to the next. False when no attempt was good; x is then as before. */
+GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double epsilon = loop->options.epsilon;
+    if (!(epsilon > 0))
+        epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_epsilon_min), gproji_epsilon_max);
+    memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    loop->iteration.attempts = 0;
+    for (; loop->iteration.attempts < GPROJI_ATTEMPTS; epsilon *= 10) {
+        if (!gproji_try_step(loop, epsilon)) continue;
+        gproji_linearise(loop);
+        return true;
+    }
+    return false;
+}
+
+GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) {
+    loop->iteration.number = number;
+    loop->iteration.residual = loop->standing.residual;
+    loop->iteration.merit = loop->standing.merit;
+    loop->iteration.energy = loop->standing.energy;
+    loop->result.iterations = number;
+    loop->result.damped += loop->iteration.attempts > 1 || loop->iteration.length < 1;
+    loop->result.step = loop->iteration.step;
+}
+
+/* Do the constraints hold, with nothing left to be wished for? */
+GPROJI_INTERNAL bool gproji_has_converged(const gproji_loop *loop) {
+    if (!(loop->standing.residual <= loop->tolerance)) return false;
+    if (!gproji_wishes_are_on(loop->system)) return true;
+    return loop->result.iterations > 0 && loop->result.step <= loop->tolerance;
+}
+
+GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
+    return loop->options.time_budget > 0 && gproji_now(loop->system) - loop->started >= loop->options.time_budget;
+}
+
+/* The iterations; returns how they ended. */
+GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterations) {
+    gproj_system *s = loop->system;
+    double best = HUGE_VAL;
+    int32_t n, waited = 0;
+    s->late = 0;
+    gproji_set_weights(s, 1);
+    gproji_linearise(loop);
+    for (n = 1; n <= iterations; ++n) {
+        memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+        if (gproji_set_weights(s, n)) gproji_linearise(loop);
+        s->late = gproji_wishes_are_on(s) && n <= (iterations + 1) / 2 ? 0 : s->late + 1;
+        loop->standing = gproji_take_standing(s);
+        if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
+        if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
+        if (!gproji_iterate(loop)) return loop->standing.residual <= loop->tolerance ? GPROJ_CONVERGED : GPROJ_STALLED;
+        gproji_report_iteration(loop, n);
+        if (loop->options.on_iteration && !loop->options.on_iteration(loop->options.user, s, &loop->iteration))
+            return GPROJ_CANCELLED;
+        waited = loop->standing.residual < 0.9 * best || gproji_wishes_are_on(s) ? 0 : waited + 1;
+        best = gproji_fmin(best, loop->standing.residual);
+        if (waited >= GPROJI_PATIENCE && loop->standing.residual > loop->tolerance) return GPROJ_STALLED;
+    }
+    return loop->standing.residual <= loop->tolerance ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
+}
+
+/* The other constraint group with the largest residual above the tolerance; -1: none. */
+GPROJI_INTERNAL int32_t gproji_second_group(const gproji_loop *loop) {
+    const gproj_system *s = loop->system;
+    double largest = loop->tolerance;
+    int32_t g, second = -1;
+    for (g = 0; g < s->group_count; ++g) {
+        double max = gproj_system_group_info(s, g).max;
+        if (g == loop->standing.group || s->group[g].kind != GPROJ_CONSTRAINT || !(s->group[g].weight > 0) ||
+            max <= largest)
+            continue;
+        largest = max;
+        second = g;
+    }
+    return second;
+}
+
+/* The verdict in a sentence: what happened, where it is worst, what fights, what to do. */
+GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
+    gproj_result *r = &loop->result;
+    const gproj_system *s = loop->system;
+    const gproji_standing *standing = &loop->standing;
+    const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
+    int32_t second = gproji_second_group(loop);
+    char more[GPROJ_MESSAGE_SIZE / 2];
+    more[0] = 0;
+    r->residual = standing->residual;
+    r->worst_group = standing->group;
+    r->worst_element = g ? g->row[standing->row].element : -1;
+    if (!g) {
+        gproji_format(r->message, sizeof r->message, "there are no constraints; %d steps towards the wishes",
+                      r->iterations);
+        return;
+    }
+    if (r->outcome == GPROJ_CONVERGED) {
+        gproji_format(r->message, sizeof r->message, "%s: %d iterations, largest residual %g (%s of %s %d)",
+                      gproji_outcome_string(r->outcome), r->iterations, r->residual, g->name,
+                      gproji_place_word(g->place), r->worst_element);
+        return;
+    }
+    if (r->outcome == GPROJ_STALLED && second >= 0)
+        gproji_format(more, sizeof more, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+    if (r->outcome == GPROJ_ITERATION_LIMIT)
+        gproji_format(more, sizeof more, "; allow more iterations, or ask for less");
+    gproji_format(r->message, sizeof r->message, "%s: after %d iterations %s of %s %d is off by %g%s",
+                  gproji_outcome_string(r->outcome), r->iterations, g->name, gproji_place_word(g->place),
+                  r->worst_element, r->residual, more);
+}
+
+/* A result that carries an error's sentence. */
+GPROJI_INTERNAL gproj_result gproji_failed_result(const gproj_error *error) {
+    gproj_result result;
+    memset(&result, 0, sizeof result);
+    result.outcome = GPROJ_FAILED;
+    result.worst_group = result.worst_element = -1;
+    gproji_format(result.message, sizeof result.message, "%s", error->message);
+    return result;
+}
+
+/* Refuses options that mean nothing. */
+GPROJI_INTERNAL bool gproji_options_are_valid(gproj_system *s, int32_t iterations, const gproj_solve_options *o) {
+    bool numbers = gproji_is_finite(o->tolerance) && gproji_is_finite(o->epsilon) && gproji_is_finite(o->time_budget);
+    if (iterations >= 0 && numbers && o->tolerance >= 0 && o->epsilon >= 0 && o->time_budget >= 0 &&
+        (o->time_budget == 0 || s->host.clock.now))
+        return true;
+    gproji_fail(
+        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time budget needs "
+        "a clock in the host",
+        iterations, o->tolerance, o->epsilon, o->time_budget);
+    return false;
+}
+
+GPROJI_INTERNAL double gproji_default_tolerance(const gproj_system *s) {
+    double largest = 0;
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
+    return gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+}
+
+GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
+    gproji_loop loop;
+    if (!gproji_system_ready(s)) return gproji_failed_result(gproj_system_error(s));
+    memset(&loop, 0, sizeof loop);
+    loop.system = s;
+    if (options) loop.options = *options;
+    if (!gproji_options_are_valid(s, iterations, &loop.options)) return gproji_failed_result(&s->error);
+    loop.tolerance = loop.options.tolerance > 0 ? loop.options.tolerance : gproji_default_tolerance(s);
+    loop.started = loop.lap = gproji_now(s);
+    if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
+    gproji_lap(&loop, GPROJ_PHASE_ANALYSE);
+    loop.result.outcome = gproji_run_loop(&loop, iterations);
+    if (s->error.code != GPROJ_OK) return gproji_failed_result(&s->error);
+    gproji_write_verdict(&loop);
+    return loop.result;
+}
+
+GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
+    double worst = 0, *gradient;
+    int32_t i, r;
+    int64_t t;
+    size_t n;
+    if (!gproji_system_ready(s)) return HUGE_VAL;
+    n = (size_t)s->variable_count;
+    gradient = (double *)gproji_take(&s->own, n, sizeof *gradient);
+    if (!gradient) {
+        gproji_fail_memory(&s->error);
+        return HUGE_VAL;
+    }
+    gproji_set_weights(s, 1);
+    gproji_refresh_groups(s);
+    memset(gradient, 0, n * sizeof *gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            double size = 1;
+            gproji_row_value(g, r, s->x, gradient);
+            for (t = 2 * g->row[r].term; t < 2 * g->row[r + 1].term; ++t) {
+                int32_t v = t % 2 ? g->term[t / 2].j : g->term[t / 2].i;
+                if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
+            }
+            for (t = 2 * g->row[r].term; t < 2 * g->row[r + 1].term; ++t) {
+                int32_t v = t % 2 ? g->term[t / 2].j : g->term[t / 2].i;
+                double x, h, up, down;
+                if (v < 0) continue;
+                x = s->x[v];
+                h = 1e-5 * gproji_fmax(1, fabs(x));
+                s->x[v] = x + h;
+                up = gproji_row_value(g, r, s->x, NULL);
+                s->x[v] = x - h;
+                down = gproji_row_value(g, r, s->x, NULL);
+                s->x[v] = x;
+                worst = gproji_fmax(worst, fabs((up - down) / (2 * h) - gradient[v]) / size);
+            }
+            for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+                gradient[g->term[t].i] = 0;
+                if (g->term[t].j >= 0) gradient[g->term[t].j] = 0;
+            }
+        }
+    }
+    gproji_give(&s->own, gradient, n, sizeof *gradient);
+    return worst;
+}
+/* ============================================================================================================
+   >>mesh   Half-edge meshes of any polygons. Uses platform, memory, error, vector.
+
+   The half-edge structure is Mantyla's (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are
+   twins, edges are numbered as they first appear along the faces. Equal edges are found by counting sort on their
+   smaller vertex and a table of the larger one: linear time and no hashing, so the result depends on the input
+   alone. A mesh is built in steps, each a function below: check, match, orient, link, fans, loops.
+   Invariants of a finished mesh: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`;
+   origin[next[h]] = origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it
+   is vertex_halfedge; the faces of a vertex form one fan. */
+
+/* Coordinates beyond this are refused, so that squared areas do not overflow. */
+#define GPROJI_COORDINATE_MAX 1e70
+/* 3 * vertices and 2 * (corners of all faces) must be int32_t. */
+enum {
+    GPROJI_VERTICES_MAX = INT32_MAX / 3 - 1,
+    GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
+};
+
+/* The owner of a gproj_mesh. The arrays are those that `mesh` shows read-only; their lengths follow from its counts. */
+typedef struct gproji_mesh_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_mesh mesh;
+    int32_t *vertex_halfedge;
+    int32_t *face_halfedge;
+    int32_t *face_degree;
+    int32_t *loop_halfedge;
+    int32_t *halfedge; /* 6 * halfedge_count: twin, next, prev, origin, face, edge one after the other */
+    int32_t *polyline_start;
+    int32_t *polyline_vertex;
+} gproji_mesh_object;
+
+GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
+    return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
+}
+
+/* Polygons as they come: the builder's input. */
+typedef struct gproji_soup {
+    int32_t vertex_count;
+    int32_t face_count;
+    int32_t corner_count;
+    const double *position;
+    const int32_t *face_degree;
+    const int32_t *face_vertex;
+} gproji_soup;
+
+/* The work arrays of the builder, all given back before it returns. */
+typedef struct gproji_mesh_work {
+    int32_t *corner_vertex; /* corner_count: face_vertex, with faces turned round where they were against the others */
+    int32_t *corner_face;   /* corner_count: the face of each corner */
+    int32_t *corner_next;   /* corner_count: the next corner of the same face */
+    int32_t *corner_edge;   /* corner_count: the edge from this corner's vertex to the next one's */
+    int32_t *corner_order;  /* corner_count: the corners sorted by the smaller vertex of their edge; later a queue */
+    int32_t *edge_corner;   /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
+    int32_t *face_start;    /* face_count + 1: the first corner of each face */
+    int32_t *face_state;    /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
+    int32_t *mark;          /* vertex_count: the last element that touched a vertex, -1 at the start of each step */
+    int32_t *slot; /* vertex_count + 1: counters and starts of the counting sort, then edges by larger vertex */
+} gproji_mesh_work;
+
+GPROJI_INTERNAL void gproji_mesh_work_give(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
+    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
+           vertices = (size_t)soup->vertex_count;
+    gproji_give(heap, work->corner_vertex, corners, sizeof(int32_t));
+    gproji_give(heap, work->corner_face, corners, sizeof(int32_t));
+    gproji_give(heap, work->corner_next, corners, sizeof(int32_t));
+    gproji_give(heap, work->corner_edge, corners, sizeof(int32_t));
+    gproji_give(heap, work->corner_order, corners, sizeof(int32_t));
+    gproji_give(heap, work->edge_corner, corners, 2 * sizeof(int32_t));
+    gproji_give(heap, work->face_start, faces + 1, sizeof(int32_t));
+    gproji_give(heap, work->face_state, faces, sizeof(int32_t));
+    gproji_give(heap, work->mark, vertices, sizeof(int32_t));
+    gproji_give(heap, work->slot, vertices + 1, sizeof(int32_t));
+    memset(work, 0, sizeof *work);
+}
+
+/* False when there is no memory; what was taken is given back by gproji_mesh_work_give. */
+GPROJI_INTERNAL bool gproji_mesh_work_take(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
+    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
+           vertices = (size_t)soup->vertex_count;
+    memset(work, 0, sizeof *work);
+    return (work->corner_vertex = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
+           (work->corner_face = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
+           (work->corner_next = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
+           (work->corner_edge = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
+           (work->corner_order = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
+           (work->edge_corner = (int32_t *)gproji_take(heap, corners, 2 * sizeof(int32_t))) != NULL &&
+           (work->face_start = (int32_t *)gproji_take(heap, faces + 1, sizeof(int32_t))) != NULL &&
+           (work->face_state = (int32_t *)gproji_take(heap, faces, sizeof(int32_t))) != NULL &&
+           (work->mark = (int32_t *)gproji_take(heap, vertices, sizeof(int32_t))) != NULL &&
+           (work->slot = (int32_t *)gproji_take(heap, vertices + 1, sizeof(int32_t))) != NULL;
+}
+
+GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
+    int32_t i;
+    for (i = 0; i < count; ++i) array[i] = value;
+}
+
+/* -- the checks -- */
+
+GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *what,
+                                                  gproj_error *error) {
+    int32_t i, k;
+    for (i = 0; i < count; ++i) {
+        for (k = 0; k < 3; ++k) {
+            double x = position[3 * i + k];
+            const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
+            if (!gproji_is_finite(x)) {
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                                   "coordinate %s of %s %d is %g; give it a finite value", axis, what, i, x);
+            }
+            if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX) {
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                                   "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, what,
+                                   i, x);
+            }
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* Degrees and their sum, before any corner is read. Sets corner_count. */
+GPROJI_INTERNAL gproj_code gproji_check_degrees(gproji_soup *soup, gproj_error *error) {
+    int64_t sum = 0;
+    int32_t f;
+    for (f = 0; f < soup->face_count; ++f) {
+        if (soup->face_degree[f] < 3) {
+            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
+        }
+        sum += soup->face_degree[f];
+        if (sum > GPROJI_CORNERS_MAX) {
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
+                               "the faces up to face %d have more than %d corners; split the mesh", f,
+                               (int32_t)GPROJI_CORNERS_MAX);
+        }
+    }
+    soup->corner_count = (int32_t)sum;
+    return GPROJ_OK;
+}
+
+/* Indices in range, no vertex twice in a face; fills the corner arrays. */
+GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gproji_mesh_work *work,
+                                                    gproj_error *error) {
+    int32_t f, k, c = 0;
+    gproji_fill(work->mark, soup->vertex_count, -1);
+    for (f = 0; f < soup->face_count; ++f) {
+        work->face_start[f] = c;
+        for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
+            int32_t v = soup->face_vertex[c];
+            if (v < 0 || v >= soup->vertex_count) {
+                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, f,
+                                   "face %d names vertex %d, but the vertices are 0 to %d", f, v,
+                                   soup->vertex_count - 1);
+            }
+            if (work->mark[v] == f) {
+                return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                                   "face %d names vertex %d twice; name each corner once, or split the face there", f,
+                                   v);
+            }
+            work->mark[v] = f;
+            work->corner_vertex[c] = v;
+            work->corner_face[c] = f;
+            work->corner_next[c] = c + 1;
+        }
+        work->corner_next[c - 1] = work->face_start[f];
+    }
+    work->face_start[soup->face_count] = c;
+    return GPROJ_OK;
+}
+
+/* -- edges -- */
+
+GPROJI_INLINE int32_t gproji_corner_head(const gproji_mesh_work *work, int32_t c) {
+    return work->corner_vertex[work->corner_next[c]];
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_edge(const gproji_soup *soup, const gproji_mesh_work *work, int32_t corner,
+                                            gproj_error *error) {
+    int32_t a = work->corner_vertex[corner], b = gproji_corner_head(work, corner), faces[3] = {0, 0, 0}, count = 0, c;
+    for (c = 0; c < soup->corner_count; ++c) {
+        int32_t u = work->corner_vertex[c], v = gproji_corner_head(work, c);
+        if ((u != a || v != b) && (u != b || v != a)) continue;
+        if (count < 3) faces[count] = work->corner_face[c];
+        ++count;
+    }
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
+        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
+        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
+        count > 3 ? ", ..." : "");
+}
+
+/* Sorts the corners by the smaller vertex of their edge, keeping their order within a vertex (counting sort). On return
+   slot[v]..slot[v + 1] - 1 are the places of v in corner_order. */
+GPROJI_INTERNAL void gproji_mesh_sort_corners(const gproji_soup *soup, gproji_mesh_work *work) {
+    int32_t c, v, sum = 0, count;
+    memset(work->slot, 0, ((size_t)soup->vertex_count + 1) * sizeof(int32_t));
+    for (c = 0; c < soup->corner_count; ++c) {
+        work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
+    }
+    for (v = 0; v <= soup->vertex_count; ++v) {
+        count = work->slot[v];
+        work->slot[v] = sum;
+        sum += count;
+    }
+    for (c = 0; c < soup->corner_count; ++c) {
+        work->corner_order[work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
+    }
+}
+
+/* Numbers the edges in the order in which they first appear along the faces: fills corner_edge and edge_corner. */
+GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mesh_work *work, int32_t *edge_count,
+                                             gproj_error *error) {
+    int32_t i, c, edges = 0, third = -1;
+    gproji_mesh_sort_corners(soup, work);
+    /* 1. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
+       the corners of the smaller vertex a are passed, which mark[b] = a says. */
+    gproji_fill(work->mark, soup->vertex_count, -1);
+    for (i = 0; i < soup->corner_count; ++i) {
+        int32_t u, v, a, b;
+        c = work->corner_order[i];
+        u = work->corner_vertex[c], v = gproji_corner_head(work, c);
+        a = gproji_min(u, v), b = gproji_max(u, v);
+        if (work->mark[b] != a) {
+            work->mark[b] = a;
+            work->slot[b] = c;
+        }
+        work->corner_edge[c] = work->slot[b];
+    }
+    /* 2. Number those in order, and give the others their edge. */
+    for (c = 0; c < soup->corner_count; ++c) {
+        int32_t first = work->corner_edge[c], e;
+        if (first == c) {
+            work->corner_edge[c] = edges;
+            work->edge_corner[2 * edges] = c;
+            work->edge_corner[2 * edges + 1] = -1;
+            ++edges;
+            continue;
+        }
+        e = work->corner_edge[first];
+        work->corner_edge[c] = e;
+        if (work->edge_corner[2 * e + 1] < 0)
+            work->edge_corner[2 * e + 1] = c;
+        else if (third < 0)
+            third = c;
+    }
+    *edge_count = edges;
+    return third < 0 ? GPROJ_OK : gproji_fail_edge(soup, work, third, error);
+}
+
+/* -- orientation -- */
+
+/* Reaches all faces of the first face's component and decides which must be turned round. `queue` has room for all
+   faces. */
+GPROJI_INTERNAL gproj_code gproji_mesh_orient_component(gproji_mesh_work *work, int32_t first, int32_t *queue,
+                                                        gproj_error *error) {
+    int32_t head = 0, tail = 0, c;
+    queue[tail++] = first;
+    work->face_state[first] = 0;
+    while (head < tail) {
+        int32_t f = queue[head++];
+        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
+            int32_t e = work->corner_edge[c], other = work->edge_corner[2 * e], g, state;
+            if (other == c) other = work->edge_corner[2 * e + 1];
+            if (other < 0) continue;
+            g = work->corner_face[other];
+            /* neighbours agree when they run along their edge in opposite directions */
+            state = work->face_state[f] ^ (work->corner_vertex[other] == work->corner_vertex[c] ? 1 : 0);
+            if (work->face_state[g] < 0) {
+                work->face_state[g] = state;
+                queue[tail++] = g;
+            } else if (work->face_state[g] != state) {
+                return gproji_fail(error, GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, g,
+                                   "faces %d and %d cannot agree on an outer side at their edge %d-%d, as on a Moebius "
+                                   "strip; cut the mesh open there",
+                                   gproji_min(f, g), gproji_max(f, g), work->corner_vertex[c],
+                                   gproji_corner_head(work, c));
+            }
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* Turns a face's corners round; the first one stays. */
+GPROJI_INTERNAL void gproji_mesh_turn_face(gproji_mesh_work *work, int32_t f) {
+    int32_t i = work->face_start[f] + 1, j = work->face_start[f + 1] - 1, v;
+    for (; i < j; ++i, --j) {
+        v = work->corner_vertex[i];
+        work->corner_vertex[i] = work->corner_vertex[j];
+        work->corner_vertex[j] = v;
+    }
+}
+
+/* Makes all faces of each component agree with its first one. Turned faces change the order of the corners, so the
+   edges must then be matched again. */
+GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_mesh_work *work, gproj_mesh *mesh,
+                                              gproj_error *error) {
+    int32_t f;
+    gproj_code code;
+    gproji_fill(work->face_state, soup->face_count, -1);
+    for (f = 0; f < soup->face_count; ++f) {
+        if (work->face_state[f] >= 0) continue;
+        code = gproji_mesh_orient_component(work, f, work->corner_order, error);
+        if (code) return code;
+        mesh->component_count++;
+    }
+    for (f = 0; f < soup->face_count; ++f) {
+        if (!work->face_state[f]) continue;
+        gproji_mesh_turn_face(work, f);
+        mesh->reoriented_count++;
+    }
+    return GPROJ_OK;
+}
+
+/* -- half-edges -- */
+
+/* Takes the arrays that last; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
+    gproj_mesh *mesh = &object->mesh;
+    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
+    mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
+    object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
+    object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    object->halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
+    return mesh->position && object->vertex_halfedge && object->face_halfedge && object->face_degree &&
+           object->halfedge;
+}
+
+/* Shows the owner's arrays in the public struct. */
+GPROJI_INTERNAL void gproji_mesh_publish(gproji_mesh_object *object) {
+    gproj_mesh *mesh = &object->mesh;
+    size_t n = (size_t)mesh->halfedge_count;
+    mesh->vertex_halfedge = object->vertex_halfedge;
+    mesh->face_halfedge = object->face_halfedge;
+    mesh->face_degree = object->face_degree;
+    mesh->loop_halfedge = object->loop_halfedge;
+    mesh->twin = object->halfedge;
+    mesh->next = object->halfedge + n;
+    mesh->prev = object->halfedge + 2 * n;
+    mesh->origin = object->halfedge + 3 * n;
+    mesh->face = object->halfedge + 4 * n;
+    mesh->edge = object->halfedge + 5 * n;
+    mesh->polyline_start = object->polyline_start;
+    mesh->polyline_vertex = object->polyline_vertex;
+}
+
+/* The half-edge of corner c: the even one where the edge appeared first. */
+GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32_t c) {
+    int32_t e = work->corner_edge[c];
+    return work->edge_corner[2 * e] == c ? 2 * e : 2 * e + 1;
+}
+
+/* Fills twin, origin, face, edge, and next and prev within faces. Boundary half-edges get next = prev = -1. */
+GPROJI_INTERNAL void gproji_mesh_link_faces(gproji_mesh_object *object, const gproji_mesh_work *work) {
+    const gproj_mesh *mesh = &object->mesh;
+    int32_t n = mesh->halfedge_count, h, f, c;
+    int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
+            *edge = face + n;
+    for (h = 0; h < n; ++h) {
+        twin[h] = h ^ 1;
+        edge[h] = h / 2;
+        next[h] = prev[h] = face[h] = -1;
+    }
+    for (f = 0; f < mesh->face_count; ++f) {
+        object->face_degree[f] = work->face_start[f + 1] - work->face_start[f];
+        object->face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
+        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
+            int32_t following = gproji_corner_halfedge(work, work->corner_next[c]);
+            h = gproji_corner_halfedge(work, c);
+            next[h] = following;
+            prev[following] = h;
+            face[h] = f;
+            origin[h] = work->corner_vertex[c];
+            origin[h ^ 1] = gproji_corner_head(work, c); /* written again by the face on the other side, if any */
+        }
+    }
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
+        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
+        "of its own",
+        vertex);
+}
+
+/* Chooses vertex_halfedge: the boundary half-edge, else the first outgoing one. Links the boundary. A second outgoing
+   boundary half-edge is a second fan. */
+GPROJI_INTERNAL gproj_code gproji_mesh_link_boundary(gproji_mesh_object *object, gproj_error *error) {
+    const gproj_mesh *mesh = &object->mesh;
+    int32_t n = mesh->halfedge_count, h;
+    int32_t *next = object->halfedge + n, *prev = next + n, *out = object->vertex_halfedge;
+    const int32_t *origin = prev + n, *face = origin + n;
+    gproji_fill(out, mesh->vertex_count, -1);
+    for (h = 0; h < n; ++h) {
+        int32_t v = origin[h];
+        if (out[v] < 0) {
+            out[v] = h;
+        } else if (face[h] < 0) {
+            if (face[out[v]] < 0) return gproji_fail_fans(v, error);
+            out[v] = h;
+        }
+    }
+    for (h = 0; h < n; ++h) {
+        if (face[h] >= 0) continue;
+        next[h] = out[origin[h ^ 1]];
+        prev[next[h]] = h;
+    }
+    return GPROJ_OK;
+}
+
+/* The outgoing half-edge that follows h around its origin, counter-clockwise. */
+GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
+
+/* All outgoing half-edges of a vertex are met by rotating: else there are several fans. `outgoing` has an entry a
+   vertex. */
+GPROJI_INTERNAL gproj_code gproji_mesh_check_fans(gproj_mesh *mesh, int32_t *outgoing, gproj_error *error) {
+    int32_t v, h;
+    memset(outgoing, 0, (size_t)mesh->vertex_count * sizeof(int32_t));
+    for (h = 0; h < mesh->halfedge_count; ++h) outgoing[mesh->origin[h]]++;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], met = 0;
+        if (start < 0) {
+            mesh->isolated_count++;
+            continue;
+        }
+        h = start;
+        do {
+            ++met;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+        if (met != outgoing[v]) return gproji_fail_fans(v, error);
+    }
+    return GPROJ_OK;
+}
+
+/* Passes through the boundary loops in the order of their lowest half-edges; writes one of each to `loop` unless that
+   is NULL. `seen` has an entry a vertex: a vertex is in one loop at most. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_mesh_loops(const gproj_mesh *mesh, int32_t *seen, int32_t *loop) {
+    int32_t h, i, count = 0;
+    gproji_fill(seen, mesh->vertex_count, 0);
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        if (mesh->face[h] >= 0 || seen[mesh->origin[h]]) continue;
+        for (i = h; !seen[mesh->origin[i]]; i = mesh->next[i]) seen[mesh->origin[i]] = 1;
+        if (loop) loop[count] = h;
+        ++count;
+    }
+    return count;
+}
+
+/* -- building -- */
+
+/* From matched and oriented corners to the finished mesh. */
+GPROJI_INTERNAL gproj_code gproji_mesh_finish(gproji_mesh_object *object, const gproji_soup *soup,
+                                              gproji_mesh_work *work, gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
+    gproj_code code;
+    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
+    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
+    gproji_mesh_link_faces(object, work);
+    code = gproji_mesh_link_boundary(object, error);
+    if (code) return code;
+    gproji_mesh_publish(object);
+    code = gproji_mesh_check_fans(mesh, work->mark, error);
+    if (code) return code;
+    mesh->loop_count = gproji_mesh_loops(mesh, work->mark, NULL);
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
+    if (!object->loop_halfedge) return gproji_fail_memory(error);
+    gproji_mesh_loops(mesh, work->mark, object->loop_halfedge);
+    gproji_mesh_publish(object);
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
+                                               gproji_mesh_work *work, gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
+    gproj_code code = gproji_mesh_read_corners(soup, work, error);
+    if (!code) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    if (!code) code = gproji_mesh_orient(soup, work, mesh, error);
+    if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    mesh->halfedge_count = 2 * mesh->edge_count;
+    return code ? code : gproji_mesh_finish(object, soup, work, error);
+}
+
+/* Builds the mesh of an object that has none yet. After a failure the object can only be destroyed. */
+GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_soup *soup, gproj_error *error) {
+    gproji_mesh_work work;
+    gproj_code code;
+    if (soup->vertex_count > GPROJI_VERTICES_MAX) {
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
+                           (int32_t)GPROJI_VERTICES_MAX);
+    }
+    code = gproji_check_degrees(soup, error);
+    if (!code) code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
+    if (code) return code;
+    object->mesh.vertex_count = soup->vertex_count;
+    object->mesh.face_count = soup->face_count;
+    code = gproji_mesh_work_take(&object->heap, &work, soup) ? gproji_mesh_connect(object, soup, &work, error)
+                                                             : gproji_fail_memory(error);
+    gproji_mesh_work_give(&object->heap, &work, soup);
+    return code;
+}
+
+GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
+    gproji_mesh_object *object;
+    gproji_heap *heap;
+    size_t vertices, faces;
+    if (!mesh) return;
+    object = gproji_mesh_owner(mesh);
+    heap = &object->heap;
+    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
+    if (object->polyline_start) {
+        size_t corners = (size_t)object->polyline_start[mesh->polyline_count];
+        gproji_give(heap, object->polyline_vertex, corners, sizeof(int32_t));
+        gproji_give(heap, object->polyline_start, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
+    }
+    gproji_give(heap, mesh->position, vertices, 3 * sizeof(double));
+    gproji_give(heap, object->vertex_halfedge, vertices, sizeof(int32_t));
+    gproji_give(heap, object->face_halfedge, faces, sizeof(int32_t));
+    gproji_give(heap, object->face_degree, faces, sizeof(int32_t));
+    gproji_give(heap, object->loop_halfedge, (size_t)mesh->loop_count, sizeof(int32_t));
+    gproji_give(heap, object->halfedge, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
+    gproji_destroy_object(object, sizeof *object);
+}
+
+/* Stores polylines: `start` has count + 1 entries, start[0] = 0. */
+GPROJI_INTERNAL gproj_code gproji_mesh_set_polylines(gproji_mesh_object *object, int32_t count, const int32_t *start,
+                                                     const int32_t *vertex, gproj_error *error) {
+    size_t total = count ? (size_t)start[count] : 0;
+    object->polyline_vertex = (int32_t *)gproji_take(&object->heap, total, sizeof(int32_t));
+    if (!object->polyline_vertex) return gproji_fail_memory(error);
+    object->polyline_start = (int32_t *)gproji_take(&object->heap, (size_t)count + 1, sizeof(int32_t));
+    if (!object->polyline_start) {
+        gproji_give(&object->heap, object->polyline_vertex, total, sizeof(int32_t));
+        object->polyline_vertex = NULL;
+        return gproji_fail_memory(error);
+    }
+    object->mesh.polyline_count = count;
+    object->polyline_start[0] = 0;
+    if (count) {
+        memcpy(object->polyline_start, start, ((size_t)count + 1) * sizeof(int32_t));
+        memcpy(object->polyline_vertex, vertex, total * sizeof(int32_t));
+    }
+    gproji_mesh_publish(object);
+    return GPROJ_OK;
+}
+
+/* The end of every function that makes a mesh: the mesh, or NULL and nothing kept. */
+GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
+    if (!code) return &object->mesh;
+    gproj_mesh_destroy(&object->mesh);
+    return NULL;
+}
+
+GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object));
+    gproji_error_clear(error);
+    if (!object) gproji_fail_memory(error);
+    return object;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
+                                        const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
+                                        gproj_error *error) {
+    gproji_soup soup;
+    gproji_mesh_object *object;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (vertex_count < 1 || face_count < 0) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+        return NULL;
+    }
+    if (!position || (face_count && (!face_degree || !face_vertex))) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "an array of the mesh is NULL");
+        return NULL;
+    }
+    soup.vertex_count = vertex_count, soup.face_count = face_count, soup.corner_count = 0;
+    soup.position = position, soup.face_degree = face_degree, soup.face_vertex = face_vertex;
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
+    code = gproji_mesh_build(object, &soup, error);
+    if (!code) code = gproji_mesh_set_polylines(object, 0, NULL, NULL, error);
+    return gproji_mesh_done(object, code);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object;
+    gproj_mesh *copy;
+    gproj_code code = GPROJ_OK;
+    size_t vertices, faces;
+    gproji_error_clear(error);
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to copy is NULL");
+        return NULL;
+    }
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
+    copy = &object->mesh;
+    *copy = *mesh;
+    copy->polyline_count = 0; /* set below, when there is memory for them */
+    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
+    if (!gproji_mesh_take(object) || !object->loop_halfedge) code = gproji_fail_memory(error);
+    if (!code) {
+        code =
+            gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex, error);
+    }
+    if (!code) {
+        memcpy(copy->position, mesh->position, vertices * 3 * sizeof(double));
+        memcpy(object->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
+        memcpy(object->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
+        memcpy(object->face_degree, mesh->face_degree, faces * sizeof(int32_t));
+        memcpy(object->loop_halfedge, mesh->loop_halfedge, (size_t)mesh->loop_count * sizeof(int32_t));
+        memcpy(object->halfedge, mesh->twin, (size_t)mesh->halfedge_count * 6 * sizeof(int32_t));
+    }
+    return gproji_mesh_done(object, code);
+}
+
+GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!mesh) return none;
+    return ((const gproji_mesh_object *)(const void *)((const char *)mesh - offsetof(gproji_mesh_object, mesh)))
+        ->heap.account;
+}
+
+/* -- questions -- */
+
+GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex) {
+    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return false;
+    return mesh->face[mesh->vertex_halfedge[vertex]] < 0;
+}
+
+GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity) {
+    int32_t valence = 0, start, h;
+    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return 0;
+    start = mesh->vertex_halfedge[vertex];
+    /* the outgoing boundary half-edge is the last of its vertex: its left side is outside */
+    if (mesh->face[start] < 0) start = gproji_rotate(mesh, start);
+    h = start;
+    do {
+        if (neighbours && valence < capacity) neighbours[valence] = mesh->origin[h ^ 1];
+        ++valence;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return valence;
+}
+
+GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
+    return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
+}
+
+GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]) {
+    int32_t start, h;
+    const double *origin;
+    double a[3], b[3], cross[3];
+    gproji_set3(0, 0, 0, area);
+    if (face < 0 || face >= mesh->face_count) return;
+    /* 1/2 sum (v_i - v_0) x (v_(i+1) - v_0): the same sum, without cancellation far from the coordinates' origin */
+    start = mesh->face_halfedge[face];
+    origin = mesh->position + 3 * mesh->origin[start];
+    for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
+        gproji_sub3(mesh->position + 3 * mesh->origin[h], origin, a);
+        gproji_sub3(mesh->position + 3 * mesh->origin[mesh->next[h]], origin, b);
+        gproji_cross3(a, b, cross);
+        gproji_add_scaled3(0.5, cross, area);
+    }
+}
+
+GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
+    double sum = 0;
+    int32_t h;
+    for (h = 0; h < mesh->halfedge_count; h += 2) {
+        sum += gproji_distance3(mesh->position + 3 * mesh->origin[h], mesh->position + 3 * mesh->origin[h + 1]);
+    }
+    return mesh->edge_count ? sum / mesh->edge_count : 0;
+}
+
+/* ============================================================================================================
+   >>text   Meshes as OBJ and OFF texts. Uses platform, memory, error, number, mesh.
+
+   Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
+   Both readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
+   builder's complaints can name the line too. Nothing is allocated because a text promises it: arrays grow as the
+   elements appear.
+   Invariant: the scanner never reads text[size] or beyond; `line` is the line of the character at `at`. */
+
+/* A growing array of integers. */
+typedef struct gproji_ints {
+    int32_t *data;
+    size_t count, capacity;
+} gproji_ints;
+
+typedef struct gproji_reader {
+    const char *text;
+    size_t size, at;
+    int32_t line;     /* from 1 */
+    const char *word; /* the last word scanned, not NUL-terminated */
+    size_t word_size;
+    gproji_heap *heap;
+    gproj_error *error;
+    double *position; /* 3 * vertex_count, room for 3 * position_capacity */
+    size_t vertex_count, position_capacity;
+    gproji_ints vertex_line, face_line, face_degree;
+    gproji_ints face_vertex; /* OBJ: as far as the text says, checked against the vertex count at the end */
+    gproji_ints polyline_start, polyline_vertex, polyline_line;
+} gproji_reader;
+
+/* -- words and lines -- */
+
+GPROJI_INLINE bool gproji_is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+GPROJI_INLINE bool gproji_is_line_end(char c) { return c == '\n' || c == '\r'; }
+
+/* Steps over CR, LF or CR LF at `at`. */
+GPROJI_INLINE void gproji_skip_line_end(gproji_reader *reader) {
+    char c = reader->text[reader->at++];
+    if (c == '\r' && reader->at < reader->size && reader->text[reader->at] == '\n') reader->at++;
+    if (reader->line < INT32_MAX) reader->line++;
+}
+
+/* Is there a backslash with a line end behind it at position i: the line goes on? */
+GPROJI_INLINE bool gproji_is_continuation(const gproji_reader *reader, size_t i) {
+    return reader->text[i] == '\\' && i + 1 < reader->size && gproji_is_line_end(reader->text[i + 1]);
+}
+
+/* The next word of the line; false at the line's end, where a comment counts as the end. */
+GPROJI_INTERNAL bool gproji_next_word(gproji_reader *reader) {
+    size_t end;
+    while (reader->at < reader->size) {
+        if (gproji_is_blank(reader->text[reader->at])) {
+            reader->at++;
+        } else if (gproji_is_continuation(reader, reader->at)) {
+            reader->at++;
+            gproji_skip_line_end(reader);
+        } else {
+            break;
+        }
+    }
+    if (reader->at >= reader->size || gproji_is_line_end(reader->text[reader->at]) || reader->text[reader->at] == '#') {
+        return false;
+    }
+    for (end = reader->at; end < reader->size; ++end) {
+        char c = reader->text[end];
+        if (gproji_is_blank(c) || gproji_is_line_end(c) || gproji_is_continuation(reader, end)) break;
+    }
+    reader->word = reader->text + reader->at;
+    reader->word_size = end - reader->at;
+    reader->at = end;
+    return true;
+}
+
+/* Goes to the beginning of the next line; false at the end of the text. */
+GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
+    while (reader->at < reader->size && !gproji_is_line_end(reader->text[reader->at])) reader->at++;
+    if (reader->at >= reader->size) return false;
+    gproji_skip_line_end(reader);
+    return true;
+}
+
+/* The next word of the text, over line ends and comments; false at the end of the text. */
+GPROJI_INTERNAL bool gproji_next_word_anywhere(gproji_reader *reader) {
+    while (!gproji_next_word(reader)) {
+        if (!gproji_next_line(reader)) return false;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_word_is(const gproji_reader *reader, const char *text) {
+    return reader->word_size == strlen(text) && !memcmp(reader->word, text, reader->word_size);
+}
+
+/* The word for a sentence: printable, and cut if it is long. */
+enum {
+    GPROJI_QUOTE_SIZE = 32
+};
+GPROJI_INTERNAL const char *gproji_quote(const gproji_reader *reader, char quote[GPROJI_QUOTE_SIZE]) {
+    size_t length = reader->word_size < 24 ? reader->word_size : 24, i;
+    for (i = 0; i < length; ++i) {
+        char c = reader->word[i];
+        quote[i] = c > ' ' && c <= '~' ? c : '?';
+    }
+    memcpy(quote + length, "...", 4);
+    if (length == reader->word_size) quote[length] = 0;
+    return quote;
+}
+
+/* -- numbers and indices -- */
+
+/* The word as a number. */
+GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *value) {
+    char quote[GPROJI_QUOTE_SIZE];
+    size_t used = gproj_number_read(reader->word, reader->word_size, value);
+    if (used && used == reader->word_size) return GPROJ_OK;
+    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                       "line %d: '%s' is not a number%s", reader->line, gproji_quote(reader, quote),
+                       used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
+}
+
+/* The word as an integer, clamped to +-10^12; with `slashes`, what follows a '/' (texture, normal) is passed over. */
+GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes, int64_t *value) {
+    const char *word = reader->word;
+    char quote[GPROJI_QUOTE_SIZE];
+    size_t i = 0, digits;
+    bool negative = word[0] == '-';
+    if (word[0] == '-' || word[0] == '+') ++i;
+    *value = 0;
+    for (digits = i; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
+        if (*value < INT64_C(100000000000)) *value = *value * 10 + (word[i] - '0');
+    }
+    if (i > digits && (i == reader->word_size || (slashes && word[i] == '/'))) {
+        if (negative) *value = -*value;
+        while (i < reader->word_size && (gproji_is_digit(word[i]) || word[i] == '/' || word[i] == '-')) ++i;
+        if (i == reader->word_size) return GPROJ_OK;
+    }
+    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line, "line %d: '%s' is not %s",
+                       reader->line, gproji_quote(reader, quote),
+                       slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
+}
+
+/* Appends to a growing array. */
+GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
+    void *block = ints->data;
+    if (ints->count >= ints->capacity) {
+        if (ints->count >= INT32_MAX - 1) {
+            return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: the text has too many elements; split the mesh", reader->line);
+        }
+        if (!gproji_reserve(reader->heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) {
+            return gproji_fail_memory(reader->error);
+        }
+        ints->data = (int32_t *)block;
+    }
+    ints->data[ints->count++] = value;
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
+    void *block = reader->position;
+    if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX) {
+        return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, line,
+                           "line %d: more than %d vertices; split the mesh", line, (int32_t)GPROJI_VERTICES_MAX);
+    }
+    if (!gproji_reserve(reader->heap, &block, &reader->position_capacity, reader->vertex_count + 1,
+                        3 * sizeof(double))) {
+        return gproji_fail_memory(reader->error);
+    }
+    reader->position = (double *)block;
+    gproji_copy3(x, reader->position + 3 * reader->vertex_count);
+    reader->vertex_count++;
+    return gproji_push(reader, &reader->vertex_line, line);
+}
+
+/* -- OBJ -- */
+
+/* v x y z, maybe with a weight, a colour or both, which are passed over. */
+GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
+    double number, x[3] = {0, 0, 0};
+    int32_t count = 0, line = reader->line;
+    gproj_code code;
+    while (gproji_next_word(reader)) {
+        code = gproji_word_number(reader, &number);
+        if (code) return code;
+        if (count < 3) x[count] = number;
+        if (count < 8) ++count;
+    }
+    if (count != 3 && count != 4 && count != 6 && count != 7) {
+        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                           "line %d: a vertex with %s%d numbers; write 'v x y z'", line, count == 8 ? "more than " : "",
+                           count == 8 ? 7 : count);
+    }
+    return gproji_push_vertex(reader, x, line);
+}
+
+/* The indices of an f or l line, from 0, into `ints`; *count is their number. Positive ones may point forward, so they
+   are compared with the vertex count at the end. */
+GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
+    int64_t index, vertices = (int64_t)reader->vertex_count;
+    gproj_code code;
+    *count = 0;
+    while (gproji_next_word(reader)) {
+        code = gproji_word_index(reader, true, &index);
+        if (code) return code;
+        if (index == 0) {
+            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: index 0; the vertices of an OBJ text count from 1", reader->line);
+        }
+        if (index < 0 && index + vertices < 0) {
+            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: index %l, but only %l vertices stand above", reader->line, index, vertices);
+        }
+        index = index < 0 ? index + vertices : index - 1;
+        if (index >= GPROJI_VERTICES_MAX) {
+            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: index %l is larger than any number of vertices can be", reader->line,
+                               index + 1);
+        }
+        code = gproji_push(reader, ints, (int32_t)index);
+        if (code) return code;
+        ++*count;
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_corners(gproji_reader *reader, int32_t count, int32_t line) {
+    return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                       "line %d: a face with %d corners; a face needs at least 3", line, count);
+}
+
+GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int32_t degree, int32_t line) {
+    gproj_code code = gproji_push(reader, &reader->face_degree, degree);
+    return code ? code : gproji_push(reader, &reader->face_line, line);
+}
+
+GPROJI_INTERNAL gproj_code gproji_obj_face(gproji_reader *reader) {
+    int32_t count, line = reader->line;
+    gproj_code code = gproji_obj_indices(reader, &reader->face_vertex, &count);
+    if (code) return code;
+    return count < 3 ? gproji_fail_corners(reader, count, line) : gproji_push_face(reader, count, line);
+}
+
+GPROJI_INTERNAL gproj_code gproji_obj_polyline(gproji_reader *reader) {
+    int32_t count, line = reader->line;
+    gproj_code code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
+    if (!code && count < 2) {
+        code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                           "line %d: a polyline with %d points; it needs at least 2", line, count);
+    }
+    if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
+    return code ? code : gproji_push(reader, &reader->polyline_line, line);
+}
+
+/* Are all indices of the elements, of which each has degree[i] or ends at start[i], below the vertex count? */
+GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints,
+                                                    const gproji_ints *line, const int32_t *degree,
+                                                    const int32_t *end) {
+    size_t e, c = 0;
+    for (e = 0; e < line->count; ++e) {
+        size_t stop = degree ? c + (size_t)degree[e] : (size_t)end[e + 1];
+        for (; c < stop; ++c) {
+            if ((size_t)ints->data[c] < reader->vertex_count) continue;
+            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, line->data[e],
+                               "line %d: index %d, but the text has %d vertices", line->data[e], ints->data[c] + 1,
+                               (int32_t)reader->vertex_count);
+        }
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
+    gproj_code code = gproji_push(reader, &reader->polyline_start, 0);
+    bool more = true;
+    while (more && !code) {
+        if (gproji_next_word(reader)) {
+            if (gproji_word_is(reader, "v"))
+                code = gproji_obj_vertex(reader);
+            else if (gproji_word_is(reader, "f"))
+                code = gproji_obj_face(reader);
+            else if (gproji_word_is(reader, "l"))
+                code = gproji_obj_polyline(reader);
+        }
+        more = gproji_next_line(reader);
+    }
+    if (!code) {
+        code =
+            gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
+    }
+    if (!code) {
+        code = gproji_obj_check_indices(reader, &reader->polyline_vertex, &reader->polyline_line, NULL,
+                                        reader->polyline_start.data);
+    }
+    return code;
+}
+
+/* -- OFF -- */
+
+/* Is the word [ST][C][N][4][n]OFF? The 4 and the n (other dimensions than 3) set *plain to false. */
+GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain) {
+    const char *word = reader->word;
+    size_t size = reader->word_size, i = 0;
+    *plain = true;
+    if (size - i > 2 && word[i] == 'S' && word[i + 1] == 'T') i += 2;
+    if (size - i > 1 && word[i] == 'C') ++i;
+    if (size - i > 1 && word[i] == 'N') ++i;
+    if (size - i > 1 && word[i] == '4') ++i, *plain = false;
+    if (size - i > 1 && word[i] == 'n') ++i, *plain = false;
+    return size - i == 3 && !memcmp(word + i, "OFF", 3);
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t of, const char *what) {
+    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count, of,
+                       what);
+}
+
+/* The header up to the counts of vertices and faces. */
+GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t count[2]) {
+    char quote[GPROJI_QUOTE_SIZE];
+    bool plain, have_word = gproji_next_word_anywhere(reader);
+    int32_t k;
+    gproj_code code;
+    if (have_word && gproji_is_off_word(reader, &plain)) {
+        have_word = gproji_next_word_anywhere(reader);
+        if (!plain || (have_word && gproji_word_is(reader, "BINARY"))) {
+            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: %s; save it as plain OFF", reader->line,
+                               plain ? "a binary OFF file" : "an OFF file of another dimension than 3");
+        }
+    } else if (have_word && !gproji_is_digit(reader->word[0])) {
+        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                           "line %d: '%s' where an OFF text says OFF", reader->line, gproji_quote(reader, quote));
+    }
+    for (k = 0; k < 2; ++k, have_word = gproji_next_word_anywhere(reader)) {
+        if (!have_word) return gproji_fail_cut_off(reader, k, 2, "counts");
+        code = gproji_word_index(reader, false, &count[k]);
+        if (code) return code;
+        if (count[k] < 0 || count[k] > GPROJI_VERTICES_MAX) {
+            return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: a count of %l %s", reader->line, count[k], k ? "faces" : "vertices");
+        }
+        if (k == 1) break;
+    }
+    gproji_next_line(reader); /* the count of edges is not needed */
+    return GPROJ_OK;
+}
+
+/* One line: x y z; colours, normals and texture coordinates behind them are passed over. */
+GPROJI_INTERNAL gproj_code gproji_off_vertex(gproji_reader *reader) {
+    double x[3];
+    int32_t k, line = reader->line;
+    gproj_code code;
+    for (k = 0; k < 3; ++k) {
+        if (k && !gproji_next_word(reader)) {
+            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                               "line %d: a vertex with %d numbers; write x y z on one line", line, k);
+        }
+        code = gproji_word_number(reader, &x[k]);
+        if (code) return code;
+    }
+    gproji_next_line(reader);
+    return gproji_push_vertex(reader, x, line);
+}
+
+/* degree, then the corners; colours behind them are passed over. */
+GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
+    int64_t degree, index, k;
+    int32_t line = reader->line;
+    gproj_code code = gproji_word_index(reader, false, &degree);
+    if (code) return code;
+    if (degree < 3) return gproji_fail_corners(reader, (int32_t)(degree < -9 ? -9 : degree), line);
+    for (k = 0; k < degree; ++k) {
+        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
+        code = gproji_word_index(reader, false, &index);
+        if (code) return code;
+        if (index < 0 || index >= (int64_t)reader->vertex_count) {
+            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                               "line %d: index %l, but the vertices are 0 to %l", reader->line, index,
+                               (int64_t)reader->vertex_count - 1);
+        }
+        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
+        if (code) return code;
+    }
+    gproji_next_line(reader);
+    return gproji_push_face(reader, (int32_t)degree, line);
+}
+
+GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
+    int64_t count[2] = {0, 0}, i;
+    gproj_code code = gproji_off_header(reader, count);
+    for (i = 0; i < count[0] && !code; ++i) {
+        code = gproji_next_word_anywhere(reader) ? gproji_off_vertex(reader)
+                                                 : gproji_fail_cut_off(reader, i, count[0], "vertices");
+    }
+    for (i = 0; i < count[1] && !code; ++i) {
+        code = gproji_next_word_anywhere(reader) ? gproji_off_face(reader, i, count[1])
+                                                 : gproji_fail_cut_off(reader, i, count[1], "faces");
+    }
+    return code;
+}
+
+/* -- reading -- */
+
+/* A zero byte is never in a text: a binary file, or one in UTF-16. */
+GPROJI_INTERNAL gproj_code gproji_check_text(gproji_reader *reader) {
+    const char *zero = reader->size ? (const char *)memchr(reader->text, 0, reader->size) : NULL;
+    if (!reader->size) {
+        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "the text is empty; it needs at least one vertex");
+    }
+    if (!zero) return GPROJ_OK;
+    while (reader->text + reader->at < zero) {
+        if (gproji_is_line_end(reader->text[reader->at]))
+            gproji_skip_line_end(reader);
+        else
+            reader->at++;
+    }
+    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                       "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text", reader->line);
+}
+
+/* By the first word: [ST][C][N]OFF or OBJ. */
+GPROJI_INTERNAL gproj_format gproji_detect_format(const gproji_reader *reader) {
+    gproji_reader look = *reader;
+    bool plain;
+    return gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
+}
+
+/* Puts "line 203: " in front of the mesh builder's sentence about a vertex or face. */
+GPROJI_INTERNAL void gproji_add_line(const gproji_reader *reader) {
+    gproj_error *error = reader->error;
+    const gproji_ints *lines = &reader->face_line;
+    char message[GPROJ_MESSAGE_SIZE];
+    if (!error) return;
+    if (error->place == GPROJ_PLACE_VERTEX)
+        lines = &reader->vertex_line;
+    else if (error->place != GPROJ_PLACE_FACE)
+        return;
+    if (error->index < 0 || (size_t)error->index >= lines->count) return;
+    gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
+    memcpy(error->message, message, sizeof message);
+}
+
+/* From what the text said to the mesh. */
+GPROJI_INTERNAL gproj_code gproji_reader_build(const gproji_reader *reader, gproji_mesh_object *object) {
+    gproji_soup soup;
+    gproj_code code;
+    if (!reader->vertex_count) {
+        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "the text has no vertex; is it an OBJ or OFF text?");
+    }
+    soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
+    soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
+    soup.face_degree = reader->face_degree.data, soup.face_vertex = reader->face_vertex.data;
+    code = gproji_mesh_build(object, &soup, reader->error);
+    if (code) {
+        gproji_add_line(reader);
+        return code;
+    }
+    return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
+                                     reader->polyline_vertex.data, reader->error);
+}
+
+GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
+    gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
+}
+
+/* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
+GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, const char *text, size_t size,
+                                                 gproj_format format, gproj_error *error) {
+    gproji_reader reader;
+    gproj_code code;
+    memset(&reader, 0, sizeof reader);
+    reader.text = text, reader.size = size, reader.line = 1;
+    reader.heap = &object->heap, reader.error = error;
+    code = gproji_check_text(&reader);
+    if (size >= 3 && !memcmp(text, "\xef\xbb\xbf", 3)) reader.at = 3; /* byte order mark */
+    if (!code) {
+        if (format == GPROJ_FORMAT_DETECT) format = gproji_detect_format(&reader);
+        code = format == GPROJ_FORMAT_OFF ? gproji_read_off(&reader) : gproji_read_obj(&reader);
+    }
+    if (!code) code = gproji_reader_build(&reader, object);
+    gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
+    gproji_ints_give(reader.heap, &reader.vertex_line);
+    gproji_ints_give(reader.heap, &reader.face_line);
+    gproji_ints_give(reader.heap, &reader.face_degree);
+    gproji_ints_give(reader.heap, &reader.face_vertex);
+    gproji_ints_give(reader.heap, &reader.polyline_start);
+    gproji_ints_give(reader.heap, &reader.polyline_vertex);
+    gproji_ints_give(reader.heap, &reader.polyline_line);
+    return code;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_format format, const gproj_host *host,
+                                      gproj_error *error) {
+    gproji_mesh_object *object;
+    gproji_error_clear(error);
+    if ((!text && size) || format < GPROJ_FORMAT_DETECT || format > GPROJ_FORMAT_OFF) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    text ? "unknown text format" : "the text is NULL");
+        return NULL;
+    }
+    object = gproji_mesh_begin(host, error);
+    return object ? gproji_mesh_done(object, gproji_mesh_read_into(object, text, size, format, error)) : NULL;
+}
+
+/* -- writing -- */
+
+typedef struct gproji_writer {
+    gproj_write write;
+    void *user;
+    bool failed;
+    size_t length;
+    char buffer[4096];
+} gproji_writer;
+
+GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
+    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length)) {
+        writer->failed = true;
+    }
+    writer->length = 0;
+}
+
+/* Room for a word of up to GPROJ_NUMBER_SIZE characters. */
+GPROJI_INLINE char *gproji_room(gproji_writer *writer) {
+    if (writer->length + GPROJ_NUMBER_SIZE > sizeof writer->buffer) gproji_flush(writer);
+    return writer->buffer + writer->length;
+}
+
+GPROJI_INLINE void gproji_put(gproji_writer *writer, const char *text) {
+    size_t length = strlen(text);
+    memcpy(gproji_room(writer), text, length);
+    writer->length += length;
+}
+
+GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
+    char text[GPROJ_NUMBER_SIZE];
+    gproji_append_integer(text, sizeof text, 0, value);
+    gproji_put(writer, text);
+}
+
+GPROJI_INTERNAL void gproji_put_position(gproji_writer *writer, const double x[3]) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        writer->length += gproj_number_write(x[k], gproji_room(writer));
+        gproji_put(writer, k < 2 ? " " : "\n");
+    }
+}
+
+/* The corners of all faces; `base` is 1 for OBJ. */
+GPROJI_INTERNAL void gproji_put_faces(gproji_writer *writer, const gproj_mesh *mesh, bool off) {
+    int32_t f, h;
+    for (f = 0; f < mesh->face_count && !writer->failed; ++f) {
+        if (off)
+            gproji_put_integer(writer, mesh->face_degree[f]);
+        else
+            gproji_put(writer, "f");
+        h = mesh->face_halfedge[f];
+        do {
+            gproji_put(writer, " ");
+            gproji_put_integer(writer, mesh->origin[h] + (off ? 0 : 1));
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
+        gproji_put(writer, "\n");
+    }
+}
+
+GPROJI_INTERNAL void gproji_put_polylines(gproji_writer *writer, const gproj_mesh *mesh) {
+    int32_t p, i;
+    for (p = 0; p < mesh->polyline_count && !writer->failed; ++p) {
+        gproji_put(writer, "l");
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            gproji_put(writer, " ");
+            gproji_put_integer(writer, mesh->polyline_vertex[i] + 1);
+        }
+        gproji_put(writer, "\n");
+    }
+}
+
+/* After the arguments have been checked. */
+GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
+                                             void *user) {
+    gproji_writer writer;
+    bool off = format == GPROJ_FORMAT_OFF;
+    int32_t v;
+    writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
+    if (off) {
+        gproji_put(&writer, "OFF\n");
+        gproji_put_integer(&writer, mesh->vertex_count);
+        gproji_put(&writer, " ");
+        gproji_put_integer(&writer, mesh->face_count);
+        gproji_put(&writer, " ");
+        gproji_put_integer(&writer, mesh->edge_count);
+        gproji_put(&writer, "\n");
+    }
+    for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
+        if (!off) gproji_put(&writer, "v ");
+        gproji_put_position(&writer, mesh->position + 3 * v);
+    }
+    gproji_put_faces(&writer, mesh, off);
+    if (!off) gproji_put_polylines(&writer, mesh);
+    gproji_flush(&writer);
+    return writer.failed ? GPROJ_ERROR_FILE : GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user) {
+    if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF)) return GPROJ_ERROR_ARGUMENT;
+    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", NULL)) return GPROJ_ERROR_NUMBER;
+    return gproji_write_mesh(mesh, format, write, user);
+}
+
+/* -- files -- */
+#ifndef GPROJ_NO_STDIO
+
+/* A path for a sentence: its end, if it is long; no control characters. */
+enum {
+    GPROJI_PATH_QUOTE_SIZE = 132,
+    GPROJI_PATH_MAX = 4096
+};
+GPROJI_INTERNAL const char *gproji_quote_path(const char *path, char quote[GPROJI_PATH_QUOTE_SIZE]) {
+    size_t length = strlen(path), start = 0, at = 0;
+    if (length > GPROJI_PATH_QUOTE_SIZE - 4) {
+        start = length - (GPROJI_PATH_QUOTE_SIZE - 4);
+        while (((unsigned char)path[start] & 0xc0) == 0x80) ++start; /* begin with a whole UTF-8 character */
+        memcpy(quote, "...", 3);
+        at = 3;
+    }
+    for (; start < length; ++start) {
+        unsigned char c = (unsigned char)path[start];
+        quote[at++] = c < 32 || c == 127 ? '?' : path[start];
+    }
+    quote[at] = 0;
+    return quote;
+}
+
+/* By the ending, in any case; DETECT where it is neither .obj nor .off. */
+GPROJI_INTERNAL gproj_format gproji_format_of_path(const char *path) {
+    size_t length = strlen(path);
+    if (length < 4) return GPROJ_FORMAT_DETECT;
+    if (gproji_begins_with(path + length - 3, 3, "obj") && path[length - 4] == '.') return GPROJ_FORMAT_OBJ;
+    if (gproji_begins_with(path + length - 3, 3, "off") && path[length - 4] == '.') return GPROJ_FORMAT_OFF;
+    return GPROJ_FORMAT_DETECT;
+}
+
+/* Reads what is left of a file; *text has room for *capacity characters. */
+GPROJI_INTERNAL gproj_code gproji_read_file(FILE *file, const char *path, gproji_heap *heap, void **text,
+                                            size_t *capacity, size_t *size, gproj_error *error) {
+    char quote[GPROJI_PATH_QUOTE_SIZE];
+    size_t got;
+    do {
+        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
+            return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
+                               "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
+                               (int64_t)*size);
+        }
+        got = fread((char *)*text + *size, 1, *capacity - *size, file);
+        *size += got;
+    } while (got);
+    if (!ferror(file)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                       "'%s' cannot be read; is it a folder, or the disk damaged?", gproji_quote_path(path, quote));
+}
+
+GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const char *path, gproj_error *error) {
+    char quote[GPROJI_PATH_QUOTE_SIZE];
+    void *text = NULL;
+    size_t capacity = 0, size = 0;
+    gproj_code code;
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                           "'%s' cannot be opened; does it exist, and may you read it?",
+                           gproji_quote_path(path, quote));
+    }
+    code = gproji_read_file(file, path, &object->heap, &text, &capacity, &size, error);
+    fclose(file);
+    if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
+    gproji_give(&object->heap, text, capacity, 1);
+    return code;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object;
+    gproji_error_clear(error);
+    if (!path) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the path to load from is NULL");
+        return NULL;
+    }
+    object = gproji_mesh_begin(host, error);
+    return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
+}
+
+GPROJI_INTERNAL bool gproji_write_to_file(void *user, const char *text, size_t size) {
+    return fwrite(text, 1, size, (FILE *)user) == size;
+}
+
+/* Moves a complete new file over an old one. */
+GPROJI_INTERNAL bool gproji_replace_file(const char *from, const char *to) {
+#ifdef _WIN32
+    remove(to); /* rename does not replace there; nothing is lost when it fails, the new file has all */
+#endif
+    return rename(from, to) == 0;
+}
+
+/* The complete file is written and closed before the old one is touched. */
+GPROJI_INTERNAL gproj_code gproji_save_through(const gproj_mesh *mesh, const char *path, const char *temporary,
+                                               gproj_error *error) {
+    char quote[GPROJI_PATH_QUOTE_SIZE];
+    bool complete;
+    FILE *file = fopen(temporary, "wb");
+    if (!file) {
+        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                           "no file can be made beside '%s'; does the folder exist, and may you write there?",
+                           gproji_quote_path(path, quote));
+    }
+    complete = gproji_write_mesh(mesh, gproji_format_of_path(path), gproji_write_to_file, file) == GPROJ_OK;
+    if (fclose(file)) complete = false;
+    if (!complete) {
+        remove(temporary);
+        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' was not written; is the disk full?",
+                           gproji_quote_path(path, quote));
+    }
+    if (gproji_replace_file(temporary, path)) return GPROJ_OK;
+    remove(temporary);
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                       "'%s' cannot be replaced; is it a folder, or open elsewhere?", gproji_quote_path(path, quote));
+}
+
+GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error) {
+    static const char suffix[] = ".gproj-new";
+    char temporary[GPROJI_PATH_MAX], quote[GPROJI_PATH_QUOTE_SIZE];
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!mesh || !path) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the %s to save is NULL",
+                           mesh ? "path" : "mesh");
+    }
+    if (strlen(path) + sizeof suffix > sizeof temporary) {
+        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' is too long a path",
+                           gproji_quote_path(path, quote));
+    }
+    if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "'%s' says no format; let the name end with .obj or .off", gproji_quote_path(path, quote));
+    }
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (code) return code;
+    memcpy(temporary, path, strlen(path));
+    memcpy(temporary + strlen(path), suffix, sizeof suffix);
+    return gproji_save_through(mesh, path, temporary, error);
+}
+
+#endif /* GPROJ_NO_STDIO */
+
+/* ============================================================================================================
+   >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory, vector.
+
+   A binary tree of axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median of the box centres
+   along the longest axis of the node's centres, down to leaves of at most four items; searched depth first, the nearer
+   child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis and
+   then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
+   Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
+   item[begin..end-1]; the halves differ by one item at most, so no path is longer than 32 nodes. */
+typedef struct gproji_node {
+    double low[3], high[3];
+    int32_t begin, end;
+    int32_t right; /* the right child, -1 in a leaf */
+} gproji_node;
+
+typedef struct gproji_hierarchy {
+    int32_t item_count, node_count;
+    int32_t *item;     /* item_count: a permutation of the items */
+    gproji_node *node; /* room for item_count */
+} gproji_hierarchy;
+
+enum {
+    GPROJI_LEAF_ITEMS = 4,
+    GPROJI_TREE_DEPTH = 64
+};
+
+/* The box of an item; its squared distance from a point. */
+typedef void (*gproji_item_box)(const void *user, int32_t item, double low[3], double high[3]);
+typedef double (*gproji_item_distance)(const void *user, int32_t item, const double point[3]);
+
+/* -- building -- */
+
+typedef struct gproji_hierarchy_work {
+    double *box;       /* 6 * item_count: low and high of each item */
+    int32_t *order[3]; /* item_count each: the items by centre along x, y, z (then by number), within every node */
+    int32_t *spare;    /* item_count: scratch of sorting and splitting */
+    uint8_t *left;     /* item_count: 1 where an item goes to the left child of the node at hand */
+} gproji_hierarchy_work;
+
+/* Twice the centre. */
+GPROJI_INLINE double gproji_box_centre(const gproji_hierarchy_work *work, int32_t item, int32_t axis) {
+    return work->box[6 * (size_t)item + (size_t)axis] + work->box[6 * (size_t)item + 3 + (size_t)axis];
+}
+
+/* Sorts order[axis] by merging runs of 1, 2, 4, ... items; equal centres stay in the order of the items. */
+GPROJI_INTERNAL void gproji_sort_axis(gproji_hierarchy_work *work, int32_t count, int32_t axis) {
+    int32_t *from = work->order[axis], *to = work->spare, *swap;
+    int64_t width, begin;
+    int32_t i;
+    for (i = 0; i < count; ++i) from[i] = i;
+    for (width = 1; width < count; width *= 2) {
+        for (begin = 0; begin < count; begin += 2 * width) {
+            int64_t middle = begin + width < count ? begin + width : count;
+            int64_t end = begin + 2 * width < count ? begin + 2 * width : count, a = begin, b = middle, out;
+            for (out = begin; out < end; ++out) {
+                bool take_b = a == middle || (b < end && gproji_box_centre(work, from[b], axis) <
+                                                             gproji_box_centre(work, from[a], axis));
+                to[out] = take_b ? from[b++] : from[a++];
+            }
+        }
+        swap = from, from = to, to = swap;
+    }
+    work->order[axis] = from;
+    work->spare = to;
+}
+
+/* Moves the items with left = 1 to the front of list[begin..end-1], both parts keeping their order. */
+GPROJI_INTERNAL void gproji_split_list(const gproji_hierarchy_work *work, int32_t *list, int32_t begin, int32_t end) {
+    int32_t i, front = begin, back = 0;
+    for (i = begin; i < end; ++i) {
+        if (work->left[list[i]])
+            list[front++] = list[i];
+        else
+            work->spare[back++] = list[i];
+    }
+    memcpy(list + front, work->spare, (size_t)back * sizeof list[0]);
+}
+
+/* The node's box, and the axis along which the centres of its items spread most. */
+GPROJI_INTERNAL int32_t gproji_bound_node(const gproji_hierarchy_work *work, gproji_node *node) {
+    int32_t axis, widest = 0, i;
+    double spread[3];
+    for (axis = 0; axis < 3; ++axis) {
+        const int32_t *list = work->order[axis];
+        spread[axis] =
+            gproji_box_centre(work, list[node->end - 1], axis) - gproji_box_centre(work, list[node->begin], axis);
+        node->low[axis] = DBL_MAX, node->high[axis] = -DBL_MAX;
+        for (i = node->begin; i < node->end; ++i) {
+            const double *box = work->box + 6 * (size_t)list[i] + axis;
+            node->low[axis] = gproji_fmin(node->low[axis], box[0]);
+            node->high[axis] = gproji_fmax(node->high[axis], box[3]);
+        }
+        if (spread[axis] > spread[widest]) widest = axis;
+    }
+    return widest;
+}
+
+/* Builds the nodes in preorder with an explicit stack of the right children still to be made. */
+GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierarchy_work *work) {
+    int32_t stack_begin[GPROJI_TREE_DEPTH], stack_end[GPROJI_TREE_DEPTH], stack_parent[GPROJI_TREE_DEPTH], depth = 0;
+    int32_t begin = 0, end = tree->item_count, parent = -1;
+    for (;;) {
+        gproji_node *node = &tree->node[tree->node_count];
+        int32_t axis, other, middle, i;
+        if (parent >= 0) tree->node[parent].right = tree->node_count;
+        tree->node_count++;
+        node->begin = begin, node->end = end, node->right = -1;
+        axis = gproji_bound_node(work, node);
+        if (end - begin > GPROJI_LEAF_ITEMS) {
+            middle = begin + (end - begin) / 2;
+            for (i = begin; i < end; ++i) work->left[work->order[axis][i]] = i < middle;
+            for (other = 0; other < 3; ++other) {
+                if (other != axis) gproji_split_list(work, work->order[other], begin, end);
+            }
+            stack_begin[depth] = middle, stack_end[depth] = end, stack_parent[depth] = tree->node_count - 1;
+            ++depth;
+            end = middle, parent = -1;
+        } else if (depth) {
+            --depth;
+            begin = stack_begin[depth], end = stack_end[depth], parent = stack_parent[depth];
+        } else {
+            break;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_hierarchy_give(gproji_heap *heap, gproji_hierarchy *tree) {
+    gproji_give(heap, tree->item, (size_t)tree->item_count, sizeof(int32_t));
+    gproji_give(heap, tree->node, (size_t)tree->item_count, sizeof(gproji_node));
+    tree->item = NULL, tree->node = NULL;
+}
+
+/* False when there is no memory. Needs count >= 1. */
+GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy *tree, int32_t count,
+                                            gproji_item_box item_box, const void *user) {
+    gproji_hierarchy_work work;
+    size_t n = (size_t)count;
+    int32_t i, axis;
+    bool complete = true;
+    memset(tree, 0, sizeof *tree);
+    memset(&work, 0, sizeof work);
+    tree->item_count = count;
+    tree->item = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
+    tree->node = (gproji_node *)gproji_take(heap, n, sizeof(gproji_node));
+    work.box = (double *)gproji_take(heap, n, 6 * sizeof(double));
+    work.spare = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
+    work.left = (uint8_t *)gproji_take(heap, n, sizeof(uint8_t));
+    for (axis = 0; axis < 3; ++axis) {
+        work.order[axis] = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
+        if (!work.order[axis]) complete = false;
+    }
+    complete = complete && tree->item && tree->node && work.box && work.spare && work.left;
+    if (complete) {
+        for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
+        for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
+        gproji_grow_hierarchy(tree, &work);
+        memcpy(tree->item, work.order[0], n * sizeof(int32_t));
+    }
+    for (axis = 0; axis < 3; ++axis) gproji_give(heap, work.order[axis], n, sizeof(int32_t));
+    gproji_give(heap, work.left, n, sizeof(uint8_t));
+    gproji_give(heap, work.spare, n, sizeof(int32_t));
+    gproji_give(heap, work.box, n, 6 * sizeof(double));
+    if (!complete) gproji_hierarchy_give(heap, tree);
+    return complete;
+}
+
+/* -- searching -- */
+
+/* The squared distance of a point from a node's box, made smaller by more than its own rounding error, so that an item
+   that is as near as another one is looked at. */
+GPROJI_INLINE double gproji_box_distance(const gproji_node *node, const double point[3]) {
+    double sum = 0;
+    int32_t axis;
+    for (axis = 0; axis < 3; ++axis) {
+        double below = node->low[axis] - point[axis], above = point[axis] - node->high[axis];
+        double d = gproji_fmax(gproji_fmax(below, above), 0.0);
+        sum += d * d;
+    }
+    return sum * (1 - 1e-13);
+}
+
+/* The item nearest to a point; among equally near ones that with the lowest number. */
+GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, const double point[3],
+                                                 gproji_item_distance distance, const void *user) {
+    int32_t stack_node[GPROJI_TREE_DEPTH], depth = 0, best_item = -1, i;
+    double stack_distance[GPROJI_TREE_DEPTH], best = DBL_MAX, here = 0;
+    int32_t at = 0;
+    for (;;) {
+        const gproji_node *node = &tree->node[at];
+        if (here <= best && node->right >= 0) {
+            int32_t near_child = at + 1, far_child = node->right;
+            double near_distance = gproji_box_distance(&tree->node[near_child], point);
+            double far_distance = gproji_box_distance(&tree->node[far_child], point);
+            if (far_distance < near_distance) {
+                double d = near_distance;
+                near_distance = far_distance, far_distance = d;
+                far_child = near_child, near_child = node->right;
+            }
+            stack_node[depth] = far_child, stack_distance[depth] = far_distance;
+            ++depth;
+            at = near_child, here = near_distance;
+            continue;
+        }
+        for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
+            double d = distance(user, tree->item[i], point);
+            if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
+                best = d;
+                best_item = tree->item[i];
+            }
+        }
+        if (!depth) break;
+        --depth;
+        at = stack_node[depth], here = stack_distance[depth];
+    }
+    return best_item < 0 ? 0 : best_item; /* a point that is not finite is not near to anything */
+}
+
+/* ============================================================================================================
+   >>curve   Polylines and their closest points. Uses platform, memory, error, vector, mesh, hierarchy.
+
+   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats its first point at its end); every
+   tangent is a unit vector, also that of a segment without length, which has the tangent of the segment before it. */
+struct gproj_curve {
+    gproji_heap heap; /* first: see gproji_create_object */
+    int32_t segment_count;
+    double *point;         /* 3 * (segment_count + 1) */
+    double *tangent;       /* 3 * segment_count */
+    gproji_hierarchy tree; /* over the segments */
+};
+
+/* The point a + t (b - a), 0 <= t <= 1, nearest to p, into `out`; returns t. A point that is not finite gives t = 0. */
+GPROJI_INTERNAL double gproji_closest_on_segment(const double a[3], const double b[3], const double p[3],
+                                                 double out[3]) {
+    double ab[3], ap[3], square, t;
+    gproji_sub3(b, a, ab);
+    gproji_sub3(p, a, ap);
+    square = gproji_dot3(ab, ab);
+    t = square > 0 ? gproji_dot3(ab, ap) / square : 0;
+    if (t >= 1) {
+        gproji_copy3(b, out); /* exactly, so that neighbouring segments agree on their common point */
+        return 1;
+    }
+    if (!(t > 0)) t = 0;
+    gproji_copy3(a, out);
+    gproji_add_scaled3(t, ab, out);
+    return t;
+}
+
+GPROJI_INLINE double gproji_square_distance3(const double a[3], const double b[3]) {
+    double d[3];
+    gproji_sub3(a, b, d);
+    return gproji_dot3(d, d);
+}
+
+GPROJI_INTERNAL void gproji_segment_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const double *a = ((const gproj_curve *)user)->point + 3 * (size_t)item, *b = a + 3;
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        low[k] = gproji_fmin(a[k], b[k]);
+        high[k] = gproji_fmax(a[k], b[k]);
+    }
+}
+
+GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, const double point[3]) {
+    const double *a = ((const gproj_curve *)user)->point + 3 * (size_t)item;
+    double out[3];
+    gproji_closest_on_segment(a, a + 3, point, out);
+    return gproji_square_distance3(out, point);
+}
+
+/* Directions of all segments. Those shorter than 1e-14 of the curve's extent have none of their own and take over that
+   of the segment before (an open curve's first ones: of the first segment that has one). False where none has. */
+GPROJI_INTERNAL bool gproji_curve_tangents(gproj_curve *curve, bool closed) {
+    const double zero[3] = {0, 0, 0};
+    double extent = 0, last[3] = {0, 0, 0}, *t;
+    int32_t s, k, from = -1;
+    for (s = 0; s <= curve->segment_count; ++s) {
+        for (k = 0; k < 3; ++k)
+            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
+    }
+    for (s = 0; s < curve->segment_count; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
+        if (gproji_length3(t) <= 1e-14 * extent)
+            gproji_set3(0, 0, 0, t);
+        else
+            gproji_normalise3(t, zero);
+        if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
+    }
+    if (from < 0) return false;
+    gproji_copy3(curve->tangent + 3 * (size_t)from, last);
+    for (s = 0; s < curve->segment_count; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        if (gproji_dot3(t, t) > 0)
+            gproji_copy3(t, last);
+        else
+            gproji_copy3(last, t);
+    }
+    return true;
+}
+
+GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
+    if (!curve) return;
+    gproji_hierarchy_give(&curve->heap, &curve->tree);
+    gproji_give(&curve->heap, curve->tangent, (size_t)curve->segment_count, 3 * sizeof(double));
+    gproji_give(&curve->heap, curve->point, (size_t)curve->segment_count + 1, 3 * sizeof(double));
+    gproji_destroy_object(curve, sizeof *curve);
+}
+
+/* A curve with room for its points, which the caller fills in before gproji_curve_finish. NULL without memory. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
+    gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve));
+    if (curve) {
+        curve->segment_count = segment_count;
+        curve->point = (double *)gproji_take(&curve->heap, (size_t)segment_count + 1, 3 * sizeof(double));
+        curve->tangent = (double *)gproji_take(&curve->heap, (size_t)segment_count, 3 * sizeof(double));
+        if (curve->point && curve->tangent) return curve;
+        gproj_curve_destroy(curve);
+    }
+    gproji_fail_memory(error);
+    return NULL;
+}
+
+/* Checks the points and builds the rest; on failure destroys the curve and returns NULL. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
+    gproj_code code = gproji_check_positions(curve->segment_count + 1, curve->point, "point", error);
+    if (!code && !gproji_curve_tangents(curve, closed)) {
+        code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                           "all %d points of the curve are the same; it needs two different ones",
+                           curve->segment_count + (closed ? 0 : 1));
+    }
+    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, curve->segment_count, gproji_segment_box, curve)) {
+        code = gproji_fail_memory(error);
+    }
+    if (!code) return curve;
+    gproj_curve_destroy(curve);
+    return NULL;
+}
+
+GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, bool closed, const gproj_host *host,
+                                          gproj_error *error) {
+    gproj_curve *curve;
+    gproji_error_clear(error);
+    if (count < 2 || count > GPROJI_VERTICES_MAX || !points) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL", count);
+        return NULL;
+    }
+    curve = gproji_curve_begin(closed ? count : count - 1, host, error);
+    if (!curve) return NULL;
+    memcpy(curve->point, points, (size_t)count * 3 * sizeof(double));
+    if (closed) gproji_copy3(points, curve->point + 3 * (size_t)count);
+    return gproji_curve_finish(curve, closed, error);
+}
+
+GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
+                                             gproj_error *error) {
+    gproj_curve *curve;
+    int32_t start, h, count = 0;
+    gproji_error_clear(error);
+    if (!mesh || loop < 0 || loop >= mesh->loop_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    mesh ? "boundary loop %d of a mesh that has %d of them" : "the mesh of the boundary loop is NULL",
+                    loop, mesh ? mesh->loop_count : 0);
+        return NULL;
+    }
+    start = mesh->loop_halfedge[loop];
+    h = start;
+    do {
+        ++count;
+        h = mesh->prev[h];
+    } while (h != start);
+    curve = gproji_curve_begin(count, host, error);
+    if (!curve) return NULL;
+    for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h]) { /* against the boundary half-edges */
+        gproji_copy3(mesh->position + 3 * (size_t)mesh->origin[h], curve->point + 3 * (size_t)count);
+    }
+    return gproji_curve_finish(curve, true, error);
+}
+
+GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
+                                                 gproj_error *error) {
+    gproj_curve *curve;
+    const int32_t *vertex;
+    int32_t segments, i;
+    gproji_error_clear(error);
+    if (!mesh || polyline < 0 || polyline >= mesh->polyline_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    mesh ? "polyline %d of a mesh that has %d of them" : "the mesh of the polyline is NULL", polyline,
+                    mesh ? mesh->polyline_count : 0);
+        return NULL;
+    }
+    vertex = mesh->polyline_vertex + mesh->polyline_start[polyline];
+    segments = mesh->polyline_start[polyline + 1] - mesh->polyline_start[polyline] - 1;
+    curve = gproji_curve_begin(segments, host, error);
+    if (!curve) return NULL;
+    for (i = 0; i <= segments; ++i) {
+        gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
+    }
+    return gproji_curve_finish(curve, vertex[0] == vertex[segments], error);
+}
+
+GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]) {
+    gproj_curve_hit hit;
+    const double *a;
+    hit.segment = gproji_hierarchy_closest(&curve->tree, point, gproji_segment_distance, curve);
+    a = curve->point + 3 * (size_t)hit.segment;
+    hit.parameter = gproji_closest_on_segment(a, a + 3, point, hit.point);
+    gproji_copy3(curve->tangent + 3 * (size_t)hit.segment, hit.tangent);
+    hit.distance = gproji_distance3(hit.point, point);
+    return hit;
+}
+
+/* ============================================================================================================
+   >>surface   Polygon meshes as reference surfaces. Uses platform, memory, error, vector, mesh, hierarchy, curve.
+
+   Faces are cut into triangles: convex ones into a fan about their first corner, others by cutting ears (Meisters
+   1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only where a face is clearly not
+   convex, so a moved or scaled mesh is cut in the same way. The normal at a point is interpolated from vertex normals,
+   which are means of face normals weighted by the angles of the corners (Thuermer and Wuethrich 1998).
+   Invariant: the triangles of a face stand together, in the order of the faces. */
+struct gproj_surface {
+    gproji_heap heap; /* first: see gproji_create_object */
+    int32_t vertex_count, triangle_count;
+    double *position;       /* 3 * vertex_count */
+    double *normal;         /* 3 * vertex_count: unit, or 0 where no face gives one */
+    int32_t *triangle;      /* 3 * triangle_count: vertices */
+    int32_t *triangle_face; /* triangle_count */
+    gproji_hierarchy tree;  /* over the triangles */
+};
+
+/* -- cutting faces -- */
+
+/* Work on one face: its corners in its plane, as a ring from which ears are cut. */
+typedef struct gproji_polygon {
+    double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
+    int32_t *vertex;  /* capacity: their vertices */
+    int32_t *next;    /* capacity: the ring of the corners that are left */
+    int32_t *prev;    /* capacity */
+    int32_t capacity; /* the largest degree of a face */
+    int32_t count;
+    double tolerance; /* areas below it count as zero */
+} gproji_polygon;
+
+/* Twice the area of the triangle of corners a, b, c, positive when counter-clockwise. */
+GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
+    const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
+    const double up[3] = {0, 0, 1};
+    double n[3], u[3], v[3], d[3], extent = 0;
+    const double *first;
+    int32_t h = mesh->face_halfedge[face], i;
+    gproj_mesh_face_area_vector(mesh, face, n);
+    gproji_normalise3(n, up);
+    gproji_tangents3(n, u, v);
+    first = mesh->position + 3 * (size_t)mesh->origin[h];
+    polygon->count = mesh->face_degree[face];
+    for (i = 0; i < polygon->count; ++i, h = mesh->next[h]) {
+        gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[h], first, d);
+        polygon->xy[2 * (size_t)i] = gproji_dot3(d, u);
+        polygon->xy[2 * (size_t)i + 1] = gproji_dot3(d, v);
+        polygon->vertex[i] = mesh->origin[h];
+        polygon->next[i] = i + 1 < polygon->count ? i + 1 : 0;
+        polygon->prev[i] = i > 0 ? i - 1 : polygon->count - 1;
+        extent = gproji_fmax(extent, gproji_dot3(d, d));
+    }
+    polygon->tolerance = 1e-9 * extent;
+}
+
+/* Every corner turns left, and the fan about the first one has no triangle that is turned over. */
+GPROJI_INTERNAL bool gproji_polygon_is_convex(const gproji_polygon *polygon) {
+    int32_t i;
+    for (i = 0; i < polygon->count; ++i) {
+        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) < -polygon->tolerance) return false;
+        if (i > 0 && i + 1 < polygon->count && gproji_turn(polygon, 0, i, i + 1) < -polygon->tolerance) return false;
+    }
+    return true;
+}
+
+/* Is corner b an ear: it turns left and no other corner is in the triangle a b c? Only corners that turn right can be
+   in it. Takes each corner looked at from the budget. */
+GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
+    int32_t a = polygon->prev[b], c = polygon->next[b], i;
+    if (gproji_turn(polygon, a, b, c) <= polygon->tolerance) return false;
+    for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
+        --*budget;
+        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) > 0) continue;
+        if (gproji_turn(polygon, a, b, i) >= 0 && gproji_turn(polygon, b, c, i) >= 0 &&
+            gproji_turn(polygon, c, a, i) >= 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Appends the triangle of three corners. */
+GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *polygon, int32_t face, int32_t a, int32_t b,
+                              int32_t c) {
+    int32_t *triangle = surface->triangle + 3 * (size_t)surface->triangle_count;
+    triangle[0] = polygon->vertex[a], triangle[1] = polygon->vertex[b], triangle[2] = polygon->vertex[c];
+    surface->triangle_face[surface->triangle_count++] = face;
+}
+
+/* Cuts ears until three corners are left. A corner where no ear is left (a face that crosses itself), or where the
+   budget of 512 looks a corner is used up (so that the time is linear in the mesh), is cut off all the same. */
+GPROJI_INTERNAL void gproji_cut_ears(gproj_surface *surface, gproji_polygon *polygon, int32_t face) {
+    int64_t budget = 512 * (int64_t)polygon->count;
+    int32_t left = polygon->count, b = 1, refused = 0;
+    while (left > 3) {
+        int32_t a = polygon->prev[b], c = polygon->next[b];
+        if (refused < left && budget > 0 && !gproji_is_ear(polygon, b, &budget)) {
+            ++refused;
+            b = c;
+            continue;
+        }
+        gproji_cut(surface, polygon, face, a, b, c);
+        polygon->next[a] = c, polygon->prev[c] = a;
+        --left, refused = 0;
+        b = c;
+    }
+    gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
+}
+
+GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
+                                     int32_t face) {
+    int32_t i;
+    gproji_polygon_set(polygon, mesh, face);
+    if (polygon->count > 3 && !gproji_polygon_is_convex(polygon)) {
+        gproji_cut_ears(surface, polygon, face);
+        return;
+    }
+    for (i = 1; i + 1 < polygon->count; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
+}
+
+GPROJI_INTERNAL bool gproji_cut_faces(gproj_surface *surface, const gproj_mesh *mesh) {
+    gproji_polygon polygon;
+    gproji_heap *heap = &surface->heap;
+    size_t capacity;
+    int32_t f;
+    bool complete;
+    memset(&polygon, 0, sizeof polygon);
+    for (f = 0; f < mesh->face_count; ++f) polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
+    capacity = (size_t)polygon.capacity;
+    polygon.xy = (double *)gproji_take(heap, capacity, 2 * sizeof(double));
+    polygon.vertex = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    polygon.next = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    polygon.prev = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    complete = polygon.xy && polygon.vertex && polygon.next && polygon.prev;
+    surface->triangle_count = 0;
+    for (f = 0; f < mesh->face_count && complete; ++f) gproji_cut_face(surface, &polygon, mesh, f);
+    gproji_give(heap, polygon.prev, capacity, sizeof(int32_t));
+    gproji_give(heap, polygon.next, capacity, sizeof(int32_t));
+    gproji_give(heap, polygon.vertex, capacity, sizeof(int32_t));
+    gproji_give(heap, polygon.xy, capacity, 2 * sizeof(double));
+    return complete;
+}
+
+/* -- normals -- */
+
+/* The angle between the edges from b to a and from b to c; 0 where one has no length. */
+GPROJI_INTERNAL double gproji_angle3(const double a[3], const double b[3], const double c[3]) {
+    double u[3], v[3], w[3];
+    gproji_sub3(a, b, u);
+    gproji_sub3(c, b, v);
+    gproji_cross3(u, v, w);
+    return atan2(gproji_length3(w), gproji_dot3(u, v));
+}
+
+GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
+    const double zero[3] = {0, 0, 0};
+    const double *x = mesh->position;
+    double n[3];
+    int32_t f, h, v;
+    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, n);
+        if (!gproji_normalise3(n, zero)) continue;
+        h = mesh->face_halfedge[f];
+        do {
+            v = mesh->origin[h];
+            gproji_add_scaled3(gproji_angle3(x + 3 * (size_t)mesh->origin[mesh->prev[h]], x + 3 * (size_t)v,
+                                             x + 3 * (size_t)mesh->origin[mesh->next[h]]),
+                               n, surface->normal + 3 * (size_t)v);
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
+    }
+    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
+}
+
+/* -- closest points -- */
+
+/* Barycentric coordinates of the orthogonal projection of p to the plane of a triangle: true where it falls inside.
+   *sure: the triangle is no needle and p not far away, so that the signs of coordinates beyond 1e-9 can be trusted.
+   False, and not sure, for triangles without area. */
+GPROJI_INTERNAL bool gproji_project_to_triangle(const double *const corner[3], const double p[3], double weight[3],
+                                                bool *sure) {
+    double ab[3], ac[3], ap[3], n[3], w[3], square, scale;
+    gproji_sub3(corner[1], corner[0], ab);
+    gproji_sub3(corner[2], corner[0], ac);
+    gproji_sub3(p, corner[0], ap);
+    gproji_cross3(ab, ac, n);
+    square = gproji_dot3(n, n);
+    scale = gproji_fmax(gproji_dot3(ab, ab), gproji_dot3(ac, ac));
+    *sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
+    if (!(square > 1e-28 * scale * scale)) return false;
+    gproji_cross3(ap, ac, w);
+    weight[1] = gproji_dot3(w, n) / square;
+    gproji_cross3(ab, ap, w);
+    weight[2] = gproji_dot3(w, n) / square;
+    weight[0] = 1 - weight[1] - weight[2];
+    return weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
+}
+
+/* corner[0] + w1 (corner[1] - corner[0]) + w2 (corner[2] - corner[0]) */
+GPROJI_INLINE void gproji_triangle_point(const double *const corner[3], const double weight[3], double out[3]) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
+    }
+}
+
+/* The point of a triangle nearest to p: the projection to its plane if that is inside; else on an edge that separates
+   the projection from the triangle. Of needles, and of triangles that are points, all candidates are compared. Returns
+   the squared distance. */
+GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
+                                                  double weight[3]) {
+    double best = DBL_MAX, q[3], w[3] = {0, 0, 0}, d, t;
+    int32_t k;
+    bool sure, inside = gproji_project_to_triangle(corner, p, w, &sure);
+    if (inside)
+        gproji_copy3(w, weight);
+    else
+        gproji_set3(1, 0, 0, weight);
+    gproji_triangle_point(corner, weight, out);
+    if (inside) best = gproji_square_distance3(out, p);
+    if (inside && sure) return best;
+    for (k = 0; k < 3; ++k) {
+        int32_t following = k < 2 ? k + 1 : 0, opposite = k > 0 ? k - 1 : 2;
+        if (sure && w[opposite] > 1e-9) continue;
+        t = gproji_closest_on_segment(corner[k], corner[following], p, q);
+        d = gproji_square_distance3(q, p);
+        if (!(d < best)) continue;
+        best = d;
+        gproji_copy3(q, out);
+        gproji_set3(0, 0, 0, weight);
+        weight[k] = 1 - t;
+        weight[following] = t;
+    }
+    return best;
+}
+
+GPROJI_INLINE void gproji_triangle_corners(const gproj_surface *surface, int32_t item, const double *corner[3]) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
+    }
+}
+
+GPROJI_INTERNAL void gproji_triangle_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const double *corner[3];
+    int32_t k;
+    gproji_triangle_corners((const gproj_surface *)user, item, corner);
+    for (k = 0; k < 3; ++k) {
+        low[k] = gproji_fmin(gproji_fmin(corner[0][k], corner[1][k]), corner[2][k]);
+        high[k] = gproji_fmax(gproji_fmax(corner[0][k], corner[1][k]), corner[2][k]);
+    }
+}
+
+GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, const double point[3]) {
+    const double *corner[3];
+    double out[3], weight[3];
+    gproji_triangle_corners((const gproj_surface *)user, item, corner);
+    return gproji_closest_on_triangle(corner, point, out, weight);
+}
+
+/* The unit normal at a point of a triangle: interpolated; that of the triangle where the vertex normals cancel; up
+   where the triangle has none either. */
+GPROJI_INTERNAL void gproji_surface_normal(const gproj_surface *surface, int32_t item, const double weight[3],
+                                           double normal[3]) {
+    const double up[3] = {0, 0, 1};
+    const double *corner[3];
+    double ab[3], ac[3];
+    int32_t k;
+    gproji_set3(0, 0, 0, normal);
+    for (k = 0; k < 3; ++k) {
+        const double *n = surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
+        gproji_add_scaled3(weight[k], n, normal);
+    }
+    if (gproji_dot3(normal, normal) > 1e-12) {
+        gproji_normalise3(normal, up);
+        return;
+    }
+    gproji_triangle_corners(surface, item, corner);
+    gproji_sub3(corner[1], corner[0], ab);
+    gproji_sub3(corner[2], corner[0], ac);
+    gproji_cross3(ab, ac, normal);
+    gproji_normalise3(normal, up);
+}
+
+/* -- the object -- */
+
+/* The triangles of all faces: a face of degree d has d - 2. */
+GPROJI_INTERNAL int32_t gproji_count_triangles(const gproj_mesh *mesh) {
+    int32_t f, count = 0;
+    for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] - 2;
+    return count;
+}
+
+GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
+    size_t vertices, triangles;
+    if (!surface) return;
+    vertices = (size_t)surface->vertex_count, triangles = (size_t)surface->triangle_count;
+    gproji_hierarchy_give(&surface->heap, &surface->tree);
+    gproji_give(&surface->heap, surface->triangle_face, triangles, sizeof(int32_t));
+    gproji_give(&surface->heap, surface->triangle, triangles, 3 * sizeof(int32_t));
+    gproji_give(&surface->heap, surface->normal, vertices, 3 * sizeof(double));
+    gproji_give(&surface->heap, surface->position, vertices, 3 * sizeof(double));
+    gproji_destroy_object(surface, sizeof *surface);
+}
+
+/* Everything but the checks; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_surface_fill(gproj_surface *surface, const gproj_mesh *mesh) {
+    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)gproji_count_triangles(mesh);
+    int32_t triangle_count = (int32_t)triangles;
+    surface->vertex_count = mesh->vertex_count;
+    surface->triangle_count = triangle_count;
+    surface->position = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
+    surface->normal = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
+    surface->triangle = (int32_t *)gproji_take(&surface->heap, triangles, 3 * sizeof(int32_t));
+    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, triangles, sizeof(int32_t));
+    if (!surface->position || !surface->normal || !surface->triangle || !surface->triangle_face) return false;
+    memcpy(surface->position, mesh->position, vertices * 3 * sizeof(double));
+    gproji_surface_normals(surface, mesh);
+    if (!gproji_cut_faces(surface, mesh)) {
+        surface->triangle_count = triangle_count; /* the size with which the arrays are given back */
+        return false;
+    }
+    return gproji_hierarchy_build(&surface->heap, &surface->tree, triangle_count, gproji_triangle_box, surface);
+}
+
+GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    gproj_surface *surface;
+    gproji_error_clear(error);
+    if (!mesh || !mesh->face_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    mesh ? "the mesh of the surface has no faces" : "the mesh of the surface is NULL");
+        return NULL;
+    }
+    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface));
+    if (!surface || !gproji_surface_fill(surface, mesh)) {
+        gproji_fail_memory(error);
+        gproj_surface_destroy(surface);
+        return NULL;
+    }
+    return surface;
+}
+
+GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
+    gproj_surface_hit hit;
+    const double *corner[3];
+    double weight[3];
+    int32_t item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
+    gproji_triangle_corners(surface, item, corner);
+    gproji_closest_on_triangle(corner, point, hit.point, weight);
+    gproji_surface_normal(surface, item, weight, hit.normal);
+    hit.distance = gproji_distance3(hit.point, point);
+    hit.face = surface->triangle_face[item];
+    return hit;
+}
+
+
+/* ============================================================================================================
+   >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
+
+   The least-squares plane of a face is the plane through the mean of its vertices that is orthogonal to the
+   eigenvector of the smallest eigenvalue of their scatter matrix. That vector is found by Jacobi's method (1846) on
+   the 3x3 matrix, which is accurate to rounding for faces that are planar to rounding. */
+
+/* Rotates rows and columns p, q of the symmetric matrix m so that m[p][q] = 0, and the columns of v along. */
+GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_t p, int32_t q) {
+    double theta, t, c, s;
+    int32_t k;
+    if (m[p][q] == 0) return;
+    theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+    t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1));
+    c = 1 / sqrt(t * t + 1);
+    s = t * c;
+    for (k = 0; k < 3; ++k) {
+        double kp = m[k][p], kq = m[k][q];
+        m[k][p] = c * kp - s * kq;
+        m[k][q] = s * kp + c * kq;
+    }
+    for (k = 0; k < 3; ++k) {
+        double pk = m[p][k], qk = m[q][k];
+        m[p][k] = c * pk - s * qk;
+        m[q][k] = s * pk + c * qk;
+    }
+    for (k = 0; k < 3; ++k) {
+        double kp = v[k][p], kq = v[k][q];
+        v[k][p] = c * kp - s * kq;
+        v[k][q] = s * kp + c * kq;
+    }
+}
+
+/* The unit eigenvector of the smallest eigenvalue of a symmetric 3x3 matrix (destroyed). */
+GPROJI_INTERNAL void gproji_smallest_eigenvector3(double m[3][3], double out[3]) {
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    int32_t sweep, smallest = 0, k;
+    for (sweep = 0; sweep < 12; ++sweep) {
+        gproji_jacobi_rotate(m, v, 0, 1);
+        gproji_jacobi_rotate(m, v, 0, 2);
+        gproji_jacobi_rotate(m, v, 1, 2);
+    }
+    for (k = 1; k < 3; ++k)
+        if (m[k][k] < m[smallest][smallest]) smallest = k;
+    for (k = 0; k < 3; ++k) out[k] = v[k][smallest];
+}
+
+GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
+    return mesh->position + 3 * (size_t)mesh->origin[halfedge];
+}
+
+GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, int32_t face, double mean[3]) {
+    int32_t h = mesh->face_halfedge[face], k;
+    gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_position(mesh, h), mean);
+}
+
+/* The largest distance of a face's vertices from their least-squares plane, in the mesh's units. */
+GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face) {
+    double mean[3], scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, normal[3], d[3], worst = 0;
+    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
+    if (degree == 3) return 0;
+    gproji_face_mean(mesh, face, mean);
+    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
+    }
+    gproji_smallest_eigenvector3(scatter, normal);
+    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        worst = gproji_fmax(worst, fabs(gproji_dot3(normal, d)));
+    }
+    return worst;
+}
+
+/* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
+   the vector that joins them over the area they span. */
+GPROJI_INTERNAL double gproji_diagonal_distance(const gproj_mesh *mesh, int32_t face) {
+    int32_t a = mesh->face_halfedge[face], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
+    double first[3], second[3], joining[3], normal[3], length;
+    gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
+    gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
+    gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
+    gproji_cross3(first, second, normal);
+    length = gproji_length3(normal);
+    return length > 0 ? fabs(gproji_dot3(normal, joining)) / length : 0;
+}
+
+/* Twice the signed area of the triangle a b c seen along `axis`. */
+GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], const double c[3], const double axis[3]) {
+    double u[3], v[3], n[3];
+    gproji_sub3(b, a, u);
+    gproji_sub3(c, a, v);
+    gproji_cross3(u, v, n);
+    return gproji_dot3(n, axis);
+}
+
+/* Do the segments of half-edges g and h cross properly, seen along `axis`? */
+GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, int32_t g, int32_t h, const double axis[3]) {
+    const double *a = gproji_corner_position(mesh, g), *b = gproji_corner_position(mesh, mesh->next[g]);
+    const double *c = gproji_corner_position(mesh, h), *d = gproji_corner_position(mesh, mesh->next[h]);
+    double abc = gproji_seen_area(a, b, c, axis), abd = gproji_seen_area(a, b, d, axis);
+    double cda = gproji_seen_area(c, d, a, axis), cdb = gproji_seen_area(c, d, b, axis);
+    return ((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0));
+}
+
+/* Does a side of the face cross another, seen along its vectorial area? */
+GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, int32_t face, const double axis[3]) {
+    int32_t first = mesh->face_halfedge[face], degree = mesh->face_degree[face], g = first, h, i, j;
+    for (i = 0; i + 2 < degree; ++i, g = mesh->next[g]) {
+        h = mesh->next[mesh->next[g]];
+        for (j = i + 2; j < degree; ++j, h = mesh->next[h])
+            if (mesh->next[h] != g && gproji_sides_cross(mesh, g, h, axis)) return true;
+    }
+    return false;
+}
+
+/* The vectorial area 1/2 sum (v_i - v_0) x (v_(i+1) - v_0) of a face of the mesh with other positions. */
+GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
+    int32_t h = mesh->face_halfedge[face], k;
+    const double *base = position + 3 * (size_t)mesh->origin[h];
+    double u[3], v[3], n[3];
+    gproji_set3(0, 0, 0, area);
+    for (k = 1; k + 1 < mesh->face_degree[face]; ++k) {
+        h = mesh->next[h];
+        gproji_sub3(position + 3 * (size_t)mesh->origin[h], base, u);
+        gproji_sub3(position + 3 * (size_t)mesh->origin[mesh->next[h]], base, v);
+        gproji_cross3(u, v, n);
+        gproji_add_scaled3(0.5, n, area);
+    }
+}
+
+GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures *m) {
+    static const double up[3] = {0, 0, 1};
+    double left[3], right[3], sum = 0;
+    int32_t e;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        int32_t h = 2 * e;
+        double length = gproji_distance3(gproji_corner_position(mesh, h), gproji_corner_position(mesh, mesh->twin[h]));
+        sum += length;
+        if (e == 0 || length < m->min_edge) m->min_edge = length;
+        if (length > m->max_edge) m->max_edge = length;
+        if (mesh->face[h] < 0 || mesh->face[mesh->twin[h]] < 0) continue;
+        gproji_area_vector(mesh, mesh->position, mesh->face[h], left);
+        gproji_area_vector(mesh, mesh->position, mesh->face[mesh->twin[h]], right);
+        if (!gproji_normalise3(left, up) || !gproji_normalise3(right, up)) continue;
+        m->folded_edges += gproji_dot3(left, right) < -0.5; /* cos 120 degrees */
+    }
+    if (mesh->edge_count) m->mean_edge = sum / mesh->edge_count;
+}
+
+GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
+    double unit = m->mean_edge > 0 ? m->mean_edge : 1;
+    int32_t f;
+    m->planarity_face = mesh->face_count ? 0 : -1;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double area_vector[3], area, flatness = gproji_face_planarity(mesh, f) / unit;
+        gproji_area_vector(mesh, mesh->position, f, area_vector);
+        area = gproji_length3(area_vector);
+        m->area += area;
+        if (f == 0 || area < m->min_face_area) m->min_face_area = area;
+        if (area > m->max_face_area) m->max_face_area = area;
+        m->degenerate_faces += area < 1e-12 * unit * unit;
+        m->bow_tie_faces += gproji_is_bow_tie(mesh, f, area_vector);
+        m->planarity_mean += flatness / mesh->face_count;
+        if (flatness > m->planarity_max) {
+            m->planarity_max = flatness;
+            m->planarity_face = f;
+        }
+        if (mesh->face_degree[f] == 4)
+            m->diagonal_max = gproji_fmax(m->diagonal_max, gproji_diagonal_distance(mesh, f) / unit);
+        if (planarity) planarity[f] = flatness;
+    }
+}
+
+/* The area of the spherical polygon of the normals around an interior vertex, as a fan of plane triangles about their
+   mean; 0 at the boundary. */
+GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex) {
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double mean[3] = {0, 0, 0}, previous[3], n[3], a[3], b[3], area[3], sum = 0;
+    static const double none[3] = {0, 0, 0};
+    if (start < 0 || mesh->face[start] < 0) return 0;
+    do {
+        gproji_area_vector(mesh, mesh->position, mesh->face[h], previous);
+        gproji_normalise3(previous, none);
+        gproji_add_scaled3(1, previous, mean);
+        count++;
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    mean[0] /= count, mean[1] /= count, mean[2] /= count;
+    do { /* `previous` begins as the normal of the last face */
+        gproji_area_vector(mesh, mesh->position, mesh->face[h], n);
+        gproji_normalise3(n, none);
+        gproji_sub3(previous, mean, a);
+        gproji_sub3(n, mean, b);
+        gproji_cross3(a, b, area);
+        sum += 0.5 * gproji_length3(area);
+        gproji_copy3(n, previous);
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    return sum;
+}
+
+GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    int32_t v, k;
+    for (v = 0; v < count; ++v) {
+        for (k = 0; k < 3; ++k) {
+            double x = position[3 * (size_t)v + (size_t)k];
+            if (v == 0 || x < low[k]) low[k] = x;
+            if (v == 0 || x > high[k]) high[k] = x;
+        }
+    }
+    return gproji_distance3(low, high);
+}
+
+GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
+    double sum = 0;
+    int32_t e;
+    for (e = 0; e < mesh->edge_count; ++e)
+        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[2 * e],
+                                position + 3 * (size_t)mesh->origin[2 * e + 1]);
+    return mesh->edge_count ? sum / mesh->edge_count : 0;
+}
+
+GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
+    double diagonal = gproji_box_diagonal(original, mesh->vertex_count), edge = gproji_mean_edge(mesh, original);
+    double sum = 0, squares = 0, before[3], now[3];
+    int32_t v, f;
+    if (!(diagonal > 0)) diagonal = 1;
+    if (!(edge > 0)) edge = 1;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
+        sum += d;
+        squares += d * d;
+        m->deviation_max = gproji_fmax(m->deviation_max, d / diagonal);
+    }
+    if (mesh->vertex_count) {
+        m->deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
+        m->displacement_mean = sum / mesh->vertex_count / edge;
+    }
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproji_area_vector(mesh, original, f, before);
+        gproji_area_vector(mesh, mesh->position, f, now);
+        m->turned_faces += gproji_dot3(before, now) < 0;
+    }
+}
+
+GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
+    gproj_measures m;
+    int32_t v;
+    memset(&m, 0, sizeof m);
+    m.planarity_face = -1;
+    if (!mesh) return m;
+    gproji_measure_edges(mesh, &m);
+    gproji_measure_faces(mesh, planarity, &m);
+    for (v = 0; v < mesh->vertex_count; ++v) m.gauss_variation += gproji_gauss_area(mesh, v);
+    if (original) gproji_measure_change(mesh, original, &m);
+    return m;
+}
+
+/* ============================================================================================================
+   >>form   A mesh, its system, and the catalogue of constraints and wishes. Uses all earlier sections.
+
+   Based on Tang et al. (2014), sections 3.1 to 3.4.
+
+   The form works in its own units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the
+   variables 3i..3i+2; face normals come behind them when a group asks for them. Groups whose rows change from
+   iteration to iteration have a gproji_part with what their refresh needs; a part never moves, so that the system
+   may keep pointers to it. */
+
+typedef struct gproji_part {
+    struct gproji_part *next;
+    struct gproj_form *form;
+    int32_t group;
+    int32_t count;                /* of `vertex` and, for curves, of `curve_of` */
+    int32_t capacity;             /* of `vertex` */
+    int32_t *vertex;              /* the vertices (Gauss image: faces) that its rows belong to */
+    const gproj_surface *surface; /* the caller's, in the mesh's units */
+    const gproj_curve *curve;     /* the caller's, in the mesh's units; or NULL: */
+    int32_t curve_count;          /* curves of its own, in internal units */
+    gproj_curve **own_curve;
+    int32_t *curve_of; /* of each vertex, its own curve */
+    int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
+} gproji_part;
+
+struct gproj_form {
+    gproji_heap own;
+    gproj_error error;
+    gproj_host host;
+    gproj_mesh *mesh;
+    gproj_system *system;
+    double centre[3], scale;
+    double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
+    int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
+    int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
+    int32_t ring_size;
+    int32_t closeness;  /* the group of the default guidance; -1: none yet */
+    int32_t planarity;  /* the group of the planar faces; -1: none */
+    gproji_part *guard; /* the faces that are kept from turning over; NULL: none yet */
+    double *guard_area; /* of each of them, its vectorial area when the solve began: 3 numbers */
+    gproji_part *part;
+};
+
+/* -- life -- */
+
+GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
+    int32_t i;
+    for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
+    gproji_give(&form->own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
+    gproji_give(&form->own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
+    gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
+    gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
+    gproji_give(&form->own, part, 1, sizeof *part);
+}
+
+GPROJ_API void gproj_form_destroy(gproj_form *form) {
+    if (!form) return;
+    if (form->guard)
+        gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
+    while (form->part) {
+        gproji_part *next = form->part->next;
+        gproji_part_give(form, form->part);
+        form->part = next;
+    }
+    if (form->mesh) {
+        gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
+        gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
+        gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
+    }
+    gproj_system_destroy(form->system);
+    gproji_destroy_object(form, sizeof *form);
+}
+
+/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. */
+GPROJI_INTERNAL void gproji_form_measure_units(gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    double edge = gproj_mesh_mean_edge_length(mesh), low, high;
+    int32_t v, k;
+    for (k = 0; k < 3; ++k) {
+        low = high = mesh->vertex_count ? mesh->position[k] : 0;
+        for (v = 1; v < mesh->vertex_count; ++v) {
+            low = gproji_fmin(low, mesh->position[3 * (size_t)v + (size_t)k]);
+            high = gproji_fmax(high, mesh->position[3 * (size_t)v + (size_t)k]);
+        }
+        form->centre[k] = low + (high - low) / 2;
+    }
+    form->scale = edge > 0 ? 1 / edge : 1;
+}
+
+GPROJI_INTERNAL void gproji_to_internal(const gproj_form *form, const double position[3], double out[3]) {
+    gproji_sub3(position, form->centre, out);
+    out[0] *= form->scale, out[1] *= form->scale, out[2] *= form->scale;
+}
+
+GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x[3], double out[3]) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
+}
+
+GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
+    int32_t largest = 1, i;
+    for (i = 0; i < mesh->vertex_count; ++i) largest = gproji_max(largest, gproj_mesh_valence(mesh, i));
+    for (i = 0; i < mesh->face_count; ++i) largest = gproji_max(largest, mesh->face_degree[i]);
+    return largest;
+}
+
+/* The rest of gproj_form_create, when the form itself is there. */
+GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
+    gproj_mesh *mesh = form->mesh;
+    int32_t i;
+    if (!mesh)
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "there is no mesh: reading or building it failed, see its error");
+    form->ring_size = gproji_largest_ring(mesh);
+    form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
+    form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
+    form->ring = (int32_t *)gproji_take(&form->own, (size_t)form->ring_size, sizeof *form->ring);
+    form->system = gproj_system_create(&form->host);
+    if (!form->original || !form->normal || !form->ring || !form->system) return gproji_fail_memory(&form->error);
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        const double *p = mesh->position + 3 * (size_t)i;
+        if (!gproji_is_finite(p[0]) || !gproji_is_finite(p[1]) || !gproji_is_finite(p[2]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                               "a coordinate of vertex %d is not a finite number", i);
+    }
+    gproji_form_measure_units(form);
+    for (i = 0; i < mesh->vertex_count; ++i)
+        gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
+    for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
+    gproj_system_add_variables(form->system, 3 * mesh->vertex_count, 3, form->original);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
+    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
+    if (!form) return NULL;
+    gproji_error_clear(&form->error);
+    if (host) form->host = *host;
+    form->mesh = mesh;
+    form->scale = 1;
+    form->closeness = form->planarity = -1;
+    gproji_form_begin(form);
+    return form;
+}
+
+/* The form's own error, or its system's. */
+GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form) {
+    if (!form) return gproji_no_object();
+    if (form->error.code != GPROJ_OK || !form->system) return &form->error;
+    return gproj_system_error(form->system);
+}
+
+GPROJI_INTERNAL bool gproji_form_ready(const gproj_form *form) { return gproj_form_error(form)->code == GPROJ_OK; }
+
+GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
+    gproj_memory sum, part;
+    memset(&sum, 0, sizeof sum);
+    if (!form) return sum;
+    sum = form->own.account;
+    part = gproj_system_memory(form->system);
+    sum.used += part.used;
+    sum.peak += part.peak;
+    sum.allocations += part.allocations;
+    return sum;
+}
+
+GPROJ_API gproj_system *gproj_form_system(gproj_form *form) { return form ? form->system : NULL; }
+
+GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double *scale) {
+    gproji_set3(0, 0, 0, centre);
+    *scale = 1;
+    if (!form) return;
+    gproji_copy3(form->centre, centre);
+    *scale = form->scale;
+}
+
+/* -- what the builders share -- */
+
+GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
+                                         double weight, gproj_refresh refresh, gproji_part *part) {
+    gproj_group group;
+    memset(&group, 0, sizeof group);
+    group.name = name;
+    group.kind = kind;
+    group.place = place;
+    group.schedule.weight = weight;
+    group.refresh = refresh;
+    group.refresh_user = part;
+    return gproj_system_add_group(form->system, &group);
+}
+
+/* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
+    gproji_part *part;
+    if (!gproji_form_ready(form)) return NULL;
+    part = (gproji_part *)gproji_take_zeroed(&form->own, 1, sizeof *part);
+    if (part) part->vertex = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof *part->vertex);
+    if (!part || !part->vertex) {
+        gproji_give(&form->own, part, 1, sizeof *part);
+        gproji_fail_memory(&form->error);
+        return NULL;
+    }
+    part->form = form;
+    part->count = part->capacity = count;
+    part->next = form->part;
+    form->part = part;
+    return part;
+}
+
+GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
+    term->i = i;
+    term->j = j;
+    term->a = a;
+}
+
+/* Refuses vertex numbers out of range. */
+GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
+                                               const int32_t *vertices) {
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        if (vertices[i] >= 0 && vertices[i] < form->mesh->vertex_count) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, vertices[i],
+                    "%s: there is no vertex %d (the mesh has %d, counted from 0)", name, vertices[i],
+                    form->mesh->vertex_count);
+        return false;
+    }
+    return true;
+}
+
+/* Copies the caller's list of vertices to a new part; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const char *name, int32_t count,
+                                                    const int32_t *vertices) {
+    gproji_part *part;
+    if (!gproji_form_ready(form)) return NULL;
+    if (count < 0 || (count > 0 && !vertices)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the list of %d vertices is no list",
+                    name, count);
+        return NULL;
+    }
+    if (!gproji_vertices_are_valid(form, name, count, vertices)) return NULL;
+    part = gproji_new_part(form, count);
+    if (part && count) memcpy(part->vertex, vertices, (size_t)count * sizeof *vertices);
+    return part;
+}
+
+typedef bool (*gproji_select)(const gproj_form *form, int32_t vertex);
+
+/* A new part with the vertices that `select` takes. */
+GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, gproji_select select) {
+    gproji_part *part;
+    int32_t v, count = 0;
+    if (!gproji_form_ready(form)) return NULL;
+    for (v = 0; v < form->mesh->vertex_count; ++v) count += select(form, v);
+    part = gproji_new_part(form, count);
+    if (!part) return NULL;
+    for (v = 0, count = 0; v < form->mesh->vertex_count; ++v)
+        if (select(form, v)) part->vertex[count++] = v;
+    return part;
+}
+
+GPROJI_INTERNAL bool gproji_select_all(const gproj_form *form, int32_t vertex) {
+    (void)form;
+    (void)vertex;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_select_boundary(const gproj_form *form, int32_t vertex) {
+    return gproj_mesh_is_boundary_vertex(form->mesh, vertex);
+}
+
+/* The half-edges with face -1 that leave and enter a boundary vertex are h and prev[h]. */
+GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex) {
+    const gproj_mesh *mesh;
+    const double *p;
+    double in[3], out[3];
+    int32_t h;
+    static const double none[3] = {0, 0, 0};
+    if (!form || !form->mesh || !form->original || vertex < 0 || vertex >= form->mesh->vertex_count) return false;
+    mesh = form->mesh;
+    if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
+    if (gproj_mesh_valence(mesh, vertex) == 2) return true;
+    h = mesh->vertex_halfedge[vertex];
+    p = form->original + 3 * (size_t)vertex;
+    gproji_sub3(p, form->original + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
+    gproji_sub3(form->original + 3 * (size_t)mesh->origin[mesh->twin[h]], p, out);
+    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+}
+
+GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex) {
+    return gproj_form_is_corner(form, vertex);
+}
+
+GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t vertex) {
+    return gproji_select_boundary(form, vertex) && !gproj_form_is_corner(form, vertex);
+}
+
+/* -- points: fixed vertices, handles, closeness -- */
+
+/* Rows x - p = 0 for the three coordinates of each vertex of the part; p = targets[3k..] in the mesh's units, or NULL:
+   the original place. */
+GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
+                                          const double *targets, double weight) {
+    int32_t i, k, group;
+    if (!part) return -1;
+    group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    for (i = 0; i < part->count; ++i) {
+        double p[3];
+        gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
+        if (targets) gproji_to_internal(form, targets + 3 * (size_t)i, p);
+        for (k = 0; k < 3; ++k) {
+            gproj_term term;
+            gproji_set_term(&term, 3 * part->vertex[i] + k, -1, 1);
+            gproj_system_add_row(form->system, group, 1, &term, -p[k], part->vertex[i]);
+        }
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
+    return gproji_add_points(form, gproji_new_vertex_part(form, "fixed vertices", count, vertices), "fixed vertices",
+                             GPROJ_CONSTRAINT, NULL, weight);
+}
+
+GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight) {
+    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_boundary), "fixed boundary",
+                             GPROJ_CONSTRAINT, NULL, weight);
+}
+
+GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
+    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_corner), "fixed corners",
+                             GPROJ_CONSTRAINT, NULL, weight);
+}
+
+GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
+                                    double weight) {
+    gproji_part *part = gproji_new_vertex_part(form, "targets", count, vertices);
+    if (part && count > 0 && !positions) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
+        return -1;
+    }
+    return gproji_add_points(form, part, "targets", GPROJ_CONSTRAINT, positions, weight);
+}
+
+GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions) {
+    const gproji_part *part;
+    int32_t i, k;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    for (part = form->part; part; part = part->next)
+        if (part->group == group && strcmp(gproj_system_group_info(form->system, group).name, "targets") == 0) break;
+    if (!part || !positions)
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                           "group %d has no targets, or there are no positions", group);
+    for (i = 0; i < part->count; ++i) {
+        double p[3];
+        gproji_to_internal(form, positions + 3 * (size_t)i, p);
+        for (k = 0; k < 3; ++k) gproj_system_set_row(form->system, group, 3 * i + k, NULL, -p[k]);
+    }
+    return gproj_form_error(form)->code;
+}
+
+GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
+    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all), "closeness", GPROJ_WISH, NULL,
+                             weight);
+}
+
+/* -- planar faces -- */
+
+/* The unit vector of a face's vectorial area at the system's x; where it has none, that of the sum over the faces
+   around its first vertex; then e_z. */
+GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
+    static const double up[3] = {0, 0, 1};
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    int32_t start = mesh->face_halfedge[face], h = start;
+    gproji_area_vector(mesh, x, face, out);
+    if (gproji_length3(out) > 1e-12) {
+        gproji_normalise3(out, up);
+        return;
+    }
+    gproji_set3(0, 0, 0, out);
+    do {
+        double area[3];
+        if (mesh->face[h] >= 0) {
+            gproji_area_vector(mesh, x, mesh->face[h], area);
+            gproji_add_scaled3(1, area, out);
+        }
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
+    gproji_normalise3(out, up);
+}
+
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. */
+GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t h = mesh->face_halfedge[face], n, c, k;
+    double normal[3];
+    gproj_term term[6];
+    gproji_face_normal(form, face, normal);
+    n = gproj_system_add_variables(form->system, 3, 3, normal);
+    if (n < 0) return;
+    form->normal[face] = n;
+    for (k = 0; k < 3; ++k) gproji_set_term(&term[k], n + k, n + k, 1);
+    gproj_system_add_row(form->system, group, 3, term, -1, face);
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
+        for (k = 0; k < 3; ++k) {
+            gproji_set_term(&term[k], n + k, i + k, 1);
+            gproji_set_term(&term[3 + k], n + k, j + k, -1);
+        }
+        gproj_system_add_row(form->system, group, 6, term, 0, face);
+    }
+}
+
+GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
+    int32_t group, f;
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
+        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
+    form->planarity = group;
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* -- curves and surfaces -- */
+
+/* How far p is along segment `segment` from its start, minus the segment's length if `from_end`. */
+GPROJI_INTERNAL double gproji_along(const gproj_curve *curve, int32_t segment, const double p[3], bool from_end) {
+    double d[3];
+    gproji_sub3(p, curve->point + 3 * ((size_t)segment + from_end), d);
+    return gproji_dot3(d, curve->tangent + 3 * (size_t)segment);
+}
+
+/* The segment after or before; -1 at an open end. */
+GPROJI_INTERNAL int32_t gproji_next_segment(const gproj_curve *curve, int32_t segment, int32_t direction) {
+    bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
+    segment += direction;
+    if (segment >= 0 && segment < curve->segment_count) return segment;
+    if (!closed) return -1;
+    return segment < 0 ? curve->segment_count - 1 : 0;
+}
+
+/* Walks from a segment to the one on which p has its foot. Where p is in the wedge outside a vertex of the polyline, with
+   its foot on neither side, it stays. */
+GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, const double p[3]) {
+    int32_t direction = gproji_along(curve, segment, p, true) > 0 ? 1 : -1, steps;
+    for (steps = 0; steps < curve->segment_count; ++steps) {
+        bool forward = direction > 0;
+        double beyond = gproji_along(curve, segment, p, forward);
+        int32_t next = gproji_next_segment(curve, segment, direction);
+        if ((forward ? beyond <= 0 : beyond >= 0) || next < 0) break;
+        beyond = gproji_along(curve, next, p, !forward);
+        if (forward ? beyond < 0 : beyond > 0) break;
+        segment = next;
+    }
+    return segment;
+}
+
+/* The three rows of a gliding vertex: it is on the line of its segment (2 rows orthogonal to the tangent), and, with
+   weight only when it is pinned, at `end`. Everything in internal units. */
+GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int32_t first, const double tangent[3],
+                                        const double end[3], bool pinned) {
+    double basis[3][3];
+    int32_t k;
+    gproji_tangents3(tangent, basis[0], basis[1]);
+    gproji_copy3(tangent, basis[2]);
+    for (k = 0; k < 3; ++k) gproj_system_set_row(system, group, first + k, basis[k], -gproji_dot3(basis[k], end));
+    gproj_system_set_row_weight(system, group, first + 2, pinned);
+}
+
+/* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment, and
+   is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
+GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    bool settled = system->late >= 2;
+    int32_t i;
+    for (i = 0; i < part->count; ++i) {
+        const gproj_curve *curve = part->curve ? part->curve : part->own_curve[part->curve_of[i]];
+        const double *tangent;
+        double p[3], end[3];
+        bool after, before;
+        gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
+        if (part->curve) gproji_from_internal(part->form, p, p);
+        if (part->segment[i] < 0) {
+            part->segment[i] = gproj_curve_closest(curve, p).segment;
+        } else if (!settled) {
+            part->segment[i] = gproji_walk(curve, part->segment[i], p);
+        } else if (system->group[group].row[3 * i + 2].weight > 0) {
+            continue;
+        }
+        after = gproji_along(curve, part->segment[i], p, true) > 0;
+        before = gproji_along(curve, part->segment[i], p, false) < 0;
+        tangent = curve->tangent + 3 * (size_t)part->segment[i];
+        gproji_copy3(curve->point + 3 * ((size_t)part->segment[i] + after), end);
+        if (part->curve) gproji_to_internal(part->form, end, end);
+        gproji_set_gliding(system, group, 3 * i, tangent, end, settled && (after || before));
+    }
+}
+
+/* All vertices look for their segments anew. */
+GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
+    gproji_part *part;
+    int32_t i;
+    for (part = form->part; part; part = part->next) {
+        for (i = 0; part->segment && i < part->count; ++i) {
+            part->segment[i] = -1;
+            gproj_system_set_row_weight(form->system, part->group, 3 * i + 2, 0);
+        }
+    }
+}
+
+GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *part, const char *name, double weight) {
+    int32_t i, k, c;
+    part->segment = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->segment);
+    if (!part->segment) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    part->group =
+        gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_gliding, part);
+    for (i = 0; i < part->count; ++i) {
+        gproj_term term[3];
+        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+    }
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
+                                    double weight) {
+    gproji_part *part = gproji_new_vertex_part(form, "gliding", count, vertices);
+    if (!part) return -1;
+    if (!curve) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "gliding: there is no curve");
+        return -1;
+    }
+    part->curve = curve;
+    return gproji_add_gliding_part(form, part, "gliding", weight);
+}
+
+/* The boundary loops of the original as curves in internal units, and the loop of each vertex of the part. `loop_of`:
+   work, one entry a vertex of the mesh; `points`: work, 3 numbers a vertex. */
+GPROJI_INTERNAL bool gproji_take_loops(gproj_form *form, gproji_part *part, int32_t *loop_of, double *points) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t l, i;
+    for (l = 0; l < mesh->loop_count; ++l) {
+        int32_t h = mesh->loop_halfedge[l], count = 0;
+        do {
+            loop_of[mesh->origin[h]] = l;
+            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[l]);
+        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &form->error);
+        if (!part->own_curve[l]) return false;
+    }
+    for (i = 0; i < part->count; ++i) part->curve_of[i] = loop_of[part->vertex[i]];
+    return true;
+}
+
+GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
+    gproji_part *part = gproji_new_selected_part(form, gproji_select_gliding);
+    size_t vertices;
+    int32_t *loop_of;
+    double *points;
+    bool done = false;
+    if (!part) return -1;
+    vertices = (size_t)form->mesh->vertex_count;
+    part->curve_count = form->mesh->loop_count;
+    part->own_curve =
+        (gproj_curve **)gproji_take_zeroed(&form->own, (size_t)part->curve_count, sizeof *part->own_curve);
+    part->curve_of = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->curve_of);
+    loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
+    points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
+    if (part->own_curve && part->curve_of && loop_of && points) {
+        done = gproji_take_loops(form, part, loop_of, points);
+    } else {
+        gproji_fail_memory(&form->error);
+    }
+    gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
+    gproji_give(&form->own, points, 3 * vertices, sizeof *points);
+    if (!done) return -1;
+    gproj_add_fixed_corners(form, weight);
+    return gproji_add_gliding_part(form, part, "gliding boundary", weight);
+}
+
+/* The row n'(v - p) = 0 for each vertex: p the closest point of the surface, n its normal there. */
+GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    const double *x = gproj_system_values(system);
+    int32_t i;
+    for (i = 0; i < part->count; ++i) {
+        double point[3];
+        gproj_surface_hit hit;
+        gproji_from_internal(part->form, x + 3 * (size_t)part->vertex[i], point);
+        hit = gproj_surface_closest(part->surface, point);
+        gproji_to_internal(part->form, hit.point, point);
+        gproj_system_set_row(system, group, i, hit.normal, -gproji_dot3(hit.normal, point));
+    }
+}
+
+GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
+    gproji_part *part = gproji_new_selected_part(form, gproji_select_all);
+    int32_t i, c;
+    if (!part) return -1;
+    if (!surface) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "reference: there is no surface");
+        return -1;
+    }
+    part->surface = surface;
+    part->group =
+        gproji_new_group(form, "reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, gproji_refresh_reference, part);
+    for (i = 0; i < part->count; ++i) {
+        gproj_term term[3];
+        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+    }
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* -- fairness -- */
+
+/* One second difference: centre - sum of `neighbour` / count, of points (vertices or normals) given by their first
+   variables. */
+typedef struct gproji_difference {
+    int32_t centre;
+    int32_t count;
+    const int32_t *neighbour;
+} gproji_difference;
+
+/* The three rows of a difference, one a coordinate. `term`: room for count + 1 terms. */
+GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
+                                           gproj_term *term) {
+    int32_t k, i;
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[0], d->centre + k, -1, 1);
+        for (i = 0; i < d->count; ++i) gproji_set_term(&term[i + 1], d->neighbour[i] + k, -1, -1.0 / d->count);
+        gproj_system_add_row(form->system, group, d->count + 1, term, 0, element);
+    }
+}
+
+/* The same seen in a tangent plane: two rows whose coefficients the refresh fills in. `term`: 3 (count + 1). */
+GPROJI_INTERNAL void gproji_add_tangential_difference(gproj_form *form, int32_t group, const gproji_difference *d,
+                                                      int32_t element, gproj_term *term) {
+    int32_t k, i;
+    for (i = 0; i <= d->count; ++i)
+        for (k = 0; k < 3; ++k)
+            gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
+    for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * (d->count + 1), term, 0, element);
+}
+
+typedef void (*gproji_add_one_difference)(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
+                                          gproj_term *term);
+
+/* The differences of a point with its cyclic neighbours: opposite pairs where there are four, else the mean of all
+   (paper 3.2). Returns how many differences there are. */
+GPROJI_INTERNAL int32_t gproji_add_ring_differences(gproj_form *form, int32_t group, int32_t centre, int32_t *ring,
+                                                    int32_t count, int32_t element, gproj_term *term,
+                                                    gproji_add_one_difference add) {
+    gproji_difference d;
+    int32_t pairs[4];
+    d.centre = centre;
+    d.count = count;
+    d.neighbour = ring;
+    if (count == 4) {
+        pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
+        d.count = 2;
+        d.neighbour = pairs;
+        add(form, group, &d, element, term);
+        d.neighbour = pairs + 2;
+    }
+    add(form, group, &d, element, term);
+    return count == 4 ? 2 : 1;
+}
+
+/* Room for the terms of the largest difference of this mesh. */
+GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
+    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+    if (!term) gproji_fail_memory(&form->error);
+    return term;
+}
+
+GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
+    gproji_give(&form->own, term, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+}
+
+/* The neighbours of an interior vertex by their first variables; 0 for other vertices. */
+GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
+    int32_t count, i;
+    if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
+    count = gproj_mesh_one_ring(form->mesh, vertex, form->ring, form->ring_size);
+    for (i = 0; i < count; ++i) form->ring[i] *= 3;
+    return count;
+}
+
+GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group, gproj_term *term) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        gproji_difference d;
+        int32_t pair[2], h;
+        if (!gproji_select_gliding(form, v)) continue;
+        h = mesh->vertex_halfedge[v];
+        pair[0] = 3 * mesh->origin[mesh->prev[h]];
+        pair[1] = 3 * mesh->origin[mesh->twin[h]];
+        d.centre = 3 * v;
+        d.count = 2;
+        d.neighbour = pair;
+        gproji_add_difference(form, group, &d, v, term);
+    }
+}
+
+GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
+    gproj_term *term;
+    int32_t group;
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    term = gproji_take_terms(form);
+    if (!term) return -1;
+    gproji_add_boundary_differences(form, group, term);
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
+    gproj_term *term;
+    int32_t group, v;
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    term = gproji_take_terms(form);
+    if (!term) return -1;
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        int32_t count = gproji_vertex_ring(form, v);
+        if (count) gproji_add_ring_differences(form, group, 3 * v, form->ring, count, v, term, gproji_add_difference);
+    }
+    gproji_add_boundary_differences(form, group, term);
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* The unit sum of the vectorial areas around a vertex at the system's x. */
+GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
+    static const double up[3] = {0, 0, 1};
+    const gproj_mesh *mesh = form->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    gproji_set3(0, 0, 0, out);
+    do {
+        double area[3];
+        if (mesh->face[h] >= 0) {
+            gproji_area_vector(mesh, gproj_system_values(form->system), mesh->face[h], area);
+            gproji_add_scaled3(1, area, out);
+        }
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
+    gproji_normalise3(out, up);
+}
+
+/* Fills in rows `row` and `row` + 1: u' and w' of a difference, u, w spanning the plane orthogonal to `normal`. */
+GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
+                                               const double normal[3]) {
+    double basis[2][3];
+    int32_t i, k, c;
+    gproji_tangents3(normal, basis[0], basis[1]);
+    for (k = 0; k < 2; ++k) {
+        int32_t terms;
+        gproj_term *term = gproji_row_terms(system, group, row + k, &terms);
+        int32_t count = terms / 3 - 1; /* neighbours */
+        for (i = 0; i <= count; ++i)
+            for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[k][c] * (i == 0 ? 1.0 : -1.0 / count);
+    }
+}
+
+/* One part for differences in tangent planes: part->vertex names the vertex or face of each. */
+GPROJI_INTERNAL void gproji_note_differences(gproji_part *part, int32_t element, int32_t count) {
+    while (count-- > 0) part->vertex[part->count++] = element;
+}
+
+GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    double normal[3] = {0, 0, 1};
+    int32_t i;
+    for (i = 0; i < part->count; ++i) {
+        if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
+        gproji_refresh_difference(system, group, 2 * i, normal);
+    }
+}
+
+GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
+    gproji_part *part;
+    gproj_term *term;
+    int32_t v;
+    if (!form || !gproji_form_ready(form)) return -1;
+    part = gproji_new_part(form, 2 * form->mesh->vertex_count);
+    term = part ? gproji_take_terms(form) : NULL;
+    if (!term) return -1;
+    part->count = 0;
+    part->group = gproji_new_group(form, "tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight,
+                                   gproji_refresh_tangential, part);
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        int32_t count = gproji_vertex_ring(form, v);
+        if (count == 0) continue;
+        count = gproji_add_ring_differences(form, part->group, 3 * v, form->ring, count, v, term,
+                                            gproji_add_tangential_difference);
+        gproji_note_differences(part, v, count);
+    }
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group) {
+    static const double up[3] = {0, 0, 1};
+    const gproji_part *part = (const gproji_part *)user;
+    int32_t i;
+    for (i = 0; i < part->count; ++i) {
+        double normal[3];
+        gproji_copy3(gproj_system_values(system) + part->form->normal[part->vertex[i]], normal);
+        gproji_normalise3(normal, up);
+        gproji_refresh_difference(system, group, 2 * i, normal);
+    }
+}
+
+/* The differences of face `face` in the Gauss image: with all its neighbours where they all exist, else with opposite
+   neighbours of a quad. Returns how many there are. */
+GPROJI_INTERNAL int32_t gproji_add_gauss_differences(gproj_form *form, int32_t group, int32_t face, gproj_term *term) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], count = 0, k, added = 0;
+    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+        int32_t neighbour = mesh->face[mesh->twin[h]];
+        form->ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
+        count += neighbour >= 0;
+    }
+    if (count == degree)
+        return gproji_add_ring_differences(form, group, form->normal[face], form->ring, degree, face, term,
+                                           gproji_add_tangential_difference);
+    for (k = 0; degree == 4 && k < 2; ++k) {
+        gproji_difference d;
+        int32_t pair[2];
+        pair[0] = form->ring[k];
+        pair[1] = form->ring[k + 2];
+        if (pair[0] < 0 || pair[1] < 0) continue;
+        d.centre = form->normal[face];
+        d.count = 2;
+        d.neighbour = pair;
+        gproji_add_tangential_difference(form, group, &d, face, term);
+        added++;
+    }
+    return added;
+}
+
+/* Triangles have no normals as variables until something needs them. Other faces get theirs from the planarity. */
+GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form) {
+    int32_t f, group = -1;
+    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
+        if (form->normal[f] >= 0) continue;
+        if (form->mesh->face_degree[f] > 3) {
+            gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
+                        "the Gauss image needs the normals of planar faces: call gproj_add_planarity before");
+            return false;
+        }
+        if (group < 0)
+            group = gproji_new_group(form, "triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, 1, NULL, NULL);
+        gproji_add_normal(form, group, f);
+    }
+    return gproji_form_ready(form);
+}
+
+GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
+    gproji_part *part;
+    gproj_term *term;
+    int32_t f;
+    if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form)) return -1;
+    part = gproji_new_part(form, 2 * form->mesh->face_count);
+    term = part ? gproji_take_terms(form) : NULL;
+    if (!term) return -1;
+    part->count = 0;
+    part->group = gproji_new_group(form, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
+                                   gproji_refresh_gauss, part);
+    for (f = 0; f < form->mesh->face_count; ++f)
+        gproji_note_differences(part, f, gproji_add_gauss_differences(form, part->group, f, term));
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule) {
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    return gproj_system_set_schedule(form->system, group, schedule);
+}
+
+GPROJ_API gproj_group_info gproj_get_group_info(const gproj_form *form, int32_t group) {
+    return gproj_system_group_info(form ? form->system : NULL, group);
+}
+
+/* -- the guard: a face must not lose its area -- */
+
+/* On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide, and
+   two iterations longer, a face whose area along its normal falls below 0.4 of what it was gets a row that asks for
+   that much,
+       s (A(v)'n - 0.4 a0) = 0,   A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = 1 / sqrt(a0),
+   and a step that would leave a face with less than 0.2 is found again with such a row. These rows act on the steps
+   only: they are no constraints, and the merit knows nothing of them. */
+static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_least = 0.2,
+                    gproji_guard_area = 1e-4;
+enum {
+    GPROJI_GUARD_DEGREE = 64,
+    GPROJI_GUARD_LONGER = 2
+};
+
+/* The normal of a guarded face as its variables say at x; a triangle has its first one. */
+GPROJI_INTERNAL void gproji_guard_normal(const gproj_form *form, const double *x, int32_t index, double out[3]) {
+    static const double none[3] = {0, 0, 0};
+    int32_t normal = form->normal[form->guard->vertex[index]];
+    gproji_copy3(normal >= 0 ? x + normal : form->guard_area + 3 * (size_t)index, out);
+    gproji_normalise3(out, none);
+}
+
+/* The area of the face along its normal, over what it was. Faces that had none are let go. */
+GPROJI_INTERNAL double gproji_guard_ratio(const gproj_form *form, int32_t index) {
+    const double *x = gproj_system_values(form->system);
+    double area[3], normal[3], before = gproji_length3(form->guard_area + 3 * (size_t)index);
+    if (!(before > gproji_guard_area)) return HUGE_VAL;
+    gproji_area_vector(form->mesh, x, form->guard->vertex[index], area);
+    gproji_guard_normal(form, x, index, normal);
+    return gproji_dot3(area, normal) / before;
+}
+
+/* Switches the row of a face on, with its normal at x. */
+GPROJI_INTERNAL void gproji_guard_face(gproj_form *form, const double *x, int32_t index) {
+    double n[3], area = gproji_length3(form->guard_area + 3 * (size_t)index);
+    int32_t group = form->guard->group, count, t, k;
+    gproj_term *term = gproji_row_terms(form->system, group, index, &count);
+    gproji_guard_normal(form, x, index, n);
+    for (t = 0; t < count;
+         t += 6) { /* one edge: the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
+        for (k = 0; k < 3; ++k) {
+            term[t + 2 * k].a = 0.5 * n[(k + 2) % 3];
+            term[t + 2 * k + 1].a = -0.5 * n[(k + 2) % 3];
+        }
+    }
+    form->system->group[group].row[index].constant = -gproji_guard_wanted * area;
+    form->system->group[group].row[index].weight = 1 / sqrt(area);
+}
+
+GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int32_t group) {
+    gproj_form *form = (gproj_form *)user;
+    int32_t i;
+    for (i = 0; i < form->guard->count; ++i) {
+        system->group[group].row[i].weight = 0;
+        if (gproji_guard_ratio(form, i) < gproji_guard_wanted) gproji_guard_face(form, system->x, i);
+    }
+}
+
+/* After a step: does a face lose too much of its area that is not guarded yet? Its row takes the normal before the step. */
+GPROJI_INTERNAL bool gproji_check_guard(void *user, gproj_system *system) {
+    gproj_form *form = (gproj_form *)user;
+    const gproji_group *group = &system->group[form->guard->group];
+    bool found = false;
+    int32_t i;
+    for (i = 0; group->weight > 0 && i < form->guard->count; ++i) {
+        if (group->row[i].weight > 0 || gproji_guard_ratio(form, i) >= gproji_guard_least) continue;
+        gproji_guard_face(form, system->saved, i);
+        found = true;
+    }
+    return found;
+}
+
+/* The row of a face: for each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
+GPROJI_INTERNAL void gproji_add_guard_row(gproj_form *form, int32_t face) {
+    const gproj_mesh *mesh = form->mesh;
+    gproj_term term[6 * GPROJI_GUARD_DEGREE];
+    int32_t h = mesh->face_halfedge[face], c, k, count = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
+        for (k = 0; k < 3; ++k) {
+            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
+            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
+        }
+    }
+    gproj_system_set_row_weight(form->system, form->guard->group,
+                                gproj_system_add_row(form->system, form->guard->group, count, term, 0, face), 0);
+}
+
+/* The guard's group and rows, once. */
+GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
+    int32_t f, count = 0;
+    for (f = 0; f < form->mesh->face_count; ++f) count += form->mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
+    form->guard = gproji_new_part(form, count);
+    if (!form->guard) return;
+    form->guard_area = (double *)gproji_take(&form->own, 3 * (size_t)count, sizeof *form->guard_area);
+    if (!form->guard_area) {
+        gproji_fail_memory(&form->error);
+        return;
+    }
+    form->guard->group = gproji_new_group(form, "guard", GPROJ_WISH, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, NULL);
+    if (form->guard->group < 0) return;
+    form->system->group[form->guard->group].guard = true;
+    form->system->group[form->guard->group].refresh_user = form;
+    for (f = 0, count = 0; f < form->mesh->face_count; ++f) {
+        if (form->mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
+        form->guard->vertex[count++] = f;
+        gproji_add_guard_row(form, f);
+    }
+    form->system->check_step = gproji_check_guard;
+    form->system->check_user = form;
+}
+
+/* Sets the guard for a solve in which wishes guide until iteration `guided` (0: none do, and it guards the first few). */
+GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
+    gproj_schedule schedule;
+    int32_t i;
+    bool wanted = !skip && form->planarity >= 0;
+    if (wanted && !form->guard) gproji_add_guard(form);
+    if (!form->guard || !gproji_form_ready(form)) return;
+    schedule.weight = wanted ? gproji_guard_weight : 0;
+    schedule.decay = 1;
+    schedule.last = gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER;
+    gproj_system_set_schedule(form->system, form->guard->group, schedule);
+    for (i = 0; i < form->guard->count; ++i)
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), form->guard->vertex[i],
+                           form->guard_area + 3 * (size_t)i);
+}
+
+/* -- solving -- */
+
+/* x = the mesh's positions, and the normals of its faces as they are now. */
+GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
+    double *x = gproj_system_values(form->system);
+    int32_t i;
+    for (i = 0; i < form->mesh->vertex_count; ++i)
+        gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, x + 3 * (size_t)i);
+    for (i = 0; i < form->mesh->face_count; ++i)
+        if (form->normal[i] >= 0) gproji_face_normal(form, i, x + form->normal[i]);
+}
+
+/* The mesh's positions = x; a vertex that has not moved keeps its coordinates to the bit. */
+GPROJI_INTERNAL void gproji_store_positions(gproj_form *form) {
+    const double *x = gproj_system_values(form->system);
+    int32_t i;
+    for (i = 0; i < form->mesh->vertex_count; ++i) {
+        double before[3], *position = form->mesh->position + 3 * (size_t)i;
+        gproji_to_internal(form, position, before);
+        if (memcmp(before, x + 3 * (size_t)i, sizeof before) != 0)
+            gproji_from_internal(form, x + 3 * (size_t)i, position);
+    }
+}
+
+/* Is there a wish with a weight other than the default guidance? */
+GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
+    int32_t g;
+    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
+        gproj_group_info info = gproj_system_group_info(form->system, g);
+        if (g != form->closeness && !form->system->group[g].guard && info.kind == GPROJ_WISH &&
+            info.schedule.weight > 0 && info.rows > 0)
+            return true;
+    }
+    return false;
+}
+
+/* Where no wish guides, closeness to where this solve begins does: 0.03 * 0.5^n in the first half, at most 5 times (a sixth costs hexagon meshes their last digits). Returns the
+   iteration in which guidance ends, 0 without any. */
+GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip) {
+    bool others = gproji_has_active_wish(form), wanted = !skip && !others;
+    int32_t half = gproji_max(1, (iterations + 1) / 2), i;
+    gproj_schedule schedule;
+    if (wanted && form->closeness < 0) form->closeness = gproj_add_closeness(form, 0);
+    if (form->closeness >= 0) {
+        schedule.weight = wanted ? 0.03 : 0;
+        schedule.decay = 0.5;
+        schedule.last = gproji_min(5, half);
+        gproj_system_set_schedule(form->system, form->closeness, schedule);
+        for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
+            gproj_system_set_row(form->system, form->closeness, i, NULL, -gproj_system_values(form->system)[i]);
+    }
+    return others ? half : wanted ? gproji_min(5, half) : 0;
+}
+
+/* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
+   them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
+GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
+    int32_t vertices = 3 * form->mesh->vertex_count, t;
+    double sum[3] = {0, 0, 0};
+    for (t = 0; t < count; ++t) {
+        if (term[t].i >= vertices) continue;
+        if (term[t].j >= 0 && term[t].j < vertices) return true;
+        if (term[t].j < 0) sum[term[t].i % 3] += term[t].a;
+    }
+    return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
+}
+
+/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
+GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
+    int32_t g, r, count;
+    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
+        gproj_group_info info = gproj_system_group_info(form->system, g);
+        for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
+            const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
+            if (gproji_row_holds(form, term, count)) return true;
+        }
+    }
+    return false;
+}
+
+GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+    static const char shrinks[] =
+        "; nothing holds the mesh, so the fairness shrinks it: fix vertices or add a reference";
+    gproj_result result;
+    int32_t guided;
+    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    gproji_load_positions(form);
+    gproji_restart_gliding(form);
+    guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness);
+    gproji_set_guard(form, guided, options && options->skip_guard);
+    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    form->system->default_last = gproji_max(1, (iterations + 1) / 2);
+    result = gproj_system_solve(form->system, iterations, options);
+    form->system->default_last = 0;
+    if (result.outcome == GPROJ_FAILED) return result;
+    gproji_store_positions(form);
+    if (gproji_has_active_wish(form) && !gproji_is_held(form))
+        gproji_append(result.message, sizeof result.message, strlen(result.message), shrinks, sizeof shrinks - 1);
+    return result;
+}
+
+#endif /* GPROJI_IMPLEMENTED */
+#endif /* GUIDEDPROJ_IMPLEMENTATION */

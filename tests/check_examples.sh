@@ -1,0 +1,28 @@
+#!/bin/bash
+# check_examples.sh - every example builds, runs, prints what tests/expected/NAME.txt says, and is short.
+. "$(dirname "$0")/checks.sh"
+
+ls "$root"/examples/*.c >/dev/null 2>&1 || { fail 'no examples'; report; }
+${MAKE:-make} --no-print-directory -k -C "$root/examples" build >"$work/make.txt" 2>&1 || cat "$work/make.txt"
+clean 'the examples compile with warnings' "$(grep -E 'warning:|error:' "$work/make.txt")"
+for source in "$root"/examples/*.c; do
+    name=$(basename "$source" .c) expected=$root/tests/expected/$(basename "$source" .c).txt
+    [ "$(wc -l <"$source")" -lt 100 ] && pass || fail "$name.c has 100 lines or more"
+    grep -q '^/\*' <(head -n 1 "$source") && pass || fail "$name.c does not begin with a comment"
+    if [ ! -x "$root/examples/build/$name" ]; then
+        fail "$name does not build"
+    elif ! (cd "$work" && timeout 60 "$root/examples/build/$name" >"$name.txt" 2>&1 </dev/null); then
+        fail "$name ends with an error"
+        head -n 20 "$work/$name.txt"
+    elif [ ! -f "$expected" ]; then
+        fail "$name: no tests/expected/$name.txt; it printed:"
+        cat "$work/$name.txt"
+    else
+        clean "$name does not print what is expected (< expected, > printed)" "$(diff "$expected" "$work/$name.txt")"
+    fi
+done
+for expected in "$root"/tests/expected/*.txt; do
+    [ -f "$expected" ] || continue
+    [ -f "$root/examples/$(basename "$expected" .txt).c" ] && pass || fail "$expected belongs to no example"
+done
+report

@@ -1,0 +1,56 @@
+#!/bin/bash
+# check_sections.sh - the header reads from top to bottom: cut at any section banner, what comes before compiles; tags
+# are unique and the manual's contents name them all, in order; no static function is declared ahead.
+#
+# A banner is a comment that begins with a line of - or = and goes on with >>tag. The manual is everything before the
+# first banner; its table of contents are its lines that begin with >>tag.
+. "$(dirname "$0")/checks.sh"
+
+have python3 && have gcc || { skip 'sections: no python3 or no gcc'; report; }
+cat >"$work/sections.py" <<'END'
+import re, sys
+path, out = sys.argv[1:]
+text = open(path, encoding="utf-8").read()
+banners = [(m.start(), m.group(1)) for m in re.finditer(r"^/\* [-=]{20,}\n[ \t]*>>([a-z0-9-]+)", text, re.M)]
+tags = [tag for _, tag in banners]
+manual = text[:banners[0][0]] if banners else text
+contents = re.findall(r"^[ \t]*(?:/\*)?[ \t]*>>([a-z0-9-]+)", manual, re.M)
+
+# What is wrong with the tags; a file for each kind of complaint.
+def complain(kind, lines):
+    open(f"{out}/{kind}.list", "w").write("".join(line + "\n" for line in lines))
+complain("banners", [] if len(tags) >= 2 else ["no section banners found"])
+complain("unique", sorted({tag for tag in tags if tags.count(tag) > 1}))
+complain("contents", [] if contents == tags else
+         [f"in the contents, without a section or out of order: {tag}" for tag in contents if tag not in tags] +
+         [f"a section, but not in the contents: {tag}" for tag in tags if tag not in contents] +
+         [f"contents: {' '.join(contents)}", f"sections: {' '.join(tags)}"])
+complain("references", sorted({tag for tag in re.findall(r">>([a-z][a-z0-9-]*)\b", text) if tag not in tags}))
+
+# Static functions declared ahead: code without comments, strings and directives, up to a ; where a { should be.
+code = re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', lambda m: "\n" * m.group().count("\n"), text, flags=re.S)
+code = re.sub(r"^[ \t]*#(?:\\\n|[^\n])*", "", code, flags=re.M)
+ahead = re.findall(r"^(?:GPROJI_INTERNAL|GPROJI_INLINE|GPROJI_NOINLINE|static)\b[^;{}=]*?\)\s*;", code, re.M)
+complain("ahead", [" ".join(a.split()) for a in ahead])
+
+# The prefixes, with open conditionals closed.
+for position, tag in banners + [(len(text), "end")]:
+    prefix = text[:position]
+    directives = re.findall(r"^[ \t]*#[ \t]*(if|ifdef|ifndef|endif)\b", re.sub(r"/\*.*?\*/", "", prefix, flags=re.S), re.M)
+    depth = sum(-1 if d == "endif" else 1 for d in directives)
+    open(f"{out}/prefix_{tag}.c", "w").write(prefix + "\n#endif" * depth + "\nextern int the_end;\n")
+END
+python3 "$work/sections.py" "$root/guidedproj.h" "$work" || fail 'sections.py'
+for kind in 'banners:section banners' 'unique:tags used twice' 'contents:the table of contents differs from the sections' \
+    'references:>>tags that name no section' 'ahead:static functions declared ahead of their definition'; do
+    clean "${kind#*:}" "$(cat "$work/${kind%%:*}.list")"
+done
+for prefix in "$work"/prefix_*.c; do
+    tag=${prefix##*/prefix_} tag=${tag%.c}
+    for switch in '' -DGPROJ_NO_SIMD; do
+        job "what comes before >>$tag does not compile${switch:+ with $switch}" \
+            "gcc -std=c99 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -Wno-unused -DGUIDEDPROJ_IMPLEMENTATION $switch '$prefix'"
+    done
+done
+run_jobs
+report

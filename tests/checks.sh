@@ -1,0 +1,55 @@
+# checks.sh - what the check_*.sh scripts have in common; sourced, not run.
+#
+# Leaves the script in tests/ with $root (the folder of guidedproj.h; GPROJ_ROOT overrides it), $work (a temporary
+# folder) and counters. Checks that take long are queued by `job` and run together by `run_jobs`.
+set -u
+cd "$(dirname "${BASH_SOURCE[0]}")" || exit 2
+root=$(cd "${GPROJ_ROOT:-..}" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+passed=0 failed=0 skipped=0 queued=0
+
+have() { command -v "$1" >/dev/null 2>&1; }
+pass() { passed=$((passed + 1)); }
+fail() { failed=$((failed + 1)); printf 'FAIL %s\n' "$*"; }
+skip() { skipped=$((skipped + 1)); printf 'skip %s\n' "$*"; }
+
+# clean LABEL TEXT: passes when the text, a list of complaints, is empty.
+clean() {
+    if [ -z "$2" ]; then pass; else fail "$1"; printf '%s\n' "$2" | head -n 20 | sed 's/^/  /'; fi
+}
+
+# job LABEL COMMAND: queues a shell command that must succeed and write nothing.
+job() {
+    queued=$((queued + 1))
+    printf '%s\n' "$1" >"$work/$queued.label"
+    printf '%s\n' "$2" >"$work/$queued.job"
+}
+run_jobs() {
+    local i text
+    local -A seen=()
+    seq "$queued" | xargs -r -P "${JOBS:-2}" -I{} bash -c \
+        'cd "$0"; bash {}.job >{}.out 2>&1 </dev/null || echo "exit code $?" >>{}.out' "$work"
+    for ((i = 1; i <= queued; ++i)); do
+        text=$(cat "$work/$i.out" 2>&1)
+        if [ -n "$text" ] && [ -n "${seen[$text]:-}" ]; then
+            fail "$(cat "$work/$i.label"): as ${seen[$text]}"
+        else
+            clean "$(cat "$work/$i.label")" "$text"
+            [ -z "$text" ] || seen[$text]=$(cat "$work/$i.label")
+        fi
+    done
+    queued=0
+}
+
+# The header and what a compiler needs to find it.
+printf '#include "guidedproj.h"\n' >"$work/header.c"
+printf '#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n' >"$work/whole.c"
+cp "$work/header.c" "$work/header.cpp"
+cp "$work/whole.c" "$work/whole.cpp"
+have_cblas() { echo '#include <cblas.h>' | gcc -E -x c - >/dev/null 2>&1; }
+
+report() {
+    printf '%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
+    exit $((failed > 0))
+}

@@ -1,0 +1,24 @@
+#!/bin/bash
+# fuzz.sh SECONDS NAME... - runs the libFuzzer targets build/fuzz/NAME, JOBS at a time; fails when one finds something.
+set -u
+cd "$(dirname "$0")" || exit 2
+export seconds=$1
+shift
+export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1}"
+fuzz() {
+    local name=$1 folder=build/fuzz
+    [ -x $folder/$name ] || { echo "fuzz: $name did not build"; return 1; }
+    mkdir -p $folder/$name.corpus
+    if $folder/$name -max_total_time=$seconds -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 -verbosity=0 \
+        -artifact_prefix=$folder/$name- $folder/$name.corpus $([ -d fuzz_seeds/$name ] && echo fuzz_seeds/$name) \
+        >$folder/$name.log 2>&1 </dev/null; then
+        echo "fuzz: $name found nothing in $(sed -n 's/.*number_of_executed_units: *//p' $folder/$name.log) runs, $seconds s"
+    else
+        echo "fuzz: $name FAILED"
+        tail -n 60 $folder/$name.log
+        return 1
+    fi
+}
+export -f fuzz
+[ $# -gt 0 ] || { echo 'fuzz: no targets'; exit 1; }
+printf '%s\n' "$@" | xargs -P "${JOBS:-2}" -I{} bash -c 'fuzz {}'

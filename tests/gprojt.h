@@ -1,0 +1,141 @@
+/* gprojt.h - the tests' own small harness: every test file defines tests and lists them in a main. */
+#ifndef GPROJT_H
+#define GPROJT_H
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../guidedproj.h"
+
+/* One test program is one translation unit, so these may be plain statics. */
+static int gprojt_failed_checks;
+static int gprojt_passed_tests, gprojt_failed_tests, gprojt_skipped_tests;
+static const char *gprojt_skip_reason;
+
+/* GPROJT_TEST(name) { ... } defines a test; GPROJT_RUN(name) in main runs it and prints a line. */
+#define GPROJT_TEST(name) static void gprojt_test_##name(void)
+#define GPROJT_RUN(name) gprojt_run(#name, gprojt_test_##name)
+
+/* A failed check is printed and counted; the test goes on. */
+#define GPROJT_CHECK(condition)                                                                    \
+    do {                                                                                           \
+        if (!(condition)) gprojt_fail(__FILE__, __LINE__, #condition);                             \
+    } while (0)
+/* |a - b| <= bound */
+#define GPROJT_NEAR(a, b, bound)                                                                   \
+    do {                                                                                           \
+        double gprojt_a = (a), gprojt_b = (b);                                                     \
+        if (!(fabs(gprojt_a - gprojt_b) <= (bound))) {                                             \
+            gprojt_fail(__FILE__, __LINE__, #a " = " #b " within " #bound);                        \
+            printf("    %.17g and %.17g\n", gprojt_a, gprojt_b);                                   \
+        }                                                                                          \
+    } while (0)
+/* Leaves the test at once when the condition fails: for what the rest depends on. */
+#define GPROJT_REQUIRE(condition)                                                                  \
+    do {                                                                                           \
+        if (!(condition)) {                                                                        \
+            gprojt_fail(__FILE__, __LINE__, #condition);                                           \
+            return;                                                                                \
+        }                                                                                          \
+    } while (0)
+/* Ends a test that cannot run here; the reason is printed. */
+#define GPROJT_SKIP(reason)                                                                        \
+    do {                                                                                           \
+        gprojt_skip_reason = (reason);                                                             \
+        return;                                                                                    \
+    } while (0)
+
+static void gprojt_fail(const char *file, int line, const char *what) {
+    if (gprojt_failed_checks++ < 20) printf("  %s:%d: %s\n", file, line, what);
+}
+
+static void gprojt_run(const char *name, void (*test)(void)) {
+    gprojt_failed_checks = 0;
+    gprojt_skip_reason = NULL;
+    test();
+    if (gprojt_failed_checks) {
+        gprojt_failed_tests++;
+        printf("FAIL %s (%d checks)\n", name, gprojt_failed_checks);
+    } else if (gprojt_skip_reason) {
+        gprojt_skipped_tests++;
+        printf("skip %s: %s\n", name, gprojt_skip_reason);
+    } else {
+        gprojt_passed_tests++;
+        printf("ok   %s\n", name);
+    }
+    fflush(stdout);
+}
+
+/* The end of main: one line that the Makefile's runner adds up, and the exit code. */
+static int gprojt_report(void) {
+    printf("%d passed, %d failed, %d skipped\n", gprojt_passed_tests, gprojt_failed_tests, gprojt_skipped_tests);
+    return gprojt_failed_tests != 0;
+}
+
+/* A small random generator (splitmix64, Steele, Lea, Flood 2014), the same everywhere. */
+static inline uint64_t gprojt_random(uint64_t *state) {
+    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+/* uniform in [0, 1) */
+static inline double gprojt_uniform(uint64_t *state) { return (double)(gprojt_random(state) >> 11) * 0x1p-53; }
+/* uniform in 0..n-1 */
+static inline int32_t gprojt_below(uint64_t *state, int32_t n) { return (int32_t)(gprojt_random(state) % (uint64_t)n); }
+
+/* A host whose allocator counts what is held and fails at one chosen allocation (0: never). */
+typedef struct gprojt_failing {
+    long held;  /* blocks not yet given back */
+    long calls; /* allocations and reallocations so far */
+    long fail_at;
+    size_t bytes;    /* held */
+    int wrong_sizes; /* releases with another size than the block was taken with */
+} gprojt_failing;
+
+static inline void *gprojt_failing_allocate(void *user, size_t size) {
+    gprojt_failing *f = (gprojt_failing *)user;
+    size_t *block;
+    if (++f->calls == f->fail_at) return NULL;
+    block = (size_t *)malloc(size + 16);
+    if (!block) return NULL;
+    block[0] = size;
+    f->held++;
+    f->bytes += size;
+    return (char *)block + 16;
+}
+static inline void gprojt_failing_release(void *user, void *block, size_t size) {
+    gprojt_failing *f = (gprojt_failing *)user;
+    size_t *start = (size_t *)(void *)((char *)block - 16);
+    if (start[0] != size) f->wrong_sizes++;
+    f->held--;
+    f->bytes -= start[0];
+    free(start);
+}
+static inline void *gprojt_failing_reallocate(void *user, void *block, size_t old_size, size_t new_size) {
+    void *moved = gprojt_failing_allocate(user, new_size);
+    if (!moved) return NULL;
+    memcpy(moved, block, old_size < new_size ? old_size : new_size);
+    gprojt_failing_release(user, block, old_size);
+    return moved;
+}
+static inline gproj_host gprojt_failing_host(gprojt_failing *f) {
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+    host.allocator.allocate = gprojt_failing_allocate;
+    host.allocator.reallocate = gprojt_failing_reallocate;
+    host.allocator.release = gprojt_failing_release;
+    host.allocator.user = f;
+    return host;
+}
+
+/* The folder of real meshes: GPROJ_DATA, or beside the project; they are not part of it. */
+static inline const char *gprojt_data_folder(void) {
+    const char *folder = getenv("GPROJ_DATA");
+    return folder ? folder : "../../shared/data";
+}
+
+#endif

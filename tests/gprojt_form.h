@@ -1,0 +1,175 @@
+/* gprojt_form.h - systems and forms for tests: rows in one line, threads, a clock that counts, noisy meshes. */
+#ifndef GPROJT_FORM_H
+#define GPROJT_FORM_H
+
+#include <pthread.h>
+
+#include "gprojt_mesh.h"
+
+/* -- rows -- */
+
+static inline gproj_term gprojt_term(int32_t i, int32_t j, double a) {
+    gproj_term term;
+    term.i = i, term.j = j, term.a = a;
+    return term;
+}
+
+static inline gproj_schedule gprojt_schedule(double weight, double decay, int32_t last) {
+    gproj_schedule schedule;
+    schedule.weight = weight, schedule.decay = decay, schedule.last = last;
+    return schedule;
+}
+
+static inline int32_t gprojt_add_group(gproj_system *s, const char *name, gproj_kind kind, double weight) {
+    gproj_group group;
+    memset(&group, 0, sizeof group);
+    group.name = name;
+    group.kind = kind;
+    group.place = GPROJ_PLACE_VERTEX;
+    group.schedule.weight = weight;
+    return gproj_system_add_group(s, &group);
+}
+
+/* The row a x_i + c. */
+static inline int32_t gprojt_add_linear(gproj_system *s, int32_t group, int32_t i, double a, double c, int32_t element) {
+    gproj_term term = gprojt_term(i, -1, a);
+    return gproj_system_add_row(s, group, 1, &term, c, element);
+}
+
+/* The row |p - q|^2 - d^2 of the points with first variables p and q. */
+static inline int32_t gprojt_add_distance(gproj_system *s, int32_t group, int32_t p, int32_t q, int32_t dimension, double d,
+                                          int32_t element) {
+    gproj_term term[9];
+    int32_t k;
+    for (k = 0; k < dimension; ++k) {
+        term[3 * k] = gprojt_term(p + k, p + k, 1);
+        term[3 * k + 1] = gprojt_term(q + k, q + k, 1);
+        term[3 * k + 2] = gprojt_term(p + k, q + k, -2);
+    }
+    return gproj_system_add_row(s, group, 3 * dimension, term, -d * d, element);
+}
+
+static inline gproj_group_info gprojt_info(const gproj_system *s, int32_t group) { return gproj_system_group_info(s, group); }
+
+/* -- threads: the tasks in reverse order, in leaps, or on `user` threads -- */
+
+static inline void gprojt_run_reverse(void *user, int32_t count, gproj_task task, void *data) {
+    (void)user;
+    while (count-- > 0) task(data, count);
+}
+
+static inline void gprojt_run_leaps(void *user, int32_t count, gproj_task task, void *data) {
+    int32_t leap, i;
+    (void)user;
+    for (leap = 0; leap < 3; ++leap)
+        for (i = leap; i < count; i += 3) task(data, i);
+}
+
+typedef struct gprojt_team {
+    int32_t next, count;
+    gproj_task task;
+    void *data;
+    pthread_mutex_t lock;
+} gprojt_team;
+
+static inline void *gprojt_team_work(void *user) {
+    gprojt_team *team = (gprojt_team *)user;
+    for (;;) {
+        int32_t mine;
+        pthread_mutex_lock(&team->lock);
+        mine = team->next++;
+        pthread_mutex_unlock(&team->lock);
+        if (mine >= team->count) return NULL;
+        team->task(team->data, mine);
+    }
+}
+
+/* `user`: an int, how many threads. */
+static inline void gprojt_run_threads(void *user, int32_t count, gproj_task task, void *data) {
+    pthread_t thread[8];
+    int threads = *(const int *)user, i, started = 0;
+    gprojt_team team;
+    team.next = 0, team.count = count, team.task = task, team.data = data;
+    pthread_mutex_init(&team.lock, NULL);
+    for (i = 1; i < threads && i < 8 && i < count; ++i)
+        if (pthread_create(&thread[started], NULL, gprojt_team_work, &team) == 0) ++started;
+    gprojt_team_work(&team);
+    for (i = 0; i < started; ++i) pthread_join(thread[i], NULL);
+    pthread_mutex_destroy(&team.lock);
+}
+
+/* One worker, two orders of one worker, 2 and 5 workers. */
+enum { GPROJT_CREWS = 5 };
+static inline gproj_host gprojt_crew(int index) {
+    static int two = 2, five = 5;
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+    if (index == 1) host.parallel.run = gprojt_run_reverse;
+    if (index == 2) host.parallel.run = gprojt_run_leaps;
+    if (index >= 3) host.parallel.run = gprojt_run_threads, host.parallel.user = index == 3 ? &two : &five;
+    return host;
+}
+
+/* -- a clock that goes one second further each time it is read -- */
+
+typedef struct gprojt_ticks {
+    double now;
+    long reads;
+} gprojt_ticks;
+
+static inline double gprojt_tick(void *user) {
+    gprojt_ticks *ticks = (gprojt_ticks *)user;
+    ticks->reads++;
+    return ticks->now += 1;
+}
+
+/* -- meshes -- */
+
+static inline gproj_mesh *gprojt_mesh_of(gprojt_soup soup) {
+    gproj_error error;
+    gproj_mesh *mesh = gprojt_soup_mesh(&soup, NULL, &error);
+    if (!mesh) printf("  generator: %s\n", error.message);
+    gprojt_soup_free(&soup);
+    return mesh;
+}
+
+/* Moves every coordinate by at most `size`. */
+static inline void gprojt_shake(gproj_mesh *mesh, double size, uint64_t seed) {
+    int32_t i;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] += size * (2 * gprojt_uniform(&seed) - 1);
+}
+
+/* A generated mesh whose noise is `noise` mean edges. */
+static inline gproj_mesh *gprojt_noisy(int shape, int32_t n, double noise, uint64_t seed) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, n));
+    if (mesh) gprojt_shake(mesh, noise * gproj_mesh_mean_edge_length(mesh), seed);
+    return mesh;
+}
+
+static inline double *gprojt_keep(const gproj_mesh *mesh) {
+    double *copy = (double *)malloc(3 * (size_t)mesh->vertex_count * sizeof *copy);
+    if (!copy) abort();
+    memcpy(copy, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *copy);
+    return copy;
+}
+
+static inline double gprojt_far(const double *a, const double *b) {
+    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/* The largest distance of vertices of two sets of positions. */
+static inline double gprojt_largest_move(const double *a, const double *b, int32_t count) {
+    double largest = 0;
+    int32_t i;
+    for (i = 0; i < count; ++i) largest = fmax(largest, gprojt_far(a + 3 * i, b + 3 * i));
+    return largest;
+}
+
+static inline bool gprojt_all_finite(const double *x, int32_t count) {
+    int32_t i;
+    for (i = 0; i < count; ++i)
+        if (!(fabs(x[i]) < HUGE_VAL)) return false;
+    return true;
+}
+
+#endif

@@ -1,0 +1,678 @@
+/* test_loop.c - >>loop: known problems, every verdict, schedules, damping, time, memory, the same bits for all workers. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+/* What the callback sees, and what it is told to do. */
+typedef struct gprojt_watch {
+    int32_t count, cancel_at, change_at, change_group;
+    gproj_schedule change;
+    gproj_iteration seen[64];
+    double x[64];
+    uint64_t allocations[64];
+} gprojt_watch;
+
+static bool gprojt_on_iteration(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    gprojt_watch *w = (gprojt_watch *)user;
+    GPROJT_CHECK(iteration->number == w->count + 1);
+    if (w->count == 64) return false;
+    w->seen[w->count] = *iteration;
+    w->x[w->count] = gproj_system_values(s)[0];
+    w->allocations[w->count] = gproj_system_memory(s).allocations;
+    w->count++;
+    if (w->count == w->change_at) gproj_system_set_schedule(s, w->change_group, w->change);
+    return w->count != w->cancel_at;
+}
+
+static gproj_solve_options gprojt_watched(gprojt_watch *watch) {
+    gproj_solve_options options;
+    memset(&options, 0, sizeof options);
+    watch->count = 0;
+    options.on_iteration = gprojt_on_iteration;
+    options.user = watch;
+    return options;
+}
+
+static gproj_system *gprojt_system(const gproj_host *host, int32_t count, int32_t block, const double *x) {
+    gproj_system *s = gproj_system_create(host);
+    gproj_system_add_variables(s, count, block, x);
+    return s;
+}
+
+/* -- known problems -- */
+
+static void gprojt_check_quadratic(const gprojt_watch *w) {
+    int32_t n;
+    for (n = 1; n < w->count; ++n) {
+        double before = w->seen[n - 1].residual;
+        if (before < 0.05) GPROJT_CHECK(w->seen[n].residual <= 5 * before * before + 1e-14);
+    }
+}
+
+GPROJT_TEST(sphere_and_planes) {
+    static const double start[3] = {2, 0.1, 0.8};
+    gproj_system *s = gprojt_system(NULL, 3, 3, start);
+    gproj_term sphere[3], plane[3];
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    int32_t k;
+    memset(&watch, 0, sizeof watch);
+    for (k = 0; k < 3; ++k) {
+        sphere[k] = gprojt_term(k, k, 1);
+        plane[k] = gprojt_term(k, -1, k == 2 ? -2 : 1);
+    }
+    gprojt_add_group(s, "sphere", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "planes", GPROJ_CONSTRAINT, 2);
+    gproj_system_add_row(s, 0, 3, sphere, -6, 0);
+    gproj_system_add_row(s, 1, 3, plane, 0, 1);
+    gprojt_add_linear(s, 1, 2, 1, -1, 2);
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 20, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 8 && result.damped == 0);
+    GPROJT_CHECK(result.residual <= 1e-13 && result.iterations == watch.count);
+    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance") != NULL);
+    GPROJT_NEAR(gproj_system_values(s)[2], 1, 1e-12);
+    GPROJT_NEAR(gproj_system_values(s)[0] + gproj_system_values(s)[1], 2, 1e-12);
+    gprojt_check_quadratic(&watch);
+    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 && watch.seen[0].epsilon == gproji_epsilon_max);
+    GPROJT_CHECK(watch.seen[watch.count - 1].epsilon == gproji_epsilon_min); /* it follows the residual */
+    GPROJT_CHECK(watch.seen[watch.count - 1].residual == result.residual && watch.seen[0].energy == 0);
+    gproj_system_destroy(s);
+}
+
+/* Seven equal circles of radius 1/2, six around one, tangent as they should be. */
+GPROJT_TEST(circle_packing) {
+    gproj_system *s = gprojt_system(NULL, 14, 2, NULL);
+    double *x = gproj_system_values(s);
+    uint64_t seed = 4;
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    int32_t k;
+    memset(&watch, 0, sizeof watch);
+    gprojt_add_group(s, "tangency", GPROJ_CONSTRAINT, 1);
+    for (k = 1; k < 7; ++k) {
+        x[2 * k] = cos(k * 1.0471975511965976) + 0.2 * gprojt_uniform(&seed);
+        x[2 * k + 1] = sin(k * 1.0471975511965976) + 0.2 * gprojt_uniform(&seed);
+        gprojt_add_distance(s, 0, 0, 2 * k, 2, 1, k);
+        if (k > 1) gprojt_add_distance(s, 0, 2 * k - 2, 2 * k, 2, 1, 10 + k);
+    }
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 20, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 8);
+    gprojt_check_quadratic(&watch);
+    for (k = 1; k < 7; ++k) GPROJT_NEAR(hypot(x[2 * k] - x[0], x[2 * k + 1] - x[1]), 1, 1e-12);
+    GPROJT_NEAR(hypot(x[12] - x[2], x[13] - x[3]), 1, 1e-11); /* the last touches the first, without a row */
+    GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-9);
+    gproj_system_destroy(s);
+}
+
+/* -- verdicts -- */
+
+static gproj_system *gprojt_conflict(void) {
+    gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
+    gprojt_add_group(s, "zero", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "one", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1, 0, 40);
+    gprojt_add_linear(s, 1, 0, 1, -1, 41);
+    return s;
+}
+
+GPROJT_TEST(stalled_names_both_groups) {
+    gproj_system *s = gprojt_conflict();
+    gproj_result result = gproj_system_solve(s, 50, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations < 12);
+    GPROJT_NEAR(gproj_system_values(s)[0], 0.5, 1e-6);
+    GPROJT_NEAR(result.residual, 0.5, 1e-6);
+    GPROJT_CHECK(strstr(result.message, "'zero'") && strstr(result.message, "'one'"));
+    GPROJT_CHECK(strstr(result.message, "work against each other") && strstr(result.message, "of vertex 4"));
+    GPROJT_CHECK(result.worst_element == 40 + result.worst_group);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(iteration_limit) {
+    gproj_system *s = gprojt_conflict();
+    gproj_result result = gproj_system_solve(s, 2, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 2);
+    GPROJT_CHECK(strstr(result.message, "after 2 iterations") && strstr(result.message, "allow more iterations"));
+    result = gproj_system_solve(s, 0, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 0 && result.step == 0);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(converged_without_a_step) {
+    static const double x[1] = {3};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_result result;
+    gprojt_add_group(s, "three", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1, -3, 0);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0 && result.step == 0);
+    result = gproj_system_solve(s, 0, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gproj_system_values(s)[0] == 3);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(cancelled_keeps_the_state) {
+    gproj_system *s = gprojt_conflict();
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&watch, 0, sizeof watch);
+    watch.cancel_at = 2;
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 20, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 2 && watch.count == 2);
+    GPROJT_CHECK(strstr(result.message, "cancelled by the caller"));
+    GPROJT_CHECK(gproj_system_values(s)[0] == watch.x[1] && result.residual == watch.seen[1].residual);
+    gproj_system_destroy(s);
+}
+
+static gproj_host gprojt_ticking(gprojt_ticks *ticks) {
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+    memset(ticks, 0, sizeof *ticks);
+    host.clock.now = gprojt_tick;
+    host.clock.user = ticks;
+    return host;
+}
+
+static gproj_system *gprojt_slow_system(const gproj_host *host) {
+    static const double x[3] = {1, 2, 3};
+    gproj_system *s = gprojt_system(host, 3, 3, x);
+    gproj_term square = gprojt_term(0, 0, 1);
+    gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "all", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_row(s, 0, 1, &square, 0, 0); /* a double root: slow */
+    gprojt_add_linear(s, 1, 1, 1, 0, 0);
+    return s;
+}
+
+GPROJT_TEST(time_out) {
+    gprojt_ticks ticks;
+    gproj_host host = gprojt_ticking(&ticks);
+    gproj_system *s = gprojt_slow_system(&host);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.time_budget = 20;
+    result = gproj_system_solve(s, 1000, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && result.iterations > 0 && result.iterations < 8);
+    GPROJT_CHECK(strstr(result.message, "the time budget ran out"));
+    GPROJT_CHECK(ticks.now >= 20 && ticks.now < 40);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(seconds_add_up) {
+    gprojt_ticks ticks;
+    gproj_host host = gprojt_ticking(&ticks);
+    gproj_system *s = gprojt_slow_system(&host);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    double sum = 0, of_iterations = 0;
+    int32_t n, phase;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 4, &options);
+    for (phase = 0; phase < GPROJ_PHASE_COUNT; ++phase) {
+        GPROJT_CHECK(result.seconds[phase] > 0);
+        sum += result.seconds[phase];
+        for (n = 0; n < watch.count; ++n) of_iterations += watch.seen[n].seconds[phase];
+    }
+    GPROJT_NEAR(sum, ticks.now - 1, 0); /* the first reading is the start */
+    GPROJT_NEAR(sum - of_iterations, 2, 0); /* the analysis and the rows before the first step */
+    result = gproj_system_solve(s, 1, NULL);
+    GPROJT_NEAR(result.seconds[GPROJ_PHASE_ANALYSE], 1, 0); /* one tick: nothing to do */
+    gproj_system_destroy(s);
+}
+
+static void gprojt_bad_refresh(void *user, gproj_system *s, int32_t group) {
+    if (++*(int *)user == 2) gproj_system_set_row(s, group, 99, NULL, 0);
+}
+
+GPROJT_TEST(failed_by_an_error_on_the_way) {
+    static const double x[1] = {5};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_group group;
+    gproj_result result;
+    int calls = 0;
+    memset(&group, 0, sizeof group);
+    group.name = "moving", group.schedule.weight = 1, group.refresh = gprojt_bad_refresh, group.refresh_user = &calls;
+    gproj_system_add_group(s, &group);
+    gprojt_add_linear(s, 0, 0, 1, 0, 0);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "no row 99"));
+    GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_INDEX && gproj_system_error(s)->index == 99);
+    gproj_system_destroy(s);
+}
+
+/* What a callback may not do: it would pull the arrays from under the solve. */
+typedef struct gprojt_meddler {
+    int what;
+    bool from_refresh;
+    long answer;
+} gprojt_meddler;
+
+static void gprojt_meddle(gprojt_meddler *m, gproj_system *s) {
+    gproj_term term = gprojt_term(0, -1, 1);
+    if (m->what == 0) m->answer = gproj_system_add_variables(s, 3000, 3, NULL);
+    if (m->what == 1) m->answer = gprojt_add_group(s, "late", GPROJ_CONSTRAINT, 1);
+    if (m->what == 2) m->answer = gproj_system_add_row(s, 0, 1, &term, 0, 0);
+    if (m->what == 3) m->answer = gproj_system_solve(s, 3, NULL).outcome == GPROJ_FAILED ? -1 : 0;
+    if (m->what == 4) m->answer = gproj_system_check_gradients(s) == HUGE_VAL ? -1 : 0;
+}
+
+static void gprojt_meddling_refresh(void *user, gproj_system *s, int32_t group) {
+    (void)group;
+    if (((gprojt_meddler *)user)->from_refresh) gprojt_meddle((gprojt_meddler *)user, s);
+}
+
+static bool gprojt_meddling_iteration(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    (void)iteration;
+    if (!((gprojt_meddler *)user)->from_refresh) gprojt_meddle((gprojt_meddler *)user, s);
+    return true;
+}
+
+static void gprojt_check_meddler(gprojt_meddler m) {
+    gproj_system *s = gprojt_conflict();
+    gproj_solve_options options;
+    gproj_result result;
+    gproj_group group;
+    memset(&options, 0, sizeof options);
+    memset(&group, 0, sizeof group);
+    options.on_iteration = gprojt_meddling_iteration, options.user = &m;
+    group.name = "meddler", group.schedule.weight = 1, group.refresh = gprojt_meddling_refresh, group.refresh_user = &m;
+    gproj_system_add_group(s, &group);
+    result = gproj_system_solve(s, 5, &options);
+    GPROJT_CHECK(m.answer == -1 && result.outcome == GPROJ_FAILED && gproj_system_error(s)->code == GPROJ_ERROR_STATE);
+    GPROJT_CHECK(strstr(result.message, "callback") != NULL && gproj_system_variable_count(s) == 1);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(callbacks_may_not_rebuild) {
+    int i;
+    for (i = 0; i < 10; ++i) {
+        gprojt_meddler m;
+        m.what = i / 2, m.from_refresh = i % 2 != 0, m.answer = 0;
+        gprojt_check_meddler(m);
+    }
+}
+
+/* Numbers that are not finite are never "all constraints hold". */
+GPROJT_TEST(values_that_are_no_numbers) {
+    static const double bad[2] = {NAN, HUGE_VAL};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        static const double x[2] = {1, 2};
+        gproj_system *s = gprojt_system(NULL, 2, 1, x);
+        gproj_result result;
+        gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 0, 0, 1, 0, 0);
+        gprojt_add_linear(s, 0, 1, 1, -2, 1); /* holds */
+        gproj_system_values(s)[0] = bad[i];
+        result = gproj_system_solve(s, 9, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_FAILED && gproj_system_error(s)->code == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(gproj_system_error(s)->place == GPROJ_PLACE_VARIABLE && gproj_system_error(s)->index == 0);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Rows that overflow: no step is possible, and x stays as it was. */
+GPROJT_TEST(rows_that_overflow) {
+    static const double x[2] = {1e200, 2};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_term square = gprojt_term(0, 0, 1);
+    gproj_result result;
+    gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_row(s, 0, 1, &square, -1, 7);
+    gprojt_add_linear(s, 0, 1, 1, -2, 8);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.worst_element == 7 && result.residual > 1e300);
+    GPROJT_CHECK(!memcmp(x, gproj_system_values(s), sizeof x));
+    gproj_system_destroy(s);
+}
+
+/* eps^2 that vanishes in floating point leaves a matrix of zeros. */
+GPROJT_TEST(not_positive_definite) {
+    static const double x[2] = {1, 2};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.epsilon = 1e-190;
+    gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1, 0, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && gproj_system_values(s)[0] == 1);
+    options.epsilon = 1e-165; /* a tenfold or two of it will do */
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped > 0);
+    gproj_system_destroy(s);
+}
+
+/* -- damping -- */
+
+static gproj_system *gprojt_square_plus(double start, double c) {
+    gproj_system *s = gprojt_system(NULL, 1, 1, &start);
+    gproj_term square = gprojt_term(0, 0, 1);
+    gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_row(s, 0, 1, &square, c, 3);
+    return s;
+}
+
+/* x^2 + 1 has no root: Newton's steps leap about, damped ones end at the minimum. */
+GPROJT_TEST(steps_that_raise_the_merit_are_damped) {
+    gproj_system *s = gprojt_square_plus(0.1, 1);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    int32_t n;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED);
+    GPROJT_CHECK(fabs(gproj_system_values(s)[0]) < 0.1);
+    for (n = 1; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].merit <= watch.seen[n - 1].merit);
+    GPROJT_CHECK(watch.count == 0 || watch.seen[0].attempts > 1);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(0.1, 1);
+    options = gprojt_watched(&watch);
+    options.skip_damping = true;
+    result = gproj_system_solve(s, 6, &options);
+    GPROJT_CHECK(watch.seen[0].merit > 2 && result.damped == 0);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].attempts == 1 && watch.seen[n].length == 1);
+    gproj_system_destroy(s);
+}
+
+/* At a double root Newton halves; the lengthened step reaches it. */
+GPROJT_TEST(steps_are_lengthened_near_singular_points) {
+    gproj_system *s = gprojt_square_plus(1, 0);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations < 15);
+    GPROJT_CHECK(watch.seen[0].length > 1.3 && watch.seen[0].length <= 2);
+    gproj_system_destroy(s);
+}
+
+/* A wish guides: a step may raise the merit, but not tenfold. */
+GPROJT_TEST(wishes_shorten_wild_steps) {
+    gproj_system *s = gprojt_square_plus(0.01, -1); /* the full step goes to 50 */
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&watch, 0, sizeof watch);
+    gprojt_add_group(s, "wish", GPROJ_WISH, 1e-4);
+    gprojt_add_linear(s, 1, 0, 1, 0, 0);
+    options = gprojt_watched(&watch);
+    gproj_system_set_schedule(s, 1, gprojt_schedule(1e-4, 1, 3));
+    result = gproj_system_solve(s, 30, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped >= 1);
+    GPROJT_CHECK(watch.seen[0].length < 1 && watch.seen[0].attempts == 1);
+    GPROJT_CHECK(watch.seen[0].energy > 0 && watch.seen[watch.count - 1].energy == 0);
+    gproj_system_destroy(s);
+}
+
+/* -- schedules -- */
+
+/* A conflict that keeps the loop going, and in group 2 a row that is always 1: its energy is the weight squared. */
+static gproj_system *gprojt_scheduled(gproj_schedule schedule) {
+    gproj_system *s = gprojt_conflict();
+    gprojt_add_group(s, "wish", GPROJ_WISH, 1);
+    gproj_system_add_row(s, 2, 0, NULL, 1, 0);
+    gproj_system_set_schedule(s, 2, schedule);
+    return s;
+}
+
+static void gprojt_check_energies(gproj_schedule schedule, int32_t iterations, int32_t change_at, gproj_schedule change) {
+    gproj_system *s = gprojt_scheduled(schedule);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    int32_t n;
+    memset(&watch, 0, sizeof watch);
+    watch.change_at = change_at, watch.change = change, watch.change_group = 2;
+    options = gprojt_watched(&watch);
+    gproj_system_solve(s, iterations, &options);
+    GPROJT_CHECK(watch.count == iterations);
+    for (n = 1; n <= watch.count; ++n) {
+        gproj_schedule now = change_at > 0 && n > change_at ? change : schedule;
+        double weight = now.weight * (now.decay > 0 ? pow(now.decay, n) : 1);
+        if (now.last > 0 && n > now.last) weight = 0;
+        GPROJT_NEAR(watch.seen[n - 1].energy, weight * weight, 1e-15);
+    }
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(schedules) {
+    gproj_schedule none = gprojt_schedule(0, 0, 0);
+    gprojt_check_energies(gprojt_schedule(0.5, 0, 0), 9, 0, none);
+    gprojt_check_energies(gprojt_schedule(0.5, 1, 4), 8, 0, none);
+    gprojt_check_energies(gprojt_schedule(0.2, 0.9, 5), 9, 0, none);
+    gprojt_check_energies(gprojt_schedule(2, 0.5, INT32_MAX), 20, 0, none);
+    gprojt_check_energies(gprojt_schedule(0.5, 0, 0), 6, 3, gprojt_schedule(0.25, 0, 0)); /* from the callback */
+    gprojt_check_energies(gprojt_schedule(0.5, 0.5, 2), 9, 4, gprojt_schedule(1, 0.5, 6));
+}
+
+static void gprojt_count_refresh(void *user, gproj_system *s, int32_t group) {
+    (void)s;
+    (void)group;
+    ++*(int *)user;
+}
+
+/* A constraint is switched off and on again by the callback. */
+GPROJT_TEST(a_group_goes_and_comes_back) {
+    gproj_system *s = gprojt_conflict();
+    gproj_group group;
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    int calls = 0, before;
+    memset(&group, 0, sizeof group);
+    group.name = "watched", group.schedule.weight = 1, group.refresh = gprojt_count_refresh, group.refresh_user = &calls;
+    gproj_system_add_group(s, &group);
+    memset(&watch, 0, sizeof watch);
+    gproj_system_set_schedule(s, 0, gprojt_schedule(0, 0, 0));
+    gproj_system_set_schedule(s, 2, gprojt_schedule(0, 0, 0));
+    options = gprojt_watched(&watch);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.worst_group == 1 && calls == 0);
+    GPROJT_NEAR(gproj_system_values(s)[0], 1, 1e-12);
+    gproj_system_set_schedule(s, 0, gprojt_schedule(1, 0, 0));
+    gproj_system_set_schedule(s, 1, gprojt_schedule(1, 0, 2));
+    watch.change_at = 3, watch.change = gprojt_schedule(1, 0, 0), watch.change_group = 2;
+    options = gprojt_watched(&watch);
+    options.tolerance = 1e-300; /* do not stop when x is near 0 */
+    result = gproj_system_solve(s, 5, &options);
+    GPROJT_CHECK(result.iterations >= 4 && watch.seen[1].residual > 0.4 && watch.seen[2].residual < 1e-4);
+    GPROJT_CHECK(result.worst_group == 0 && calls >= 2);
+    before = calls; /* an off group that comes back is refreshed before its first step */
+    gproj_system_set_schedule(s, 2, gprojt_schedule(1, 0, 1));
+    options = gprojt_watched(&watch);
+    watch.change_at = 0;
+    gproj_system_solve(s, 1, &options);
+    GPROJT_CHECK(calls == before + 2);
+    gproj_system_destroy(s);
+}
+
+/* -- the rest of the report -- */
+
+GPROJT_TEST(epsilon_given_and_followed) {
+    gproj_system *s = gprojt_square_plus(1, -4);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    int32_t n;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    options.epsilon = 0.25;
+    gproj_system_solve(s, 5, &options);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].epsilon == 0.25);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(1, -4);
+    options = gprojt_watched(&watch);
+    gproj_system_solve(s, 20, &options);
+    GPROJT_CHECK(watch.seen[0].epsilon == gproji_epsilon_max);
+    for (n = 1; n < watch.count; ++n)
+        GPROJT_NEAR(watch.seen[n].epsilon, fmin(fmax(watch.seen[n - 1].residual, gproji_epsilon_min), gproji_epsilon_max), 1e-15);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(tolerance_follows_the_size_of_x) {
+    static const double x[1] = {1e6 + 0.3};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_solve_options options;
+    gproj_result result;
+    gprojt_add_group(s, "far", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1.0 / 3, -1e6 / 3, 0);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual < 2e-9);
+    gproj_system_values(s)[0] = 1e6 + 0.3;
+    memset(&options, 0, sizeof options);
+    options.tolerance = 0.2;
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(wishes_alone) {
+    static const double x[2] = {5, -5};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_result result;
+    gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
+    gprojt_add_linear(s, 0, 0, 1, -1, 0);
+    gprojt_add_linear(s, 0, 0, 1, -2, 0);
+    result = gproj_system_solve(s, 40, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.worst_group == -1 && result.worst_element == -1);
+    GPROJT_CHECK(strstr(result.message, "there are no constraints"));
+    GPROJT_NEAR(gproj_system_values(s)[0], 1.5, 1e-9);
+    GPROJT_CHECK(gproj_system_values(s)[1] == -5);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(words_for_every_place) {
+    static const gproj_place places[] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE, GPROJ_PLACE_VARIABLE,
+                                         GPROJ_PLACE_NONE};
+    static const char *const words[] = {"pull of vertex 17", "pull of edge 17", "pull of face 17", "pull of variable 17",
+                                        "pull of element 17"};
+    int i;
+    for (i = 0; i < 5; ++i) {
+        gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
+        gproj_group group;
+        memset(&group, 0, sizeof group);
+        group.name = "pull", group.place = places[i], group.schedule.weight = 1;
+        gproj_system_add_group(s, &group);
+        gprojt_add_linear(s, 0, 0, 1, -1, 17);
+        GPROJT_CHECK(strstr(gproj_system_solve(s, 0, NULL).message, words[i]) != NULL);
+        gproj_system_destroy(s);
+    }
+}
+
+/* -- memory and workers -- */
+
+/* Chains of rods between points in space, closed by a wish; enough rows for several tasks. */
+static gproj_system *gprojt_rods(const gproj_host *host, int32_t points) {
+    gproj_system *s = gprojt_system(host, 3 * points, 3, NULL);
+    double *x = gproj_system_values(s);
+    gproj_group group;
+    uint64_t seed = 6;
+    int32_t i, k;
+    for (i = 0; i < points; ++i)
+        for (k = 0; k < 3; ++k) x[3 * i + k] = (k == 0 ? i % 100 : k == 1 ? i / 100 : 0) + 0.2 * gprojt_uniform(&seed);
+    memset(&group, 0, sizeof group);
+    group.name = "centre", group.global = true, group.schedule.weight = 1;
+    gprojt_add_group(s, "rods", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "close", GPROJ_WISH, 0.05);
+    gproj_system_add_group(s, &group);
+    gproj_system_set_schedule(s, 1, gprojt_schedule(0.05, 0.5, 4));
+    for (i = 0; i < points; ++i) {
+        if (i % 100 < 99) gprojt_add_distance(s, 0, 3 * i, 3 * i + 3, 3, 1, i);
+        if (i + 100 < points) gprojt_add_distance(s, 0, 3 * i, 3 * i + 300, 3, 1.0, i);
+        for (k = 0; k < 3; ++k) gprojt_add_linear(s, 1, 3 * i + k, 1, -x[3 * i + k], i);
+    }
+    for (k = 0; k < 3; ++k) {
+        gproj_term *term = (gproj_term *)malloc((size_t)points * sizeof *term);
+        for (i = 0; i < points; ++i) term[i] = gprojt_term(3 * i + k, -1, 1.0 / points);
+        gproj_system_add_row(s, 2, points, term, 0, k);
+        free(term);
+    }
+    return s;
+}
+
+GPROJT_TEST(no_allocation_after_the_first_iteration) {
+    gproj_system *s = gprojt_rods(NULL, 300);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    uint64_t before;
+    int32_t n;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    gproj_system_solve(s, 20, &options);
+    GPROJT_REQUIRE(watch.count > 3);
+    for (n = 1; n < watch.count; ++n) GPROJT_CHECK(watch.allocations[n] == watch.allocations[0]);
+    before = gproj_system_memory(s).allocations;
+    GPROJT_CHECK(before == watch.allocations[0]);
+    gproj_system_set_schedule(s, 0, gprojt_schedule(0.7, 0, 0)); /* other weights, constants, values: no new analysis */
+    gproj_system_set_schedule(s, 1, gprojt_schedule(0, 0, 0));
+    gproj_system_set_row(s, 2, 0, NULL, -3);
+    gproj_system_set_row_weight(s, 0, 5, 0);
+    gproj_system_values(s)[0] += 0.1;
+    gproj_system_solve(s, 20, NULL);
+    GPROJT_CHECK(gproj_system_memory(s).allocations == before);
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(same_bits_for_all_workers) {
+    double *first = NULL;
+    gproj_result first_result;
+    int32_t n = 0;
+    int run;
+    memset(&first_result, 0, sizeof first_result);
+    for (run = 0; run <= GPROJT_CREWS; ++run) { /* one worker twice */
+        gproj_host host = gprojt_crew(run % GPROJT_CREWS);
+        gproj_system *s = gprojt_rods(&host, 1500);
+        gproj_result result = gproj_system_solve(s, 6, NULL);
+        n = gproj_system_variable_count(s);
+        GPROJT_CHECK(gproj_system_group_info(s, 0).rows > 2048);
+        if (run == 0) {
+            first_result = result;
+            first = (double *)malloc((size_t)n * sizeof *first);
+            memcpy(first, gproj_system_values(s), (size_t)n * sizeof *first);
+        }
+        GPROJT_CHECK(!memcmp(first, gproj_system_values(s), (size_t)n * sizeof *first));
+        GPROJT_CHECK(!memcmp(&first_result.residual, &result.residual, sizeof(double)) && first_result.step == result.step);
+        GPROJT_CHECK(!strcmp(first_result.message, result.message));
+        gproj_system_destroy(s);
+    }
+    free(first);
+}
+
+int main(void) {
+    GPROJT_RUN(sphere_and_planes);
+    GPROJT_RUN(circle_packing);
+    GPROJT_RUN(stalled_names_both_groups);
+    GPROJT_RUN(iteration_limit);
+    GPROJT_RUN(converged_without_a_step);
+    GPROJT_RUN(cancelled_keeps_the_state);
+    GPROJT_RUN(time_out);
+    GPROJT_RUN(seconds_add_up);
+    GPROJT_RUN(failed_by_an_error_on_the_way);
+    GPROJT_RUN(callbacks_may_not_rebuild);
+    GPROJT_RUN(values_that_are_no_numbers);
+    GPROJT_RUN(rows_that_overflow);
+    GPROJT_RUN(not_positive_definite);
+    GPROJT_RUN(steps_that_raise_the_merit_are_damped);
+    GPROJT_RUN(steps_are_lengthened_near_singular_points);
+    GPROJT_RUN(wishes_shorten_wild_steps);
+    GPROJT_RUN(schedules);
+    GPROJT_RUN(a_group_goes_and_comes_back);
+    GPROJT_RUN(epsilon_given_and_followed);
+    GPROJT_RUN(tolerance_follows_the_size_of_x);
+    GPROJT_RUN(wishes_alone);
+    GPROJT_RUN(words_for_every_place);
+    GPROJT_RUN(no_allocation_after_the_first_iteration);
+    GPROJT_RUN(same_bits_for_all_workers);
+    return gprojt_report();
+}

@@ -1,0 +1,323 @@
+/* test_measure.c - >>measure: every figure against one that is known or computed in another way. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+static gproj_mesh *gprojt_polygon(int32_t count, const double *x) {
+    gprojt_soup s;
+    int32_t corner[16], i;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < count; ++i) corner[i] = gprojt_add_vertex(&s, x[3 * i], x[3 * i + 1], x[3 * i + 2]);
+    gprojt_add_face(&s, count, corner);
+    return gprojt_mesh_of(s);
+}
+
+/* A unit square with one corner lifted by h. */
+static gproj_mesh *gprojt_lifted_square(double h) {
+    double x[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    x[8] = h;
+    return gprojt_polygon(4, x);
+}
+
+/* Its planarity: the scatter matrix in the plane of (1,1,0) and e_z is [[1, h/sqrt2], [h/sqrt2, 3/4 h^2]]. */
+static double gprojt_lifted_planarity(double h) {
+    double trace = 1 + 0.75 * h * h, det = 0.25 * h * h, small = (trace - sqrt(trace * trace - 4 * det)) / 2;
+    double n = h / sqrt(2.0), z = small - 1, length = sqrt(n * n + z * z), slope, saddle;
+    slope = (n / length) / sqrt(2.0) + (z / length) * h / 2, saddle = (z / length) * h / 4;
+    return fmax(fabs(slope) + fabs(saddle), fabs(saddle)) / ((2 + 2 * sqrt(1 + h * h)) / 4);
+}
+
+GPROJT_TEST(planarity_of_a_lifted_square) {
+    static const double heights[] = {1e-14, 1e-8, 1e-4, 0.01, 0.1, 0.5};
+    size_t i;
+    for (i = 0; i < sizeof heights / sizeof heights[0]; ++i) {
+        double h = heights[i], planarity[1], edge = (2 + 2 * sqrt(1 + h * h)) / 4;
+        gproj_mesh *mesh = gprojt_lifted_square(h);
+        gproj_measures m = gproj_measure(mesh, NULL, planarity);
+        GPROJT_NEAR(m.planarity_max, gprojt_lifted_planarity(h), 1e-3 * h + 2e-16);
+        if (h < 1e-3) GPROJT_NEAR(m.planarity_max, h / 4, 1e-3 * h + 2e-16);
+        GPROJT_CHECK(m.planarity_mean == m.planarity_max && planarity[0] == m.planarity_max && m.planarity_face == 0);
+        GPROJT_NEAR(m.diagonal_max, h / sqrt(2 * h * h + 4) / edge, 1e-15);
+        GPROJT_NEAR(m.mean_edge, edge, 1e-15);
+        GPROJT_NEAR(m.min_edge, 1, 0);
+        GPROJT_NEAR(m.max_edge, sqrt(1 + h * h), 1e-15);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* The plane of least squares has no smaller sum of squares around it. */
+GPROJT_TEST(planarity_is_of_the_least_squares_plane) {
+    uint64_t seed = 12;
+    int i, k, try_;
+    for (i = 0; i < 50; ++i) {
+        double x[18], m[3][3], v[3], mean[3] = {0, 0, 0}, best = 0, planarity = 0, edge = 0;
+        gproj_mesh *mesh;
+        for (k = 0; k < 18; ++k) x[k] = k % 3 == 2 ? 0.2 * gprojt_uniform(&seed) : cos(1.05 * (k / 3) - 1.57 * (k % 3));
+        for (k = 0; k < 18; ++k) mean[k % 3] += x[k] / 6;
+        memset(m, 0, sizeof m);
+        for (k = 0; k < 6; ++k) {
+            int a, b;
+            for (a = 0; a < 3; ++a)
+                for (b = 0; b < 3; ++b) m[a][b] += (x[3 * k + a] - mean[a]) * (x[3 * k + b] - mean[b]);
+            edge += gprojt_far(x + 3 * k, x + 3 * ((k + 1) % 6)) / 6;
+        }
+        gproji_smallest_eigenvector3(m, v);
+        for (k = 0; k < 6; ++k) {
+            double d = 0;
+            int a;
+            for (a = 0; a < 3; ++a) d += v[a] * (x[3 * k + a] - mean[a]);
+            best += d * d;
+            planarity = fmax(planarity, fabs(d) / edge);
+        }
+        for (try_ = 0; try_ < 40; ++try_) {
+            double sum = 0, w[3], length = 0;
+            for (k = 0; k < 3; ++k) w[k] = v[k] + 0.1 * (gprojt_uniform(&seed) - 0.5), length += w[k] * w[k];
+            for (k = 0; k < 6; ++k) {
+                double d = (w[0] * (x[3 * k] - mean[0]) + w[1] * (x[3 * k + 1] - mean[1]) + w[2] * (x[3 * k + 2] - mean[2]));
+                sum += d * d / length;
+            }
+            GPROJT_CHECK(sum >= best - 1e-15);
+        }
+        mesh = gprojt_polygon(6, x);
+        GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).planarity_max, planarity, 1e-13);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+GPROJT_TEST(planarity_of_each_face) {
+    gproj_mesh *mesh = gprojt_noisy(2, 6, 0.1, 3); /* triangles and quads */
+    double *planarity = (double *)malloc((size_t)mesh->face_count * sizeof(double)), sum = 0, largest = 0;
+    gproj_measures m = gproj_measure(mesh, NULL, planarity);
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        GPROJT_CHECK(mesh->face_degree[f] == 3 ? planarity[f] == 0 : planarity[f] > 0);
+        sum += planarity[f];
+        largest = fmax(largest, planarity[f]);
+    }
+    GPROJT_CHECK(largest == m.planarity_max && planarity[m.planarity_face] == largest);
+    GPROJT_NEAR(m.planarity_mean, sum / mesh->face_count, 1e-15);
+    GPROJT_CHECK(m.deviation_max == 0 && m.displacement_mean == 0 && m.turned_faces == 0);
+    free(planarity);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(areas_and_edges) {
+    static const double x[18] = {0, 0, 5, 3, 0, 5, 3, 2, 5, 1, 2, 5, 1, 1, 5, 0, 1, 5}; /* an L: 3 x 2 less 1 x 1 */
+    gproj_mesh *mesh = gprojt_polygon(6, x);
+    gproj_measures m = gproj_measure(mesh, NULL, NULL);
+    GPROJT_NEAR(m.area, 5, 1e-15);
+    GPROJT_CHECK(m.min_face_area == m.area && m.max_face_area == m.area && m.bow_tie_faces == 0 && m.degenerate_faces == 0);
+    GPROJT_CHECK(m.min_edge == 1 && m.max_edge == 3);
+    GPROJT_NEAR(m.mean_edge, (3 + 2 + 2 + 1 + 1 + 1) / 6.0, 1e-15);
+    GPROJT_CHECK(m.planarity_max < 1e-15 && m.gauss_variation == 0 && m.diagonal_max == 0);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_mesh_of(gprojt_torus(60, 40));
+    m = gproj_measure(mesh, NULL, NULL);
+    GPROJT_NEAR(m.area, 4 * 9.8696044010893586 * 2 * 0.7, 0.3);
+    GPROJT_CHECK(m.min_face_area < m.area / mesh->face_count && m.max_face_area > m.area / mesh->face_count);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Two triangles with a dihedral angle of their normals. */
+static int32_t gprojt_folds(double angle) {
+    gprojt_soup s;
+    gproj_mesh *mesh;
+    int32_t folds;
+    memset(&s, 0, sizeof s);
+    gprojt_add_vertex(&s, 0, 0, 0);
+    gprojt_add_vertex(&s, 1, 0, 0);
+    gprojt_add_vertex(&s, 0.5, 1, 0);
+    gprojt_add_vertex(&s, 0.5, -cos(angle), sin(angle));
+    gprojt_add_triangle(&s, 0, 1, 2);
+    gprojt_add_triangle(&s, 1, 0, 3);
+    mesh = gprojt_mesh_of(s);
+    folds = gproj_measure(mesh, NULL, NULL).folded_edges;
+    gproj_mesh_destroy(mesh);
+    return folds;
+}
+
+GPROJT_TEST(folded_edges) {
+    GPROJT_CHECK(gprojt_folds(0) == 0 && gprojt_folds(1.5) == 0 && gprojt_folds(2.09) == 0);
+    GPROJT_CHECK(gprojt_folds(2.1) == 1 && gprojt_folds(3.1) == 1 && gprojt_folds(-3) == 1);
+}
+
+static int32_t gprojt_bow_ties(int32_t count, const double *xy, double tilt) {
+    double x[48];
+    gproj_mesh *mesh;
+    int32_t i, ties;
+    for (i = 0; i < count; ++i) {
+        x[3 * i] = xy[2 * i] * cos(tilt);
+        x[3 * i + 1] = xy[2 * i + 1];
+        x[3 * i + 2] = xy[2 * i] * sin(tilt);
+    }
+    mesh = gprojt_polygon(count, x);
+    ties = gproj_measure(mesh, NULL, NULL).bow_tie_faces;
+    gproj_mesh_destroy(mesh);
+    return ties;
+}
+
+GPROJT_TEST(bow_ties) {
+    static const double convex[8] = {0, 0, 1, 0, 1, 1, 0, 1}, dart[8] = {0, 0, 2, 1, 0, 2, 0.5, 1};
+    static const double tie[8] = {0, 0, 2, 0, 0, 1, 1, 1};
+    static const double star[10] = {0, 1, 0.59, -0.81, -0.95, 0.31, 0.95, 0.31, -0.59, -0.81}; /* a pentagram */
+    static const double six[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, 1, 0, 1}, crossed[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, -1, 0, 1};
+    double tilt;
+    for (tilt = 0; tilt < 3; tilt += 0.7) {
+        GPROJT_CHECK(gprojt_bow_ties(4, convex, tilt) == 0 && gprojt_bow_ties(4, dart, tilt) == 0);
+        GPROJT_CHECK(gprojt_bow_ties(6, six, tilt) == 0);
+        GPROJT_CHECK(gprojt_bow_ties(4, tie, tilt) == 1 && gprojt_bow_ties(5, star, tilt) == 1);
+        GPROJT_CHECK(gprojt_bow_ties(6, crossed, tilt) == 1);
+    }
+}
+
+/* Its two halves have areas of opposite sign and there is no vectorial area to look along. */
+GPROJT_TEST(bow_ties_without_area) {
+    static const double tie[8] = {0, 0, 1, 0, 0, 1, 1, 1};
+    double tilt;
+    for (tilt = 0; tilt < 3; tilt += 0.7) GPROJT_CHECK(gprojt_bow_ties(4, tie, tilt) == 1);
+}
+
+GPROJT_TEST(turned_and_degenerate_faces) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(3, 1));
+    double *before = gprojt_keep(mesh), x[3];
+    gproj_measures m;
+    memcpy(x, mesh->position, sizeof x); /* the first quad: its left side goes over to the right */
+    mesh->position[0] += 1.5, mesh->position[12] += 1.5;
+    m = gproj_measure(mesh, before, NULL);
+    GPROJT_CHECK(m.turned_faces == 1 && m.folded_edges == 1 && m.degenerate_faces == 0);
+    memcpy(mesh->position, mesh->position + 3, sizeof x); /* and falls together: a triangle, then nothing */
+    memcpy(mesh->position + 12, mesh->position + 15, sizeof x);
+    m = gproj_measure(mesh, before, NULL);
+    GPROJT_CHECK(m.degenerate_faces == 1 && m.min_edge == 0 && m.min_face_area == 0 && m.turned_faces == 0);
+    free(before);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(deviation_and_displacement) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 3));
+    double *before = gprojt_keep(mesh), edge = gproj_mesh_mean_edge_length(mesh), low[3], high[3], diagonal;
+    gproj_measures m;
+    int32_t i, k, n = mesh->vertex_count;
+    memcpy(low, before, sizeof low), memcpy(high, before, sizeof high);
+    for (i = 0; i < 3 * n; ++i) {
+        k = i % 3;
+        low[k] = fmin(low[k], before[i]), high[k] = fmax(high[k], before[i]);
+    }
+    diagonal = gprojt_far(low, high);
+    mesh->position[3] += 0.3, mesh->position[4] -= 0.4; /* one vertex by 0.5, another by 0.1 */
+    mesh->position[11] += 0.1;
+    m = gproj_measure(mesh, before, NULL);
+    GPROJT_NEAR(m.deviation_max, 0.5 / diagonal, 1e-15);
+    GPROJT_NEAR(m.deviation_rms, sqrt((0.25 + 0.01) / n) / diagonal, 1e-15);
+    GPROJT_NEAR(m.displacement_mean, 0.6 / n / edge, 1e-15);
+    free(before);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The area of the Gauss image of each vertex star, walking the other way round with other normals. */
+static double gprojt_gauss_variation(const gproj_mesh *mesh) {
+    double sum = 0;
+    int32_t v, i, k;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double n[64][3], mean[3] = {0, 0, 0};
+        int32_t h = mesh->vertex_halfedge[v], count = 0;
+        if (h < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        do {
+            double *a = n[count++], length;
+            gproj_mesh_face_area_vector(mesh, mesh->face[h], a);
+            length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+            for (k = 0; k < 3; ++k) a[k] /= length, mean[k] += a[k];
+            h = mesh->next[mesh->twin[h]];
+        } while (h != mesh->vertex_halfedge[v]);
+        for (k = 0; k < 3; ++k) mean[k] /= count;
+        for (i = 0; i < count; ++i) { /* Heron */
+            const double *a = n[i], *b = n[(i + 1) % count];
+            double p = gprojt_far(a, b), q = gprojt_far(b, mean), r = gprojt_far(mean, a), s = (p + q + r) / 2;
+            sum += sqrt(fmax(0, s * (s - p) * (s - q) * (s - r)));
+        }
+    }
+    return sum;
+}
+
+GPROJT_TEST(gauss_variation) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(1)); /* a cube: 8 triangles of area sqrt(3) / 2 */
+    int shape;
+    GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 4 * sqrt(3.0), 1e-13);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_mesh_of(gprojt_cube_sphere(16));
+    GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 12.566370614359172, 0.1);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_mesh_of(gprojt_torus(80, 60));
+    GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 2 * 12.566370614359172, 0.3);
+    gproj_mesh_destroy(mesh);
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        double other;
+        mesh = gprojt_noisy(shape, 6, 0.05, 9);
+        other = gprojt_gauss_variation(mesh);
+        GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, other, 1e-6 * (1 + other));
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+static void gprojt_check_numbers(const gproj_measures *m) {
+    double all[15];
+    int32_t k;
+    all[0] = m->mean_edge, all[1] = m->min_edge, all[2] = m->max_edge, all[3] = m->area, all[4] = m->min_face_area;
+    all[5] = m->max_face_area, all[6] = m->planarity_max, all[7] = m->planarity_mean, all[8] = m->diagonal_max;
+    all[9] = m->deviation_max, all[10] = m->deviation_rms, all[11] = m->displacement_mean, all[12] = m->gauss_variation;
+    all[13] = all[14] = 0;
+    for (k = 0; k < 15; ++k) GPROJT_CHECK(all[k] >= 0 && all[k] < HUGE_VAL);
+}
+
+GPROJT_TEST(no_mesh_and_points_only) {
+    gproj_measures m = gproj_measure(NULL, NULL, NULL);
+    gprojt_soup s;
+    gproj_mesh *mesh;
+    double before[6] = {0, 0, 0, 0, 0, 0};
+    GPROJT_CHECK(m.planarity_face == -1 && m.mean_edge == 0 && m.area == 0);
+    memset(&s, 0, sizeof s);
+    gprojt_add_vertex(&s, 0, 0, 3);
+    gprojt_add_vertex(&s, 0, 0, 0);
+    mesh = gprojt_mesh_of(s);
+    GPROJT_REQUIRE(mesh != NULL);
+    m = gproj_measure(mesh, before, NULL);
+    gprojt_check_numbers(&m);
+    GPROJT_CHECK(m.planarity_face == -1 && m.mean_edge == 0 && m.displacement_mean == 1.5);
+    gproj_mesh_destroy(mesh);
+}
+
+/* All vertices in one point: everything is zero, nothing is not a number. */
+GPROJT_TEST(meshes_without_extent) {
+    int shape;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, 4));
+        double *before;
+        gproj_measures m;
+        int32_t i;
+        for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] = 2;
+        before = gprojt_keep(mesh);
+        m = gproj_measure(mesh, before, NULL);
+        gprojt_check_numbers(&m);
+        GPROJT_CHECK(m.area == 0 && m.degenerate_faces == mesh->face_count && m.planarity_max == 0 && m.turned_faces == 0);
+        mesh->position[0] = 3;
+        m = gproj_measure(mesh, before, NULL);
+        gprojt_check_numbers(&m);
+        free(before);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+int main(void) {
+    GPROJT_RUN(planarity_of_a_lifted_square);
+    GPROJT_RUN(planarity_is_of_the_least_squares_plane);
+    GPROJT_RUN(planarity_of_each_face);
+    GPROJT_RUN(areas_and_edges);
+    GPROJT_RUN(folded_edges);
+    GPROJT_RUN(bow_ties);
+    GPROJT_RUN(bow_ties_without_area);
+    GPROJT_RUN(turned_and_degenerate_faces);
+    GPROJT_RUN(deviation_and_displacement);
+    GPROJT_RUN(gauss_variation);
+    GPROJT_RUN(no_mesh_and_points_only);
+    GPROJT_RUN(meshes_without_extent);
+    return gprojt_report();
+}

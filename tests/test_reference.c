@@ -1,0 +1,437 @@
+/* test_reference.c - >>hierarchy, >>curve, >>surface: closest points against brute force, odd shapes, memory. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_mesh.h"
+
+static void gprojt_random_point(uint64_t *state, double scale, double p[3]) {
+    int k;
+    for (k = 0; k < 3; ++k) p[k] = scale * (2 * gprojt_uniform(state) - 1);
+}
+
+static double gprojt_length(const double a[3]) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+static double gprojt_gap(const double a[3], const double b[3]) {
+    double d[3];
+    int k;
+    for (k = 0; k < 3; ++k) d[k] = a[k] - b[k];
+    return gprojt_length(d);
+}
+
+/* -- an independent closest point: segments by clamping, the inside of triangles by normal equations -- */
+
+static double gprojt_segment_gap(const double a[3], const double b[3], const double p[3]) {
+    double ab = 0, t = 0, q[3];
+    int k;
+    for (k = 0; k < 3; ++k) ab += (b[k] - a[k]) * (b[k] - a[k]), t += (b[k] - a[k]) * (p[k] - a[k]);
+    t = ab > 0 ? fmin(fmax(t / ab, 0), 1) : 0;
+    for (k = 0; k < 3; ++k) q[k] = t == 1 ? b[k] : a[k] + t * (b[k] - a[k]);
+    return gprojt_gap(q, p);
+}
+
+static double gprojt_triangle_gap(const double a[3], const double b[3], const double c[3], const double p[3]) {
+    double u[3], v[3], w[3], uu = 0, uv = 0, vv = 0, uw = 0, vw = 0, s, t, determinant, q[3];
+    double best = fmin(gprojt_segment_gap(a, b, p), fmin(gprojt_segment_gap(b, c, p), gprojt_segment_gap(c, a, p)));
+    int k;
+    for (k = 0; k < 3; ++k) {
+        u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = p[k] - a[k];
+        uu += u[k] * u[k], uv += u[k] * v[k], vv += v[k] * v[k], uw += u[k] * w[k], vw += v[k] * w[k];
+    }
+    determinant = uu * vv - uv * uv;
+    if (!(determinant > 1e-12 * uu * vv)) return best;
+    s = (uw * vv - vw * uv) / determinant, t = (vw * uu - uw * uv) / determinant;
+    if (s < 0 || t < 0 || s + t > 1) return best;
+    for (k = 0; k < 3; ++k) q[k] = a[k] + s * u[k] + t * v[k];
+    return fmin(best, gprojt_gap(q, p));
+}
+
+/* -- curves -- */
+
+static void gprojt_check_curve(const double *x, int32_t count, bool closed, uint64_t *state, int queries,
+                               double scale) {
+    gproj_error error;
+    gproj_curve *curve = gproj_curve_create(count, x, closed, NULL, &error);
+    int32_t segments = closed ? count : count - 1, s, first;
+    int i, k;
+    GPROJT_REQUIRE(curve != NULL && error.code == GPROJ_OK);
+    for (i = 0; i < queries; ++i) {
+        double p[3], best = HUGE_VAL, d, q[3];
+        gproj_curve_hit hit;
+        const double *a, *b;
+        gprojt_random_point(state, scale, p);
+        if (i % 4 == 0) memcpy(p, x + 3 * gprojt_below(state, count), sizeof p); /* on a corner: segments tie */
+        for (s = 0, first = 0; s < segments; ++s) {
+            d = gprojt_segment_gap(x + 3 * s, x + 3 * ((s + 1) % count), p);
+            if (d < best) best = d, first = s;
+        }
+        hit = gproj_curve_closest(curve, p);
+        GPROJT_CHECK(hit.segment >= 0 && hit.segment < segments && hit.parameter >= 0 && hit.parameter <= 1);
+        GPROJT_NEAR(hit.distance, best, 1e-13 * scale);
+        GPROJT_NEAR(gprojt_gap(hit.point, p), hit.distance, 1e-14 * scale);
+        if (i % 4 == 0) GPROJT_CHECK(hit.segment == first); /* the lowest segment */
+        GPROJT_NEAR(gprojt_length(hit.tangent), 1, 1e-14);
+        a = x + 3 * hit.segment, b = x + 3 * ((hit.segment + 1) % count);
+        for (k = 0; k < 3; ++k) q[k] = a[k] + hit.parameter * (b[k] - a[k]);
+        GPROJT_NEAR(gprojt_gap(q, hit.point), 0, 1e-13 * scale);
+        if (gprojt_gap(a, b) > 1e-6 * scale) {
+            for (k = 0; k < 3; ++k) GPROJT_NEAR(hit.tangent[k], (b[k] - a[k]) / gprojt_gap(a, b), 1e-9);
+        }
+    }
+    gproj_curve_destroy(curve);
+}
+
+GPROJT_TEST(curves_against_brute_force) {
+    static const int32_t counts[] = {2, 3, 4, 5, 9, 17, 100, 333};
+    uint64_t state = 21;
+    size_t c;
+    int32_t i;
+    double x[3 * 333];
+    for (c = 0; c < sizeof counts / sizeof counts[0]; ++c) {
+        for (i = 0; i < counts[c]; ++i) gprojt_random_point(&state, 1, x + 3 * i);
+        gprojt_check_curve(x, counts[c], false, &state, 800, 1.5);
+        gprojt_check_curve(x, counts[c], true, &state, 800, 1.5);
+        for (i = 1; i < counts[c]; ++i) { /* every third point repeated */
+            if (i % 3 == 0) memcpy(x + 3 * i, x + 3 * i - 3, 3 * sizeof(double));
+        }
+        gprojt_check_curve(x, counts[c], false, &state, 200, 1.5);
+        gprojt_check_curve(x, counts[c], true, &state, 200, 1.5);
+        for (i = 0; i < 3 * counts[c]; ++i) x[i] *= 1e-30;
+        gprojt_check_curve(x, counts[c], true, &state, 50, 1e-30);
+        for (i = 0; i < 3 * counts[c]; ++i) x[i] *= 1e95;
+        gprojt_check_curve(x, counts[c], true, &state, 50, 1e65);
+    }
+    for (i = 0; i < 333; ++i)
+        x[3 * i] = i / 4, x[3 * i + 1] = i / 4 % 2, x[3 * i + 2] = 0; /* a zigzag with repetitions */
+    gprojt_check_curve(x, 333, false, &state, 500, 100);
+}
+
+GPROJT_TEST(curve_details) {
+    static const double bend[15] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 2, 0};
+    static const double corner[3] = {2, -1, 0}, start[3] = {-3, 0, 1}, middle[3] = {0.25, -1, 0};
+    gproj_curve *curve = gproj_curve_create(5, bend, false, NULL, NULL);
+    gproj_curve_hit hit;
+    double far_away[3] = {HUGE_VAL, 0, 0};
+    GPROJT_REQUIRE(curve != NULL);
+    hit = gproj_curve_closest(curve, corner); /* the end of segment 1 wins over 2 (a point) and 3 */
+    GPROJT_CHECK(hit.segment == 1 && hit.parameter == 1 && hit.tangent[0] == 1 && hit.point[0] == 1);
+    hit = gproj_curve_closest(curve, start); /* clamped; segment 0 is a point and has the tangent of segment 1 */
+    GPROJT_CHECK(hit.segment == 0 && hit.point[0] == 0 && hit.tangent[0] == 1);
+    GPROJT_NEAR(hit.distance, sqrt(10.0), 1e-15);
+    hit = gproj_curve_closest(curve, middle);
+    GPROJT_CHECK(hit.segment == 1 && hit.parameter == 0.25 && hit.distance == 1);
+    hit = gproj_curve_closest(curve, far_away); /* no crash, no search for ever */
+    GPROJT_CHECK(hit.segment >= 0 && hit.segment < 4);
+    far_away[0] = NAN;
+    hit = gproj_curve_closest(curve, far_away);
+    GPROJT_CHECK(hit.segment >= 0 && hit.segment < 4);
+    gproj_curve_destroy(curve);
+    gproj_curve_destroy(NULL);
+    /* a closed curve whose first segment has no length takes the tangent of its last */
+    curve = gproj_curve_create(4, bend + 3, true, NULL, NULL);
+    GPROJT_REQUIRE(curve != NULL);
+    gproj_curve_destroy(curve);
+    {
+        static const double loop[12] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+        curve = gproj_curve_create(4, loop, true, NULL, NULL);
+        GPROJT_REQUIRE(curve != NULL);
+        hit = gproj_curve_closest(curve, loop);
+        GPROJT_CHECK(hit.segment == 0 && hit.distance == 0 && hit.tangent[1] == -1);
+        gproj_curve_destroy(curve);
+    }
+}
+
+GPROJT_TEST(curve_errors) {
+    double x[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
+    gproj_error error;
+    GPROJT_CHECK(!gproj_curve_create(3, x, false, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
+    GPROJT_CHECK(strstr(error.message, "all 3 points") != NULL);
+    GPROJT_CHECK(!gproj_curve_create(3, x, true, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
+    GPROJT_CHECK(strstr(error.message, "all 3 points") != NULL);
+    x[4] = NAN;
+    GPROJT_CHECK(!gproj_curve_create(3, x, true, NULL, &error) && error.code == GPROJ_ERROR_NUMBER && error.index == 1);
+    GPROJT_CHECK(!gproj_curve_create(1, x, false, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_curve_create(-3, x, false, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_curve_create(3, NULL, false, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_curve_create(INT32_MAX, x, false, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_curve_from_loop(NULL, 0, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_curve_from_polyline(NULL, 0, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_surface_create(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+}
+
+GPROJT_TEST(curves_from_meshes) {
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nf 1 2 3 4\nl 1 3 5\nl 1 2 3 1\nl 5 5\n";
+    gproj_error error;
+    gproj_mesh *mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, &error);
+    gproj_curve *curve;
+    gproj_curve_hit hit;
+    static const double below[3] = {0.5, -1, 0}, diagonal[3] = {0.4, 0.5, 0};
+    GPROJT_REQUIRE(mesh != NULL);
+    curve = gproj_curve_from_loop(mesh, 0, NULL, &error);
+    GPROJT_REQUIRE(curve != NULL);
+    hit = gproj_curve_closest(curve, below);
+    GPROJT_CHECK(hit.distance == 1 && hit.tangent[0] == 1); /* in the direction of the face's edge 0-1 */
+    gproj_curve_destroy(curve);
+    curve = gproj_curve_from_polyline(mesh, 0, NULL, &error);
+    GPROJT_REQUIRE(curve != NULL);
+    GPROJT_CHECK(curve->segment_count == 2);
+    gproj_curve_destroy(curve);
+    curve = gproj_curve_from_polyline(mesh, 1, NULL, &error);
+    GPROJT_REQUIRE(curve != NULL);
+    hit = gproj_curve_closest(curve, diagonal);
+    GPROJT_CHECK(hit.segment == 2);
+    gproj_curve_destroy(curve);
+    GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 2, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
+    GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 3, NULL, &error) &&
+                 strstr(error.message, "polyline 3 of a mesh that has 3"));
+    GPROJT_CHECK(!gproj_curve_from_loop(mesh, -1, NULL, &error) && strstr(error.message, "boundary loop -1"));
+    mesh->position[4] = NAN;
+    GPROJT_CHECK(!gproj_curve_from_loop(mesh, 0, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(!gproj_surface_create(mesh, NULL, &error) && error.code == GPROJ_ERROR_NUMBER && error.index == 1);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- surfaces -- */
+
+static void gprojt_check_surface(const gproj_mesh *mesh, uint64_t *state, int queries, double scale) {
+    gproj_error error;
+    gproj_surface *surface = gproj_surface_create(mesh, NULL, &error);
+    int i, k;
+    int32_t t, count = 0;
+    for (t = 0; t < mesh->face_count; ++t) count += mesh->face_degree[t] - 2;
+    GPROJT_REQUIRE(surface != NULL && surface->triangle_count == count);
+    for (i = 0; i < queries; ++i) {
+        double p[3], best = HUGE_VAL, at_face = HUGE_VAL;
+        gproj_surface_hit hit;
+        gprojt_random_point(state, scale, p);
+        if (i % 5 == 0) memcpy(p, mesh->position + 3 * gprojt_below(state, mesh->vertex_count), sizeof p);
+        hit = gproj_surface_closest(surface, p);
+        for (t = 0; t < count; ++t) {
+            const int32_t *v = surface->triangle + 3 * t;
+            double d =
+                gprojt_triangle_gap(mesh->position + 3 * v[0], mesh->position + 3 * v[1], mesh->position + 3 * v[2], p);
+            if (d < best) best = d;
+            if (surface->triangle_face[t] == hit.face && d < at_face) at_face = d;
+        }
+        GPROJT_NEAR(hit.distance, best, 1e-11 * scale);
+        GPROJT_NEAR(at_face, best, 1e-11 * scale);
+        GPROJT_NEAR(gprojt_gap(hit.point, p), hit.distance, 1e-14 * scale);
+        GPROJT_NEAR(gprojt_length(hit.normal), 1, 1e-14);
+        for (k = 0; k < 3; ++k) GPROJT_CHECK(gproji_is_finite(hit.point[k]));
+    }
+    gproj_surface_destroy(surface);
+}
+
+GPROJT_TEST(surfaces_against_brute_force) {
+    uint64_t state = 31;
+    int shape, i;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        gprojt_soup s = gprojt_shape(shape, 6);
+        gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+        gprojt_check_surface(mesh, &state, 1000, 3);
+        for (i = 0; i < mesh->vertex_count; ++i) { /* a third of the vertices fall together, a third on a line */
+            if (i % 3 == 0) memset(mesh->position + 3 * i, 0, 3 * sizeof(double));
+            if (i % 3 == 1) mesh->position[3 * i + 1] = mesh->position[3 * i + 2] = 0;
+        }
+        gprojt_check_surface(mesh, &state, 300, 3);
+        for (i = 0; i < mesh->vertex_count; ++i)
+            mesh->position[3 * i + 1] = mesh->position[3 * i + 2] = 0; /* all on one */
+        gprojt_check_surface(mesh, &state, 50, 3);
+        memset(mesh->position, 0, (size_t)mesh->vertex_count * 3 * sizeof(double)); /* all in one point */
+        gprojt_check_surface(mesh, &state, 20, 3);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&s);
+    }
+}
+
+GPROJT_TEST(needles) { /* triangles a million times longer than wide */
+    uint64_t state = 33;
+    int round, k;
+    for (round = 0; round < 300; ++round) {
+        double x[3][3], p[3];
+        const double *corner[3];
+        double out[3], weight[3], d, width = pow(10, -1 - round % 16);
+        gprojt_random_point(&state, 1, x[0]);
+        gprojt_random_point(&state, 1, x[1]);
+        for (k = 0; k < 3; ++k) x[2][k] = 0.5 * (x[0][k] + x[1][k]) + width * (gprojt_uniform(&state) - 0.5);
+        gprojt_random_point(&state, 1, p);
+        for (k = 0; k < 3; ++k) corner[k] = x[k];
+        d = sqrt(gproji_closest_on_triangle(corner, p, out, weight));
+        GPROJT_NEAR(d, gprojt_triangle_gap(x[0], x[1], x[2], p), 3e-6);
+        GPROJT_NEAR(weight[0] + weight[1] + weight[2], 1, 1e-14);
+        for (k = 0; k < 3; ++k) {
+            GPROJT_CHECK(weight[k] >= 0);
+            GPROJT_NEAR(weight[0] * x[0][k] + weight[1] * x[1][k] + weight[2] * x[2][k], out[k], 1e-14);
+        }
+    }
+}
+
+GPROJT_TEST(smooth_normals) { /* on a sphere the interpolated normal is the radius, nearly */
+    gprojt_soup s = gprojt_cube_sphere(16);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    gproj_surface *surface = gproj_surface_create(mesh, NULL, NULL);
+    uint64_t state = 35;
+    int i;
+    GPROJT_REQUIRE(surface != NULL);
+    for (i = 0; i < 2000; ++i) {
+        double p[3], r;
+        gproj_surface_hit hit;
+        gprojt_random_point(&state, 1, p);
+        r = gprojt_length(p);
+        if (r < 0.3) continue;
+        hit = gproj_surface_closest(surface, p);
+        GPROJT_CHECK((hit.normal[0] * p[0] + hit.normal[1] * p[1] + hit.normal[2] * p[2]) / r > 0.99);
+        GPROJT_NEAR(gprojt_length(hit.point), 1, 0.01);
+    }
+    gproj_surface_destroy(surface);
+    gproj_surface_destroy(NULL);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+}
+
+GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces: the triangles cover the face, no more and no less */
+    uint64_t state = 37;
+    int round;
+    for (round = 0; round < 400; ++round) {
+        gprojt_soup s;
+        gproj_mesh *mesh;
+        gproj_surface *surface;
+        int32_t n = 4 + gprojt_below(&state, round % 10 ? 20 : 400), i, t, corner[512];
+        double area[3], sum = 0, tilt = gprojt_uniform(&state);
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < n; ++i) {
+            double angle = 6.283185307179586 * i / n, r = 0.2 + gprojt_uniform(&state);
+            corner[i] = gprojt_add_vertex(&s, r * cos(angle), r * sin(angle), tilt * r * cos(angle));
+        }
+        gprojt_add_face(&s, n, corner);
+        mesh = gprojt_soup_mesh(&s, NULL, NULL);
+        surface = gproj_surface_create(mesh, NULL, NULL);
+        GPROJT_REQUIRE(surface != NULL);
+        gproj_mesh_face_area_vector(mesh, 0, area);
+        for (t = 0; t < surface->triangle_count; ++t) {
+            const int32_t *v = surface->triangle + 3 * t;
+            double a[3], b[3], c[3];
+            gproji_sub3(s.position + 3 * v[1], s.position + 3 * v[0], a);
+            gproji_sub3(s.position + 3 * v[2], s.position + 3 * v[0], b);
+            gproji_cross3(a, b, c);
+            sum += 0.5 * gprojt_length(c);
+        }
+        GPROJT_NEAR(sum, gprojt_length(area), 1e-8 * sum);
+        gproj_surface_destroy(surface);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&s);
+    }
+}
+
+GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 60,000 corners each */
+    int kind;
+    for (kind = 0; kind < 2; ++kind) {
+        gprojt_soup s;
+        gproj_mesh *mesh;
+        gproj_surface *surface;
+        int32_t i, n = 60000, *corner = (int32_t *)malloc((size_t)n * sizeof(int32_t));
+        static const double p[3] = {0.5, 0.5, 3};
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < n; ++i) {
+            double angle = 6.283185307179586 * ((double)i * 7919 / n);
+            if (kind)
+                corner[i] = gprojt_add_vertex(&s, cos(angle), sin(angle), 0);
+            else
+                corner[i] = gprojt_add_vertex(&s, (double)i / n, i == 0 || i == n - 1 ? -2 : (i & 1 ? 1 : 0), 0);
+        }
+        gprojt_add_face(&s, n, corner);
+        mesh = gprojt_soup_mesh(&s, NULL, NULL);
+        surface = gproj_surface_create(mesh, NULL, NULL);
+        GPROJT_REQUIRE(surface != NULL);
+        GPROJT_CHECK(surface->triangle_count == n - 2 && gproj_surface_closest(surface, p).face == 0);
+        gproj_surface_destroy(surface);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&s);
+        free(corner);
+    }
+}
+
+GPROJT_TEST(hierarchy_of_equal_items) { /* thousands of segments in one place: depth stays small, the lowest wins */
+    int32_t n = 50000, i;
+    double *x = (double *)calloc(3 * (size_t)n, sizeof(double));
+    static const double p[3] = {0.25, 1, 0};
+    gproj_curve *curve;
+    for (i = 0; i < n; ++i) x[3 * i] = i & 1;
+    curve = gproj_curve_create(n, x, false, NULL, NULL);
+    GPROJT_REQUIRE(curve != NULL);
+    GPROJT_CHECK(gproj_curve_closest(curve, p).segment == 0 && gproj_curve_closest(curve, p).distance == 1);
+    GPROJT_CHECK(curve->tree.node_count <= n);
+    gproj_curve_destroy(curve);
+    free(x);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gprojt_soup s = gprojt_hexagon_mesh(4, 4);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL), *line;
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n";
+    int kind;
+    line = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);
+    for (kind = 0; kind < 4; ++kind) {
+        gprojt_failing failing;
+        gproj_error error;
+        long at;
+        void *made = NULL;
+        for (at = 1; at < 100; ++at) {
+            gproj_host host;
+            memset(&failing, 0, sizeof failing);
+            failing.fail_at = at;
+            host = gprojt_failing_host(&failing);
+            if (kind == 0) made = gproj_curve_create(mesh->vertex_count, mesh->position, true, &host, &error);
+            if (kind == 1) made = gproj_curve_from_loop(mesh, 0, &host, &error);
+            if (kind == 2) made = gproj_curve_from_polyline(line, 0, &host, &error);
+            if (kind == 3) made = gproj_surface_create(mesh, &host, &error);
+            if (made) break;
+            GPROJT_CHECK(error.code == GPROJ_ERROR_MEMORY && failing.held == 0 && failing.wrong_sizes == 0);
+        }
+        GPROJT_CHECK(made && at > 10);
+        if (kind == 3)
+            gproj_surface_destroy((gproj_surface *)made);
+        else
+            gproj_curve_destroy((gproj_curve *)made);
+        GPROJT_CHECK(failing.held == 0 && failing.wrong_sizes == 0 && failing.bytes == 0);
+    }
+    gproj_mesh_destroy(line);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+}
+
+GPROJT_TEST(real_meshes) {
+    uint64_t state = 39;
+    int i, found = 0;
+    for (i = 0; i < GPROJT_REAL_MESHES; ++i) {
+        gproj_mesh *mesh = gprojt_load_real_mesh(i, NULL, NULL);
+        double extent = 0;
+        int32_t k, c = 0;
+        if (!mesh) continue;
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) extent = fmax(extent, fabs(mesh->position[k]));
+        gprojt_check_surface(mesh, &state, 60, extent);
+        for (k = 0; k < mesh->loop_count; ++k) {
+            gproj_curve *curve = gproj_curve_from_loop(mesh, k, NULL, NULL);
+            GPROJT_CHECK(curve != NULL);
+            if (curve) c += curve->segment_count;
+            gproj_curve_destroy(curve);
+        }
+        for (k = 0; k < mesh->halfedge_count; ++k) c -= mesh->face[k] < 0;
+        GPROJT_CHECK(c == 0);
+        gproj_mesh_destroy(mesh);
+        ++found;
+    }
+    if (!found) GPROJT_SKIP("the folder of real meshes is not there (GPROJ_DATA)");
+}
+
+int main(void) {
+    GPROJT_RUN(curves_against_brute_force);
+    GPROJT_RUN(curve_details);
+    GPROJT_RUN(curve_errors);
+    GPROJT_RUN(curves_from_meshes);
+    GPROJT_RUN(surfaces_against_brute_force);
+    GPROJT_RUN(needles);
+    GPROJT_RUN(smooth_normals);
+    GPROJT_RUN(faces_that_are_not_convex);
+    GPROJT_RUN(large_faces_take_linear_time);
+    GPROJT_RUN(hierarchy_of_equal_items);
+    GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(real_meshes);
+    return gprojt_report();
+}

@@ -1,0 +1,425 @@
+#!/bin/bash
+# test_tool.sh - runs the built command line on small meshes of its own and, where they are, on real ones.
+#
+#     TOOL=../tools/guidedproj ./test_tool.sh        GPROJ_DATA: folder of the real meshes (../../shared/data)
+#
+# Results are measured by check_mesh.c, which knows nothing of the library. Prints one line a failure, and at the
+# end `N passed, N failed, N skipped`; exits 1 where something failed.
+
+here=$(cd "$(dirname "$0")" && pwd)
+tool=${TOOL:-$here/../tools/guidedproj}
+data=${GPROJ_DATA:-$here/../../shared/data}
+case $tool in /*) ;; *) tool=$PWD/$tool ;; esac
+work=$(mktemp -d) || exit 2
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+passed=0 failed=0 skipped=0
+export LC_ALL=C
+
+pass() { passed=$((passed + 1)); }
+fail() { failed=$((failed + 1)); echo "FAILED: $*"; }
+skip() { skipped=$((skipped + 1)); echo "skipped: $*"; }
+check() { # check NAME COMMAND...: the command succeeds
+    local name=$1
+    shift
+    if "$@" >/dev/null 2>&1; then pass; else fail "$name"; fi
+}
+
+if [ ! -x "$tool" ]; then
+    echo "there is no tool at $tool: build it first, or set TOOL"
+    exit 2
+fi
+if ! ${CC:-cc} -std=c99 -O2 -o "$work/check_mesh" "$here/check_mesh.c" -lm; then
+    echo "check_mesh.c does not compile"
+    exit 2
+fi
+cd "$work" || exit 2
+
+# ---- meshes ----
+
+# The height of the roof over the square: a surface that has planar quads, and a little on top.
+height='function z(i, j) { return h * (sin(0.5 * i) + 0.8 * cos(0.4 * j) + 0.03 * sin(1.3 * i * j)) }'
+grid() { # grid N AMPLITUDE: a wavy roof of N x N quads over a square
+    awk -v n="$1" -v h="$2" "$height"'BEGIN {
+        for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) printf "v %.17g %.17g %.17g\n", i, j, z(i, j)
+        for (i = 0; i < n; i++) for (j = 0; j < n; j++)
+            print "f", i*(n+1)+j+1, (i+1)*(n+1)+j+1, (i+1)*(n+1)+j+2, i*(n+1)+j+2 }'
+}
+torus() { # torus N M: a closed mesh
+    awk -v n="$1" -v m="$2" 'BEGIN {
+        t = 6.283185307179586
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) { u = t * i / n; v = t * j / m; r = 3 + cos(v)
+            printf "v %.17g %.17g %.17g\n", r * cos(u), r * sin(u), sin(v) + 0.3 * sin(2 * u) }
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++) { k = (i + 1) % n; l = (j + 1) % m
+            print "f", i*m+j+1, k*m+j+1, k*m+l+1, i*m+l+1 } }'
+}
+grid 8 0.6 >grid.obj
+grid 20 0.5 >big.obj
+torus 16 8 >torus.obj
+awk 'BEGIN { print "OFF\n5 2 0\n0 0 0\n1 0 0.2\n1 1 0\n0 1 0.1\n2 0.5 0\n4 0 1 2 3\n3 1 4 2" }' >small.off
+
+# ---- helpers for runs ----
+
+run() { # run ARGUMENTS: sets status, and the texts out.txt and err.txt
+    "$tool" "$@" >out.txt 2>err.txt
+    status=$?
+}
+expect() { # expect STATUS PART ARGUMENTS...: exit status, and a part of the message; no output is touched
+    local want=$1 part=$2
+    shift 2
+    printf 'old\n' >old.obj
+    rm -f new.obj new.json new.svg
+    run "$@"
+    if [ "$status" -ne "$want" ]; then
+        fail "'$*' exits with $status instead of $want: $(head -n 1 err.txt)"
+    elif ! grep -qF -- "$part" err.txt; then
+        fail "'$*' does not say '$part': $(head -n 1 err.txt)"
+    elif [ "$(cat old.obj)" != old ] || [ -e new.obj ] || [ -e new.json ] || [ -e new.svg ] ||
+        ls ./*.tmp >/dev/null 2>&1; then
+        fail "'$*' touched an output"
+    elif [ "$(grep -c . err.txt)" -gt 2 ]; then
+        fail "'$*' prints more than a sentence"
+    else
+        pass
+    fi
+}
+value() { awk -v name="$1" '$1 == name { print $2 }' measures.txt; }
+measure() { ./check_mesh "$1" "$2" >measures.txt; }
+within() { # within NAME LIMIT: the measure is a number and at most this
+    awk -v x="$(value "$1")" -v limit="$2" 'BEGIN { exit !(x != "" && x == x + 0 && x + 0 <= limit + 0) }'
+}
+want() { # want WHAT NAME LIMIT
+    if within "$2" "$3"; then pass; else fail "$1: $2 is $(value "$2"), more than $3"; fi
+}
+
+# ---- usage ----
+
+expect 2 "no input" -o new.obj --planar
+expect 2 "no output" grid.obj --planar
+expect 2 "nothing is asked for" grid.obj -o new.obj
+expect 2 "must end in .obj or .off" grid.obj -o new.stl --planar
+expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
+expect 2 "did you mean --planar" grid.obj -o new.obj -planar
+expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
+expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
+for later in --circular --conical --equilibrium --compressive --equal-areas --volume=2 --supports=boundary \
+    --subdivide=1 --nearest --forces=a.csv --offset=1,a.obj --density=1; do
+    expect 2 "there is no option $(echo "$later" | sed 's/=.*//')" grid.obj -o new.obj --planar $later
+done
+expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
+expect 2 "the weight must be a number" grid.obj -o new.obj --planar=-1
+expect 2 "the weight must be a number" grid.obj -o new.obj --planar=nan
+expect 2 "the weight must be a number" grid.obj -o new.obj --planar=1x
+expect 2 "--planar is given twice" grid.obj -o new.obj --planar --planar
+expect 2 "--quiet takes no value" grid.obj -o new.obj --planar --quiet=yes
+expect 2 "needs a value" grid.obj -o new.obj --planar --fairness
+expect 2 "needs a value" grid.obj -o new.obj --fairness --planar
+expect 2 "expected W[*DECAY][:N]" grid.obj -o new.obj --fairness 0.2*1.5
+expect 2 "expected W[*DECAY][:N]" grid.obj -o new.obj --fairness 0.2:0
+expect 2 "expected W[*DECAY][:N]" grid.obj -o new.obj --gauss inf
+expect 2 "expected W[*DECAY][:N]" grid.obj -o new.obj --tangential ""
+expect 2 "whole number from 1" grid.obj -o new.obj --planar --iterations 0
+expect 2 "whole number from 1" grid.obj -o new.obj --planar --iterations 1e3
+expect 2 "larger than 0" grid.obj -o new.obj --planar --tolerance -1
+expect 2 "larger than 0" grid.obj -o new.obj --planar --epsilon 0
+expect 2 "larger than 0" grid.obj -o new.obj --planar --time-limit 1s
+expect 2 "from 0 to 256" grid.obj -o new.obj --planar --threads 1000
+expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move 3,1,2
+expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move 3,1,2,3,4
+expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move -3,1,2,3
+expect 2 "moved twice" grid.obj -o new.obj --move 3,1,2,3 --move 3,1,2,4
+expect 2 "--move: there is no vertex 81" grid.obj -o new.obj --planar --move 81,1,2,3
+expect 2 "--fix: there is no vertex 99" grid.obj -o new.obj --planar --fix 0,99
+expect 2 "runs backwards" grid.obj -o new.obj --planar --fix 9-7
+expect 2 "expected vertices" grid.obj -o new.obj --planar --fix 9-
+expect 2 "has no boundary" torus.obj -o new.obj --planar --glide boundary
+expect 2 "two inputs" grid.obj big.obj -o new.obj --planar
+expect 2 "same path" grid.obj -o new.obj --planar --report ./new.obj
+expect 2 "same path" grid.obj -o new.obj --planar --report new.svg --picture new.svg
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --report grid.obj
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --reference big.obj --picture big.obj
+expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
+expect 2 "needs a path" grid.obj -o new.obj --planar --report=
+expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
+expect 2 "AZIMUTH,ELEVATION" grid.obj -o new.obj --planar --picture new.svg --view north
+mkdir -p folder.obj
+expect 2 "is a folder" grid.obj -o folder.obj --planar
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir -p locked && chmod a-w locked
+    expect 2 "cannot be written" grid.obj -o locked/new.obj --planar
+fi
+
+run --help
+if [ $status -eq 0 ] && grep -q -- "--planar" out.txt && ! awk 'length > 80 { exit 1 }' out.txt; then
+    fail "--help is wider than 80 columns"
+elif [ $status -eq 0 ] && grep -q -- "--glide WHERE" out.txt && grep -q "exit status" out.txt; then
+    pass
+else
+    fail "--help"
+fi
+run --version
+if [ $status -eq 0 ] && grep -q '^guidedproj [0-9]' out.txt; then pass; else fail "--version"; fi
+
+# ---- input that is refused: the message names the file, old outputs stay ----
+
+refuse() { # refuse NAME: reads the text of a mesh
+    cat >"bad-$1"
+    expect 3 "bad-$1" "bad-$1" -o old.obj --planar --report new.json --picture new.svg
+}
+printf '' | refuse empty.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\n' | refuse nofaces.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 0 1 2\n' | refuse zero.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 4\n' | refuse range.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 -4\n' | refuse negative.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2\n' | refuse two.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 2\n' | refuse repeated.obj
+printf 'v 0 0 nan\nv 1 0 0\nv 1 1 0\nf 1 2 3\n' | refuse nan.obj
+printf 'v 0 0 1e999\nv 1 0 0\nv 1 1 0\nf 1 2 3\n' | refuse huge.obj
+printf 'v 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n' | refuse short.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n' | refuse fin.obj
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 1 4 5\n' | refuse bowtie.obj
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n' | refuse truncated.off
+printf 'hello\n' | refuse word.off
+head -c 100000 /dev/zero | refuse zeros.obj
+head -c 100000 /dev/urandom | refuse noise.off
+awk 'BEGIN { n = 12; t = 6.283185307179586
+    for (i = 0; i < n; i++) for (j = 0; j < 2; j++) { u = t * i / n; s = (j - 0.5)
+        print "v", (3 + s * cos(u / 2)) * cos(u), (3 + s * cos(u / 2)) * sin(u), s * sin(u / 2) }
+    for (i = 0; i < n; i++) {
+        a = 2*i+1; b = 2*i+2; c = i+1 < n ? 2*i+3 : 2; d = i+1 < n ? 2*i+4 : 1
+        print "f", a, c, d, b } }' |
+    refuse moebius.obj
+expect 3 "missing.obj" missing.obj -o old.obj --planar
+expect 3 "missing.obj" grid.obj -o old.obj --planar --reference missing.obj=0.1
+expect 3 "missing.obj" grid.obj -o old.obj --planar --glide missing.obj
+expect 3 "missing.txt" grid.obj -o old.obj --planar --fix missing.txt
+expect 3 "bad-range.obj" grid.obj -o old.obj --planar --reference bad-range.obj
+expect 3 "bad-nofaces.obj" grid.obj -o old.obj --planar --glide bad-nofaces.obj
+expect 3 "bad-nofaces.obj" grid.obj -o old.obj --planar --reference bad-nofaces.obj
+printf '1 2 x\n' >words.txt
+expect 3 "words.txt: expected vertices" grid.obj -o old.obj --planar --fix words.txt
+printf '1 2 500\n' >far.txt
+expect 3 "far.txt: there is no vertex 500" grid.obj -o old.obj --planar --fix far.txt
+run grid.obj -o . --planar # no ending
+[ $status -eq 2 ] && pass || fail "an output without a name"
+
+# ---- results ----
+
+run grid.obj -o flat.obj --planar --report flat.json --picture flat.svg
+[ $status -eq 0 ] && pass || fail "--planar on a grid exits with $status: $(cat err.txt)"
+measure grid.obj flat.obj
+want "grid --planar" planarity_after 1e-12
+want "grid --planar" turned 0
+[ "$(value same_connectivity)" = 1 ] && pass || fail "grid --planar: the connectivity changed"
+grep -q "^iteration 1: " err.txt && pass || fail "no lines of progress"
+grep -q "planarity" out.txt && pass || fail "no summary"
+if command -v python3 >/dev/null; then
+    check "the report is JSON" python3 -m json.tool flat.json
+    check "the picture is XML" python3 -c "import xml.dom.minidom as m; m.parse('flat.svg')"
+    cat >report.py <<'PY'
+import json, subprocess
+r = json.load(open('flat.json'))
+m = dict(line.split() for line in open('measures.txt'))
+close = lambda a, b, e: abs(a - b) <= e * max(abs(a), abs(b), 1e-300) + 1e-13
+assert r['input'] == 'grid.obj' and r['mesh']['vertices'] == 81 and r['mesh']['faces'] == 64
+assert r['mesh']['edges'] == 144 and r['mesh']['boundary_loops'] == 1 and r['mesh']['faces_by_degree'] == {'4': 64}
+assert r['variables'] == 3 * 81 + 3 * 64 and r['rows'] == sum(g['rows'] for g in r['groups'])
+assert r['result']['outcome'] == 'converged' and r['result']['exit_code'] == 0
+assert len(r['iterations']) == r['result']['iterations'] and r['result']['residual'] <= 1e-12
+assert [i['number'] for i in r['iterations']] == list(range(1, len(r['iterations']) + 1))
+assert close(r['iterations'][-1]['planarity_max'], r['measures']['planarity_max'], 1e-3)
+assert all(len(i['groups']) == len(r['groups']) for i in r['iterations'])
+assert close(r['measures_before']['planarity_max'], float(m['planarity_before']), 1e-3)
+assert close(r['measures']['planarity_max'], float(m['planarity_after']), 1e-3)
+assert close(r['measures']['displacement_mean'], float(m['displacement_mean']), 1e-5)
+assert close(r['measures']['deviation_rms'], float(m['deviation_rms']), 1e-5)
+assert r['measures']['turned_faces'] == int(m['turned'])
+assert r['measures']['folded_edges'] == int(m['folded_after'])
+assert set(r['seconds']) >= {'set_up', 'analysis', 'assembly', 'factorisation', 'solve', 'total'}
+PY
+    if python3 report.py 2>report.txt; then pass; else fail "the report: $(tail -n 3 report.txt | tr '\n' ' ')"; fi
+    cp grid.obj 'odd "name\.obj'
+    run 'odd "name\.obj' -o 'out <&>.obj' --planar --report odd.json --picture odd.svg
+    check "a path with quotes in the report" python3 -m json.tool odd.json
+    check "a path with <&> in the picture" python3 -c "import xml.dom.minidom as m; m.parse('odd.svg')"
+else
+    skip "JSON and XML (python3 is not there)"
+fi
+[ "$(grep -c '<path' flat.svg)" -ge 64 ] && pass || fail "the picture has too few faces"
+grep -qE 'nan|inf' flat.svg && fail "the picture has numbers that are none" || pass
+
+run grid.obj -o quiet.obj --planar --quiet
+[ $status -eq 0 ] && [ ! -s out.txt ] && [ ! -s err.txt ] && pass || fail "--quiet is not quiet"
+cmp -s quiet.obj flat.obj && pass || fail "two runs give different bytes"
+for n in 1 2 5 0; do
+    run big.obj -o "threads$n.obj" --planar --fairness '0.2*0.9' --glide boundary --reference=big.obj=0.1 \
+        --picture "threads$n.svg" --threads $n
+    sed "s/threads$n/threads/" "threads$n.svg" >"picture$n.svg"
+    cmp -s threads1.obj "threads$n.obj" && cmp -s picture1.svg "picture$n.svg" && pass ||
+        fail "$n threads give different bytes"
+done
+cp grid.obj inplace.obj
+run inplace.obj -o inplace.obj --planar
+[ $status -eq 0 ] && cmp -s inplace.obj flat.obj && pass || fail "output over the input"
+ln -s inplace.obj link.obj
+run grid.obj -o link.obj --planar
+[ -L link.obj ] && cmp -s inplace.obj flat.obj && pass || fail "output through a symbolic link"
+run small.off -o small-out.off --planar
+[ $status -eq 0 ] && head -n 1 small-out.off | grep -q OFF && pass || fail "OFF in, OFF out"
+run small.off -o small-out.obj --planar
+[ $status -eq 0 ] && [ "$(grep -c '^f ' small-out.obj)" = 2 ] && pass || fail "OFF in, OBJ out"
+run --planar --iterations=20 -o after.obj -- grid.obj
+[ $status -eq 0 ] && pass || fail "-- before the input"
+
+run grid.obj -o few.obj --planar --iterations 1 --report few.json
+[ $status -eq 1 ] && [ -s few.obj ] && grep -q '"exit_code": 1' few.json && pass ||
+    fail "too few iterations exit with $status"
+run big.obj -o late.obj --planar --time-limit 1e-9 --report late.json
+[ $status -eq 1 ] && grep -q '"time out"' late.json && pass || fail "--time-limit: exits with $status"
+run grid.obj -o wish.obj --fairness 0.2
+{ [ $status -eq 0 ] || [ $status -eq 1 ]; } && pass || fail "wishes alone exit with $status"
+
+printf '# corners\n0, 8\n72 80 # the last\n' >corners.txt
+for fix in boundary corners 0,8,72,80 corners.txt 0-8,72=2; do
+    run grid.obj -o fixed.obj --planar --fix $fix --iterations 30
+    measure grid.obj fixed.obj
+    case $fix in
+    boundary | corners | corners.txt | 0,8,72,80) want "--fix $fix" corners 1e-9 ;;
+    esac
+    [ "$fix" = boundary ] && want "--fix boundary" boundary 1e-9
+done
+run grid.obj -o moved.obj --planar --fix corners --move 40,4,4,1.5 --move 0,-0.25,0,0 --iterations 30
+awk 'NR == 41 { good = ($2-4)^2 + ($3-4)^2 + ($4-1.5)^2 < 1e-18 } NR == 1 { first = ($2+0.25)^2 + $3^2 + $4^2 < 1e-18 }
+    END { exit !(good && first) }' moved.obj && pass || fail "--move"
+run grid.obj -o gliding.obj --planar --glide boundary --move 4,-0.2,4,0.5 --iterations 30
+awk 'NR == 5 { exit !(($2+0.2)^2 + ($3-4)^2 + ($4-0.5)^2 < 1e-18) }' gliding.obj && pass ||
+    fail "--move of a gliding vertex"
+awk -v h=0.6 "$height"'BEGIN {
+    for (k = 0; k < 32; k++) {
+        if (k < 8) { i = k; j = 0 } else if (k < 16) { i = 8; j = k - 8 }
+        else if (k < 24) { i = 24 - k; j = 8 } else { i = 0; j = 32 - k }
+        printf "v %.17g %.17g %.17g\n", i, j, z(i, j)
+        s = s " " (k + 1)
+    }
+    print "l" s " 1" }' >curve.obj
+run grid.obj -o curve-out.obj --planar --glide curve.obj=1 --fairness '0.1*0.9'
+[ $status -eq 0 ] && pass || fail "--glide CURVE exits with $status: $(tail -n 1 err.txt)"
+measure grid.obj curve-out.obj
+want "--glide CURVE" boundary 1e-9
+want "--glide CURVE" corners 1e-9
+run grid.obj -o all.obj --planar --glide boundary --fairness 0.1 --tangential '0.01*0.9:5' --gauss 0.01 \
+    --boundary-fairness=0.01 --closeness 0.01 --epsilon 1e-3 --iterations 40 --tolerance 1e-9
+[ $status -eq 0 ] && pass || fail "all wishes together exit with $status: $(tail -n 1 err.txt)"
+for view in iso top bottom front back left right side 30,20 -120.5,-10; do
+    run grid.obj -o view.obj --planar --picture view.svg --view $view
+    [ $status -eq 0 ] && [ "$(grep -c '<path' view.svg)" -ge 64 ] && pass || fail "--view $view"
+done
+
+# ---- little memory: it works or says so, and never leaves half an output ----
+
+if { (ulimit -v 1000000 && "$tool" --version) >/dev/null; } 2>/dev/null; then
+    for limit in $(seq 4000 500 16000); do
+        rm -f low.obj
+        {
+            (ulimit -v $limit && "$tool" torus.obj -o low.obj --planar --reference big.obj --report low.json \
+                --picture low.svg) >out.txt 2>err.txt
+            status=$?
+        } 2>/dev/null
+        case $status in
+        0) [ -s low.obj ] && pass || fail "with $limit KB: exit 0 without an output" ;;
+        4) grep -q "out of memory" err.txt && [ ! -e low.obj ] && pass || fail "with $limit KB: $(cat err.txt)" ;;
+        127) pass ;; # not even the program could be loaded
+        *) fail "with $limit KB it exits with $status: $(tail -n 1 err.txt)" ;;
+        esac
+    done
+else
+    skip "little memory (the limit cannot be set for this build)"
+fi
+
+# ---- units and place: the same shape to 1e-8 mean edges ----
+
+transform() { # transform SCALE SHIFT MESH
+    awk -v s="$1" -v x="$2" '/^v / { printf "v %.17g %.17g %.17g\n", $2*s+x, $3*s, $4*s; next } { print }' "$3"
+}
+same_shape() { # same_shape NAME A B
+    ./check_mesh "$2" "$3" >measures.txt
+    want "$1" displacement_max 1e-8
+}
+units() { # units NAME MESH OPTIONS...
+    local name=$1 mesh=$2
+    shift 2
+    run "$mesh" -o unit.obj "$@"
+    for s in 0.001 1000; do
+        transform $s 0 "$mesh" >scaled.obj
+        run scaled.obj -o scaled-out.obj "$@"
+        transform "$(awk -v s=$s 'BEGIN { print 1 / s }')" 0 scaled-out.obj >back.obj
+        same_shape "$name times $s" unit.obj back.obj
+    done
+    transform 1 100000 "$mesh" >moved.obj
+    run moved.obj -o moved-out.obj "$@"
+    transform 1 -100000 moved-out.obj >back.obj
+    same_shape "$name moved" unit.obj back.obj
+    awk '/^v / { printf "v %s %s %s\n", $3, $4, $2; next } { print }' "$mesh" >turned.obj # a rotation by 120 degrees
+    run turned.obj -o turned-out.obj "$@"
+    awk '/^v / { printf "v %s %s %s\n", $4, $2, $3; next } { print }' turned-out.obj >back.obj
+    same_shape "$name turned" unit.obj back.obj
+}
+units grid grid.obj --planar
+units "gliding grid" grid.obj --planar --glide boundary --fairness '0.2*0.9'
+units torus torus.obj --planar
+
+# ---- real meshes ----
+
+planar_only() { # planar_only NAME MEAN_DISPLACEMENT_OF_A_PLAIN_IMPLEMENTATION
+    local mesh=$data/$1.obj
+    run "$mesh" -o real.obj --planar --iterations 12
+    [ $status -eq 0 ] && pass || fail "$1 --planar exits with $status: $(tail -n 1 out.txt)"
+    measure "$mesh" real.obj
+    [ "$(value same_connectivity)" = 1 ] && pass || fail "$1 --planar: the connectivity changed"
+    want "$1 --planar" planarity_after 1e-12
+    [ "$1" = hypar ] || want "$1 --planar" turned 0
+    want "$1 --planar" displacement_mean "$(awk -v d="$2" 'BEGIN { print 1.05 * d }')"
+    run "$mesh" -o real.obj --planar --iterations 10 --closeness 0
+    measure "$mesh" real.obj
+    want "$1 --planar --closeness 0, 10 iterations" planarity_after 1e-12
+}
+faired() { # faired NAME
+    local mesh=$data/$1.obj
+    run "$mesh" -o real.obj --planar --reference "$mesh=0.1" --glide boundary --fairness '0.2*0.9' --iterations 12
+    [ $status -eq 0 ] && pass || fail "$1 faired exits with $status: $(tail -n 1 out.txt)"
+    measure "$mesh" real.obj
+    want "$1 faired" planarity_after 1e-9
+    want "$1 faired" boundary 1e-9
+    want "$1 faired" corners 1e-9
+    want "$1 faired" folded_after "$(value folded_before)"
+    want "$1 faired" turned 0
+}
+if [ -r "$data/Intersection.obj" ]; then
+    while read -r name displacement; do
+        planar_only "$name" "$displacement"
+    done <<'TABLE'
+6-sub-lifted 1.23e-4
+Intersection 0.0434
+M2_eq_quad2 0.630
+YasIsland 3.76e-4
+botanic-garden 0.0882
+eyeye_circular 0.147
+formfinding-circular 9.0e-6
+free_negshell 5.19e-3
+heart 0.379
+hypar 0.937
+quad_dome 9.4e-3
+tubemesh 0.137
+hexagonalminimal 1e-9
+TABLE
+    for name in Intersection YasIsland botanic-garden free_negshell; do faired $name; done
+    units "botanic-garden" "$data/botanic-garden.obj" --planar
+    for n in 1 2 5; do
+        run "$data/Intersection.obj" -o "real$n.obj" --planar --threads $n
+        cmp -s real1.obj "real$n.obj" && pass || fail "Intersection: $n threads give different bytes"
+    done
+else
+    skip "real meshes (there is no $data/Intersection.obj; set GPROJ_DATA)"
+fi
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,1547 @@
+/* guidedproj.c - form-finding with polygon meshes from the command line.
+
+       cc -O2 -o guidedproj guidedproj.c -lm -lpthread
+       ./guidedproj roof.obj -o flat.obj --planar --glide boundary --picture flat.svg
+
+   From top to bottom: the run and its errors; numbers and words; one reader for each kind of value; the table of
+   options; the command line; files; the form; progress; outputs (mesh, report, picture); main. */
+#define _XOPEN_SOURCE 700
+
+#define GPROJ_STATIC
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "../guidedproj.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "picture.h"
+#include "threads.h"
+
+#ifdef GPROJ_VERSION
+#define TOOL_VERSION GPROJ_VERSION
+#else
+#define TOOL_VERSION "0.1"
+#endif
+
+/* ---- the run ---- */
+
+enum {
+    EXIT_REACHED = 0,
+    EXIT_NOT_REACHED = 1,
+    EXIT_USAGE = 2,
+    EXIT_REFUSED = 3,
+    EXIT_MEMORY = 4
+};
+enum {
+    MOST_OPTIONS = 40,
+    MOST_ITERATIONS = 100000,
+    MOST_THREADS = 256
+};
+
+typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
+    bool given;
+    double weight, decay;
+    int32_t last;
+} tool_weight;
+
+typedef struct tool_word { /* the value of --fix, --glide, --reference: a word or a path, and a weight */
+    const char *text;
+    size_t length;
+    tool_weight weight;
+} tool_word;
+
+typedef struct tool_move {
+    int32_t vertex;
+    double position[3], weight;
+} tool_move;
+
+typedef struct tool_record { /* of one iteration, for the report */
+    gproj_iteration iteration;
+    double planarity_max, planarity_mean;
+    int32_t group_start, group_count; /* in tool.group_record */
+} tool_record;
+
+typedef struct tool_group_record {
+    double weight, norm, max;
+} tool_group_record;
+
+typedef struct tool_output {
+    const char *path;
+    char *target;    /* the path without symbolic links */
+    char *temporary; /* beside the target; NULL before it is written, and for devices and pipes */
+    bool device;     /* exists and is no regular file: written directly */
+} tool_output;
+
+enum {
+    OUTPUT_MESH,
+    OUTPUT_REPORT,
+    OUTPUT_PICTURE,
+    OUTPUT_COUNT
+};
+
+typedef struct tool {
+    /* what the command line says */
+    const char *input;
+    tool_output output[OUTPUT_COUNT];
+    tool_weight planar, closeness, fairness, boundary_fairness, tangential, gauss;
+    tool_word *fix, *glide; /* as many as the command line has words, at most */
+    tool_move *move;
+    int32_t fix_count, glide_count, move_count;
+    tool_word reference;
+    int32_t iterations, threads;
+    double epsilon, tolerance, time_limit;
+    gprojx_view view;
+    bool view_given, quiet, help, version;
+    bool seen[MOST_OPTIONS];
+
+    /* the work */
+    gproj_host host;
+    gprojx_threads *pool;
+    gproj_mesh *mesh, *reference_mesh, *probe; /* probe: a copy for measures of intermediate shapes */
+    gproj_surface *surface;
+    gproj_curve **curve;
+    int32_t curve_count;
+    gproj_form *form;
+    gproj_result result;
+    double *original, *planarity_before, *planarity;
+    gproj_measures before, after;
+    tool_record *record;
+    int32_t record_count;
+    tool_group_record *group_record;
+    int32_t group_record_count, group_record_capacity;
+    double start, read_seconds, setup_seconds, solve_seconds;
+    bool bar; /* the last thing on the terminal is the progress bar */
+
+    int exit_code; /* once something has failed */
+} tool;
+
+/* Every failure of the tool passes through here: one sentence, and the exit code. Returns false. */
+static bool fail(tool *t, int exit_code, const char *format, ...) {
+    va_list list;
+    if (t->exit_code != 0) return false;
+    t->exit_code = exit_code;
+    if (t->bar) fputc('\n', stderr);
+    fputs("guidedproj: ", stderr);
+    va_start(list, format);
+    vfprintf(stderr, format, list);
+    va_end(list);
+    fputs(exit_code == EXIT_USAGE ? "\n(guidedproj --help lists all options)\n" : "\n", stderr);
+    return false;
+}
+
+static bool fail_memory(tool *t) { return fail(t, EXIT_MEMORY, "out of memory"); }
+
+/* An error of the library about a file, or about the form where `path` is NULL. */
+static bool fail_library(tool *t, const char *path, const gproj_error *error) {
+    int code = error->code == GPROJ_ERROR_MEMORY ? EXIT_MEMORY : EXIT_REFUSED;
+    const char *message = error->message[0] ? error->message : gproj_code_string(error->code);
+    if (!path || strstr(message, path)) return fail(t, code, "%s", message);
+    return fail(t, code, "%s: %s", path, message);
+}
+
+static void *take(tool *t, size_t count, size_t size) {
+    void *block = calloc(count > 0 ? count : 1, size);
+    if (!block) fail_memory(t);
+    return block;
+}
+
+static double now(void *user) {
+    struct timespec time;
+    (void)user;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* ---- numbers and words ---- */
+
+static bool same_word(const char *text, size_t size, const char *word) {
+    return strlen(word) == size && memcmp(text, word, size) == 0;
+}
+
+/* All of text[0..size-1] is one finite number. */
+static bool read_number(const char *text, size_t size, double *value) {
+    return size > 0 && gproj_number_read(text, size, value) == size && fabs(*value) <= 1.7976931348623157e308;
+}
+
+/* All of text[0..size-1] is a whole number in low..high. */
+static bool read_integer(const char *text, size_t size, int32_t low, int32_t high, int32_t *value) {
+    int64_t sum = 0;
+    size_t i;
+    for (i = 0; i < size; ++i) {
+        if (text[i] < '0' || text[i] > '9') return false;
+        if (sum <= INT32_MAX) sum = 10 * sum + (text[i] - '0');
+    }
+    if (size == 0 || sum < low || sum > high) return false;
+    *value = (int32_t)sum;
+    return true;
+}
+
+/* W[*DECAY][:N] */
+static bool read_schedule(const char *text, size_t size, tool_weight *weight) {
+    const char *colon = (const char *)memchr(text, ':', size), *star;
+    tool_weight read = {true, 1, 1, 0};
+    size_t body = colon ? (size_t)(colon - text) : size, first;
+    if (colon && !read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &read.last)) return false;
+    star = (const char *)memchr(text, '*', body);
+    first = star ? (size_t)(star - text) : body;
+    if (!read_number(text, first, &read.weight) || read.weight < 0) return false;
+    if (star && !read_number(star + 1, body - first - 1, &read.decay)) return false;
+    if (read.decay <= 0 || read.decay > 1) return false;
+    *weight = read;
+    return true;
+}
+
+/* WORD[=W[*DECAY][:N]], cut at the last '=' where a weight follows it. */
+static tool_word split_word(const char *text, double usual_weight) {
+    const char *equals = strrchr(text, '=');
+    tool_word word;
+    word.text = text;
+    word.length = strlen(text);
+    word.weight.given = true, word.weight.weight = usual_weight, word.weight.decay = 1, word.weight.last = 0;
+    if (equals && read_schedule(equals + 1, strlen(equals + 1), &word.weight)) word.length = (size_t)(equals - text);
+    return word;
+}
+
+/* The number of edits (insert, delete, replace, swap neighbours) that turn one word into another. */
+static int edit_distance(const char *a, size_t size, const char *b) {
+    enum {
+        MOST = 24
+    };
+    int d[MOST + 1][MOST + 1], rows = (int)size, columns = (int)strlen(b), i, j;
+    if (rows > MOST || columns > MOST) return MOST;
+    for (i = 0; i <= rows; ++i)
+        for (j = 0; j <= columns; ++j) {
+            int best;
+            if (i == 0 || j == 0) {
+                d[i][j] = i + j;
+                continue;
+            }
+            best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            if (d[i - 1][j] + 1 < best) best = d[i - 1][j] + 1;
+            if (d[i][j - 1] + 1 < best) best = d[i][j - 1] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < best)
+                best = d[i - 2][j - 2] + 1;
+            d[i][j] = best;
+        }
+    return d[rows][columns];
+}
+
+/* ---- readers of values: `place` is the option's member of the tool ---- */
+
+static bool set_flag(tool *t, void *place, const char *name, const char *value) {
+    (void)t, (void)name, (void)value;
+    *(bool *)place = true;
+    return true;
+}
+
+static bool set_path(tool *t, void *place, const char *name, const char *value) {
+    if (!value[0]) return fail(t, EXIT_USAGE, "--%s needs a path", name);
+    ((tool_output *)place)->path = value;
+    return true;
+}
+
+/* What must hold: a constant weight. */
+static bool set_must(tool *t, void *place, const char *name, const char *value) {
+    tool_weight *weight = (tool_weight *)place;
+    weight->given = true, weight->weight = 1;
+    if (value && (!read_number(value, strlen(value), &weight->weight) || weight->weight < 0))
+        return fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number, 0 or larger", name, value);
+    return true;
+}
+
+static bool set_wish(tool *t, void *place, const char *name, const char *value) {
+    if (read_schedule(value, strlen(value), (tool_weight *)place)) return true;
+    return fail(
+        t, EXIT_USAGE,
+        "--%s %s: expected W[*DECAY][:N] with a weight W of 0 or larger, a DECAY above 0 and at most 1, and a last "
+        "iteration N of 1 or larger (as in 0.2*0.9:6)",
+        name, value);
+}
+
+static bool set_positive(tool *t, void *place, const char *name, const char *value) {
+    if (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a number larger than 0", name, value);
+}
+
+static bool set_iterations(tool *t, void *place, const char *name, const char *value) {
+    if (read_integer(value, strlen(value), 1, MOST_ITERATIONS, (int32_t *)place)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_ITERATIONS);
+}
+
+static bool set_threads(tool *t, void *place, const char *name, const char *value) {
+    int32_t *threads = (int32_t *)place;
+    if (!read_integer(value, strlen(value), 0, MOST_THREADS, threads))
+        return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 0 to %d", name, value, MOST_THREADS);
+    if (*threads == 0) {
+        long cores = sysconf(_SC_NPROCESSORS_ONLN);
+        *threads = cores < 1 ? 1 : cores > MOST_THREADS ? MOST_THREADS : (int32_t)cores;
+    }
+    return true;
+}
+
+static bool add_word(tool *t, tool_word *words, int32_t *count, const char *name, const char *value) {
+    tool_word word = split_word(value, 1);
+    if (word.length == 0) return fail(t, EXIT_USAGE, "--%s: expected a word, a list or a file before the weight", name);
+    if (word.weight.decay < 1 || word.weight.last > 0)
+        return fail(t, EXIT_USAGE, "--%s %s: what must hold has a constant weight", name, value);
+    words[(*count)++] = word;
+    return true;
+}
+
+static bool add_fix(tool *t, void *place, const char *name, const char *value) {
+    (void)place;
+    return add_word(t, t->fix, &t->fix_count, name, value);
+}
+
+static bool add_glide(tool *t, void *place, const char *name, const char *value) {
+    (void)place;
+    return add_word(t, t->glide, &t->glide_count, name, value);
+}
+
+static bool set_reference(tool *t, void *place, const char *name, const char *value) {
+    *(tool_word *)place = split_word(value, 0.1);
+    return ((tool_word *)place)->length > 0 || fail(t, EXIT_USAGE, "--%s: expected a mesh file", name);
+}
+
+/* I,X,Y,Z[=W] */
+static bool add_move(tool *t, void *place, const char *name, const char *value) {
+    tool_word word = split_word(value, 1);
+    tool_move *move = &t->move[t->move_count];
+    const char *at = word.text, *end = word.text + word.length, *comma;
+    int32_t k, i;
+    (void)place;
+    for (k = 0; k < 4; ++k, at = comma + (comma < end)) {
+        bool good;
+        comma = (const char *)memchr(at, ',', (size_t)(end - at));
+        if (!comma) comma = end;
+        good = k == 0 ? read_integer(at, (size_t)(comma - at), 0, INT32_MAX - 1, &move->vertex)
+                      : read_number(at, (size_t)(comma - at), &move->position[k - 1]);
+        if (!good || (comma < end) != (k < 3) || word.weight.decay < 1 || word.weight.last > 0)
+            return fail(t, EXIT_USAGE, "--%s %s: expected I,X,Y,Z: a vertex and the three coordinates of its new place",
+                        name, value);
+    }
+    move->weight = word.weight.weight;
+    for (i = 0; i < t->move_count; ++i)
+        if (t->move[i].vertex == move->vertex)
+            return fail(t, EXIT_USAGE, "--%s: vertex %ld is moved twice", name, (long)move->vertex);
+    t->move_count++;
+    return true;
+}
+
+/* A name, or AZIMUTH,ELEVATION in degrees. */
+static bool set_view(tool *t, void *place, const char *name, const char *value) {
+    static const struct {
+        const char *name;
+        gprojx_view view;
+    } views[] = {{"iso", {-58, 32, false}}, {"top", {-90, 90, true}}, {"bottom", {-90, -90, true}},
+                 {"front", {-90, 0, true}}, {"back", {90, 0, true}},  {"side", {0, 0, true}},
+                 {"right", {0, 0, true}},   {"left", {180, 0, true}}};
+    gprojx_view *view = (gprojx_view *)place;
+    const char *comma = strchr(value, ',');
+    size_t i;
+    t->view_given = true;
+    for (i = 0; i < sizeof views / sizeof views[0]; ++i)
+        if (strcmp(value, views[i].name) == 0) {
+            *view = views[i].view;
+            return true;
+        }
+    view->parallel = false;
+    if (comma && read_number(value, (size_t)(comma - value), &view->azimuth) &&
+        read_number(comma + 1, strlen(comma + 1), &view->elevation) && fabs(view->azimuth) <= 3600 &&
+        fabs(view->elevation) <= 90)
+        return true;
+    return fail(t, EXIT_USAGE,
+                "--%s %s: expected iso, top, bottom, front, back, left, right, side, or AZIMUTH,ELEVATION in degrees",
+                name, value);
+}
+
+/* ---- the table of options ---- */
+
+typedef struct tool_option {
+    char letter; /* 'o' for -o; 0: none */
+    const char *name;
+    const char *value; /* its syntax: "" none, "[=W]" may be left out, else needed */
+    bool repeatable;
+    const char *help;
+    const char *section; /* a heading above this option; NULL: none */
+    bool (*read)(tool *t, void *place, const char *name, const char *value);
+    size_t place; /* offset in tool, for `read` */
+} tool_option;
+
+#define PLACE(member) offsetof(tool, member)
+
+static const tool_option options[] = {
+    {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
+
+    {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
+     PLACE(planar)},
+    {0, "fix", "WHICH[=W]", true,
+     "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
+     NULL, add_fix, 0},
+    {0, "glide", "WHERE[=W]", true,
+     "boundary vertices stay on a curve. WHERE: boundary (each on its own boundary polyline; corners stay), or an OBJ "
+     "file "
+     "with polylines (else its boundary loops are taken)",
+     NULL, add_glide, 0},
+    {0, "move", "I,X,Y,Z[=W]", true, "vertex I goes to X,Y,Z; it is then free of --fix and --glide", NULL, add_move, 0},
+
+    {0, "reference", "FILE[=W]", false, "stay near the surface of this mesh (W: 0.1 if left out)",
+     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: half of all iterations if "
+     "left out)",
+     set_reference, PLACE(reference)},
+    {0, "closeness", "W", false,
+     "stay near the original places. Where nothing else is wished, 0.03*0.5:6 is; --closeness 0 turns that off", NULL,
+     set_wish, PLACE(closeness)},
+    {0, "fairness", "W", false, "smooth polylines of edges", NULL, set_wish, PLACE(fairness)},
+    {0, "boundary-fairness", "W", false, "smooth boundary", NULL, set_wish, PLACE(boundary_fairness)},
+    {0, "tangential", "W", false, "smooth polylines, as seen along the surface's normals", NULL, set_wish,
+     PLACE(tangential)},
+    {0, "gauss", "W", false, "smooth Gauss image: face normals change evenly", NULL, set_wish, PLACE(gauss)},
+
+    {0, "iterations", "N", false, "at most so many (12)", "how", set_iterations, PLACE(iterations)},
+    {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-12)", NULL, set_positive,
+     PLACE(tolerance)},
+    {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-6 to 1e-3)", NULL,
+     set_positive, PLACE(epsilon)},
+    {0, "time-limit", "SECONDS", false, "stop after the iteration that passes this", NULL, set_positive,
+     PLACE(time_limit)},
+    {0, "threads", "N", false, "work with N threads (1); 0: one per core. The result does not depend on it", NULL,
+     set_threads, PLACE(threads)},
+
+    {0, "report", "FILE", false, "JSON: counts, every iteration, verdict, measures, seconds", "out", set_path,
+     PLACE(output[OUTPUT_REPORT])},
+    {0, "picture", "FILE", false, "SVG: the result, coloured by the planarity of its faces", NULL, set_path,
+     PLACE(output[OUTPUT_PICTURE])},
+    {0, "view", "VIEW", false,
+     "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", NULL,
+     set_view, PLACE(view)},
+    {0, "quiet", "", false, "print errors only", NULL, set_flag, PLACE(quiet)},
+    {'h', "help", "", false, "print this", NULL, set_flag, PLACE(help)},
+    {0, "version", "", false, "print the version", NULL, set_flag, PLACE(version)},
+};
+
+enum {
+    OPTION_COUNT = (int)(sizeof options / sizeof options[0])
+};
+
+typedef char tool_seen_has_room[(int)OPTION_COUNT <= (int)MOST_OPTIONS ? 1 : -1];
+
+/* Prints words from column `indent` on, broken before column 80; the cursor stands in column `at`. */
+static void print_wrapped(const char *text, int at, int indent) {
+    while (*text) {
+        int size = (int)strcspn(text, " ");
+        if (at > indent && at + 1 + size > 79) {
+            fputc('\n', stdout);
+            at = 0;
+        }
+        if (at < indent)
+            printf("%*s", indent - at, ""), at = indent;
+        else if (at > indent)
+            fputc(' ', stdout), ++at;
+        printf("%.*s", size, text);
+        at += size;
+        text += size + (text[size] == ' ');
+    }
+    fputc('\n', stdout);
+}
+
+static void print_help(void) {
+    int i;
+    puts("usage: guidedproj INPUT.{obj,off} -o OUTPUT.{obj,off} OPTIONS\n\n"
+         "Moves the vertices of a polygon mesh so that what must hold holds to machine\n"
+         "precision, guided by what is wished. Vertices count from 0.");
+    for (i = 0; i < OPTION_COUNT; ++i) {
+        const tool_option *option = &options[i];
+        char head[64];
+        int size;
+        if (option->section) {
+            fputc('\n', stdout);
+            print_wrapped(option->section, 0, 0);
+        }
+        size = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", option->letter ? '-' : ' ',
+                        option->letter ? option->letter : ' ', option->letter ? ", " : "  ", option->name,
+                        option->value[0] && option->value[0] != '[' ? " " : "", option->value);
+        fputs(head, stdout);
+        if (size > 28) {
+            fputc('\n', stdout);
+            size = 0;
+        }
+        print_wrapped(option->help, size, 29);
+    }
+    puts("\nexamples\n"
+         "  guidedproj roof.obj -o flat.obj --planar --picture flat.svg\n"
+         "  guidedproj roof.obj -o fair.obj --planar --glide boundary \\\n"
+         "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
+         "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 40,0,0,3\n\n"
+         "exit status\n"
+         "  0 all that must hold holds to the tolerance   1 it does not (the output is\n"
+         "  written, the report says why)   2 wrong usage   3 input refused, or an output\n"
+         "  could not be written   4 out of memory. After 2, 3 and 4 no output is touched.");
+}
+
+/* ---- the command line ---- */
+
+static const tool_option *find_option(const char *name, size_t size) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (same_word(name, size, options[i].name)) return &options[i];
+    return NULL;
+}
+
+/* `word` is the whole argument, `name` the option in it. */
+static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
+    int i, best = -1, least = size < 5 ? 2 : 3; /* two edits, in a short name one, make a typing error */
+    for (i = 0; i < OPTION_COUNT; ++i) {
+        const char *known = options[i].name;
+        int distance = edit_distance(name, size, known);
+        if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
+        if (distance < least) best = i, least = distance;
+    }
+    if (best < 0) return fail(t, EXIT_USAGE, "there is no option %.*s", (int)(name + size - word), word);
+    return fail(t, EXIT_USAGE, "there is no option %.*s; did you mean --%s?", (int)(name + size - word), word,
+                options[best].name);
+}
+
+/* Reads the option at argv[*i] and, where it stands apart, its value. */
+static bool read_option(tool *t, int argc, char **argv, int *i) {
+    const char *word = argv[*i], *name = word + (word[1] == '-' ? 2 : 1), *equals = strchr(name, '=');
+    size_t size = equals ? (size_t)(equals - name) : strlen(name);
+    const tool_option *option = word[1] == '-' ? find_option(name, size) : NULL;
+    const char *value = equals ? equals + 1 : NULL;
+    int k;
+    for (k = 0; k < OPTION_COUNT && word[1] != '-'; ++k)
+        if (size == 1 && options[k].letter == name[0]) option = &options[k];
+    if (!option) return fail_unknown(t, word, name, size);
+    if (t->seen[option - options] && !option->repeatable)
+        return fail(t, EXIT_USAGE, "--%s is given twice", option->name);
+    t->seen[option - options] = true;
+    if (value && !option->value[0]) return fail(t, EXIT_USAGE, "--%s takes no value", option->name);
+    if (!value && option->value[0] && option->value[0] != '[') {
+        if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
+            return fail(t, EXIT_USAGE, "--%s needs a value: --%s %s", option->name, option->name, option->value);
+        value = argv[++*i];
+    }
+    return option->read(t, (char *)t + option->place, option->name, value);
+}
+
+static bool read_input_name(tool *t, const char *word, const char *before) {
+    double number;
+    if (!word[0]) return fail(t, EXIT_USAGE, "the input's name is empty");
+    if (read_number(word, strlen(word), &number) && before && strncmp(before, "--", 2) == 0)
+        return fail(t, EXIT_USAGE, "'%s' stands alone; a weight is written %s=%s", word, before, word);
+    if (t->input) return fail(t, EXIT_USAGE, "there are two inputs, '%s' and '%s'; one is needed", t->input, word);
+    if (strcmp(word, "-") == 0) return fail(t, EXIT_USAGE, "the input must be a file; there is no reading from a pipe");
+    t->input = word;
+    return true;
+}
+
+static bool has_ending(const char *path, const char *ending) {
+    size_t size = strlen(path), length = strlen(ending), i;
+    if (size <= length) return false;
+    for (i = 0; i < length; ++i)
+        if (tolower((unsigned char)path[size - length + i]) != ending[i]) return false;
+    return true;
+}
+
+static bool anything_asked(const tool *t) {
+    return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
+           t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
+           t->gauss.given;
+}
+
+static bool check_options(tool *t) {
+    const char *output = t->output[OUTPUT_MESH].path;
+    if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
+    if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
+    if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
+        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
+    if (!anything_asked(t))
+        return fail(t, EXIT_USAGE,
+                    "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
+                    "--fairness 0.2)");
+    if (t->view_given && !t->output[OUTPUT_PICTURE].path)
+        return fail(t, EXIT_USAGE, "--view is for a picture: add --picture FILE.svg");
+    return true;
+}
+
+static bool read_command_line(tool *t, int argc, char **argv) {
+    bool plain = false; /* after "--" */
+    int i;
+    t->fix = (tool_word *)take(t, (size_t)argc, sizeof *t->fix);
+    t->glide = (tool_word *)take(t, (size_t)argc, sizeof *t->glide);
+    t->move = (tool_move *)take(t, (size_t)argc, sizeof *t->move);
+    if (!t->fix || !t->glide || !t->move) return false;
+    for (i = 1; i < argc && !t->help && !t->version; ++i) {
+        if (!plain && strcmp(argv[i], "--") == 0)
+            plain = true;
+        else if (!plain && argv[i][0] == '-' && argv[i][1]) {
+            if (!read_option(t, argc, argv, &i)) return false;
+        } else if (!read_input_name(t, argv[i], i > 1 && !plain ? argv[i - 1] : NULL))
+            return false;
+    }
+    return t->help || t->version || check_options(t);
+}
+
+/* ---- files ---- */
+
+static char *join(tool *t, const char *a, const char *b, const char *c) {
+    char *path = (char *)take(t, strlen(a) + strlen(b) + strlen(c) + 1, 1);
+    if (path) strcat(strcat(strcpy(path, a), b), c);
+    return path;
+}
+
+/* Finds where an output really goes, and refuses before the work starts what could not be written after it. */
+static bool prepare_output(tool *t, tool_output *output) {
+    const char *slash = strrchr(output->path, '/');
+    struct stat info;
+    char *folder, *real;
+    bool writable;
+    folder = join(t, output->path, "", "");
+    if (!folder) return false;
+    if (slash)
+        folder[slash == output->path ? 1 : slash - output->path] = 0;
+    else
+        strcpy(folder, "."); /* a path has at least one character */
+    output->target = realpath(output->path, NULL);
+    if (output->target) { /* it exists */
+        slash = strrchr(output->target, '/');
+        free(folder);
+        folder = join(t, output->target, "", "");
+        if (!folder) return false;
+        folder[slash == output->target ? 1 : slash - output->target] = 0;
+        if (stat(output->target, &info) == 0 && S_ISDIR(info.st_mode)) {
+            free(folder);
+            return fail(t, EXIT_USAGE, "the output '%s' is a folder", output->path);
+        }
+        output->device = !S_ISREG(info.st_mode);
+    } else {
+        real = realpath(folder, NULL);
+        if (!real) {
+            fail(t, EXIT_USAGE, "the output '%s' cannot be written: there is no folder '%s'", output->path, folder);
+            free(folder);
+            return false;
+        }
+        output->target = join(t, real, strcmp(real, "/") == 0 ? "" : "/", slash ? slash + 1 : output->path);
+        free(real);
+    }
+    writable = output->device ? access(output->target, W_OK) == 0 : access(folder, W_OK | X_OK) == 0;
+    free(folder);
+    if (!output->target) return false;
+    if (!writable) return fail(t, EXIT_USAGE, "the output '%s' cannot be written: %s", output->path, strerror(errno));
+    return true;
+}
+
+/* Refuses to write over a file that this run reads. */
+static bool keep_apart(tool *t, const tool_output *output, const char *path, size_t size) {
+    char *copy = (char *)take(t, size + 1, 1), *real;
+    bool same;
+    if (!copy) return false;
+    memcpy(copy, path, size);
+    real = realpath(copy, NULL);
+    same = real && !output->device && strcmp(real, output->target) == 0;
+    free(real);
+    if (same) fail(t, EXIT_USAGE, "the output '%s' would overwrite the input '%s'", output->path, copy);
+    free(copy);
+    return !same;
+}
+
+static bool prepare_outputs(tool *t) {
+    int32_t i, j;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        tool_output *output = &t->output[i];
+        if (!output->path) continue;
+        if (!prepare_output(t, output)) return false;
+        for (j = 0; j < i; ++j)
+            if (t->output[j].target && strcmp(t->output[j].target, output->target) == 0)
+                return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
+        if (i != OUTPUT_MESH && !keep_apart(t, output, t->input, strlen(t->input))) return false;
+        for (j = 0; i != OUTPUT_MESH && j < t->fix_count; ++j)
+            if (!keep_apart(t, output, t->fix[j].text, t->fix[j].length)) return false;
+        for (j = 0; i != OUTPUT_MESH && j < t->glide_count; ++j)
+            if (!keep_apart(t, output, t->glide[j].text, t->glide[j].length)) return false;
+        if (i != OUTPUT_MESH && t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length))
+            return false;
+    }
+    return true;
+}
+
+static gproj_mesh *load(tool *t, const char *path, size_t size) {
+    gproj_error error;
+    gproj_mesh *mesh;
+    char *copy = (char *)take(t, size + 1, 1);
+    if (!copy) return NULL;
+    memcpy(copy, path, size);
+    mesh = gproj_mesh_load(copy, &t->host, &error);
+    if (!mesh) fail_library(t, copy, &error);
+    free(copy);
+    return mesh;
+}
+
+/* The whole of a small text file, NUL-terminated. */
+static char *load_text(tool *t, const char *path) {
+    FILE *file = fopen(path, "rb");
+    char *text = NULL;
+    size_t size = 0, capacity = 0, got = 0;
+    if (!file) {
+        fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+        return NULL;
+    }
+    do {
+        size += got;
+        if (size + 1 >= capacity) {
+            char *more = (char *)realloc(text, capacity = 2 * capacity + 4096);
+            if (!more) break;
+            text = more;
+        }
+        got = fread(text + size, 1, capacity - size - 1, file);
+    } while (got > 0);
+    if (got > 0 || ferror(file)) {
+        if (got > 0)
+            fail_memory(t);
+        else
+            fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+        free(text);
+        text = NULL;
+    } else if (text)
+        text[size] = 0;
+    else
+        fail_memory(t);
+    fclose(file);
+    return text;
+}
+
+static bool read_mesh(tool *t) {
+    int32_t i;
+    t->mesh = load(t, t->input, strlen(t->input));
+    if (!t->mesh) return false;
+    if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
+    t->original = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->original);
+    t->planarity_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);
+    t->planarity = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);
+    if (!t->original || !t->planarity_before || !t->planarity) return false;
+    memcpy(t->original, t->mesh->position, 3 * (size_t)t->mesh->vertex_count * sizeof *t->original);
+    t->before = gproj_measure(t->mesh, t->original, t->planarity_before);
+    for (i = 0; i < t->move_count; ++i)
+        if (t->move[i].vertex >= t->mesh->vertex_count)
+            return fail(t, EXIT_USAGE, "--move: there is no vertex %ld; the mesh has %ld, counted from 0",
+                        (long)t->move[i].vertex, (long)t->mesh->vertex_count);
+    return true;
+}
+
+/* ---- the form ---- */
+
+static bool is_moved(const tool *t, int32_t vertex) {
+    int32_t i;
+    for (i = 0; i < t->move_count; ++i)
+        if (t->move[i].vertex == vertex && t->move[i].weight > 0) return true;
+    return false;
+}
+
+/* Marks the vertices of a list I,J,K-L in any layout; comments go from # to the end of the line. `where` names it. */
+static bool mark_list(tool *t, const char *text, const char *where, int exit_code, bool *mark) {
+    const char *at = text;
+    while (*at) {
+        int32_t range[2], k;
+        size_t size = strspn(at, "0123456789");
+        if (*at == '#') {
+            at += strcspn(at, "\n");
+            continue;
+        }
+        if (*at == ',' || isspace((unsigned char)*at)) {
+            ++at;
+            continue;
+        }
+        for (k = 0; k < 2; ++k) {
+            if (size == 0 || !read_integer(at, size, 0, t->mesh->vertex_count - 1, &range[k])) {
+                if (size == 0)
+                    return fail(t, exit_code, "%s: expected vertices, such as 0,7,20-29, at '%.12s'", where, at);
+                return fail(t, exit_code, "%s: there is no vertex %.*s; the mesh has %ld, counted from 0", where,
+                            (int)size, at, (long)t->mesh->vertex_count);
+            }
+            at += size;
+            if (k == 0 && *at != '-') range[k = 1] = range[0];
+            if (k == 0) size = strspn(++at, "0123456789");
+        }
+        if (range[1] < range[0])
+            return fail(t, exit_code, "%s: the range %ld-%ld runs backwards", where, (long)range[0], (long)range[1]);
+        for (k = range[0]; k <= range[1]; ++k) mark[k] = true;
+    }
+    return true;
+}
+
+static bool mark_fixed(tool *t, const tool_word *word, bool *mark) {
+    bool boundary = same_word(word->text, word->length, "boundary"),
+         corners = same_word(word->text, word->length, "corners");
+    char *name = (char *)take(t, word->length + 1, 1), *text;
+    bool good = name != NULL;
+    int32_t i;
+    if (!name) return false;
+    memcpy(name, word->text, word->length);
+    if (boundary || corners) {
+        for (i = 0; i < t->mesh->vertex_count; ++i)
+            mark[i] = boundary ? gproj_mesh_is_boundary_vertex(t->mesh, i) : gproj_form_is_corner(t->form, i);
+    } else if (strspn(name, "0123456789,- ") == word->length) {
+        good = mark_list(t, name, "--fix", EXIT_USAGE, mark);
+    } else {
+        text = load_text(t, name);
+        good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
+        free(text);
+    }
+    free(name);
+    return good;
+}
+
+/* The marked vertices that no --move takes, as a list; returns their number. */
+static int32_t gather(const tool *t, const bool *mark, int32_t *list) {
+    int32_t i, count = 0;
+    for (i = 0; i < t->mesh->vertex_count; ++i)
+        if (mark[i] && !is_moved(t, i)) list[count++] = i;
+    return count;
+}
+
+static bool add_fixed(tool *t, const tool_word *word) {
+    size_t vertices = (size_t)t->mesh->vertex_count;
+    bool *mark = (bool *)take(t, vertices, sizeof *mark);
+    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), count;
+    bool good = mark && list && mark_fixed(t, word, mark);
+    if (good && word->weight.weight > 0) {
+        count = gather(t, mark, list);
+        if (count > 0) gproj_add_fixed(t->form, count, list, word->weight.weight);
+    }
+    free(mark), free(list);
+    return good;
+}
+
+/* One group for each weight. */
+static bool add_moves(tool *t) {
+    int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, j;
+    double *place = (double *)take(t, 3 * (size_t)t->move_count, sizeof *place);
+    for (i = 0; vertex && place && i < t->move_count; ++i) {
+        int32_t count = 0, earlier = 0;
+        for (j = 0; j < t->move_count; ++j) {
+            if (t->move[j].weight < t->move[i].weight || t->move[j].weight > t->move[i].weight) continue;
+            earlier += j < i;
+            vertex[count] = t->move[j].vertex;
+            memcpy(place + 3 * count++, t->move[j].position, sizeof t->move[j].position);
+        }
+        if (earlier == 0 && t->move[i].weight > 0) gproj_add_targets(t->form, count, vertex, place, t->move[i].weight);
+    }
+    free(vertex), free(place);
+    return t->exit_code == 0;
+}
+
+/* Makes curves of a mesh's polylines, else of its boundary loops; the mesh's own loops for `loops`. */
+static bool add_curves(tool *t, const gproj_mesh *mesh, bool loops, const char *path) {
+    int32_t count = loops || mesh->polyline_count == 0 ? mesh->loop_count : mesh->polyline_count, i;
+    gproj_curve **more =
+        (gproj_curve **)realloc(t->curve, (size_t)(t->curve_count + count + 1) * sizeof(gproj_curve *));
+    gproj_error error;
+    if (!more) return fail_memory(t);
+    t->curve = more;
+    if (count == 0) return fail(t, EXIT_REFUSED, "%s: there is no curve: neither polylines nor a boundary", path);
+    for (i = 0; i < count; ++i) {
+        gproj_curve *curve = loops || mesh->polyline_count == 0 ? gproj_curve_from_loop(mesh, i, &t->host, &error)
+                                                                : gproj_curve_from_polyline(mesh, i, &t->host, &error);
+        if (!curve) return fail_library(t, path, &error);
+        t->curve[t->curve_count++] = curve;
+    }
+    return true;
+}
+
+/* The curve of first..last-1 that is nearest to a point. */
+static int32_t nearest_curve(const tool *t, int32_t first, int32_t last, const double *point, double *distance) {
+    int32_t i, best = first;
+    *distance = INFINITY;
+    for (i = first; i < last; ++i) {
+        double d = gproj_curve_closest(t->curve[i], point).distance;
+        if (d < *distance) *distance = d, best = i;
+    }
+    return best;
+}
+
+/* Every boundary vertex glides along the nearest of the curves from `first` on; corners that lie on it stay. */
+static bool glide_along(tool *t, int32_t first, double weight) {
+    size_t vertices = (size_t)t->mesh->vertex_count;
+    int32_t *owner = (int32_t *)take(t, vertices, sizeof *owner), *list = (int32_t *)take(t, vertices, sizeof *list);
+    int32_t i, c, count, stays = t->curve_count; /* the owner of corners that stay */
+    bool good = owner && list;
+    for (i = 0; good && i < t->mesh->vertex_count; ++i) {
+        double distance;
+        owner[i] = -1;
+        if (!gproj_mesh_is_boundary_vertex(t->mesh, i) || is_moved(t, i)) continue;
+        owner[i] = nearest_curve(t, first, t->curve_count, t->original + 3 * i, &distance);
+        if (gproj_form_is_corner(t->form, i) && distance <= 1e-6 * t->before.mean_edge) owner[i] = stays;
+    }
+    for (c = first; good && c <= stays; ++c) {
+        for (count = i = 0; i < t->mesh->vertex_count; ++i)
+            if (owner[i] == c) list[count++] = i;
+        if (count == 0) continue;
+        if (c == stays)
+            gproj_add_fixed(t->form, count, list, weight);
+        else
+            gproj_add_gliding(t->form, t->curve[c], count, list, weight);
+    }
+    free(owner), free(list);
+    return good;
+}
+
+static bool add_gliding(tool *t, const tool_word *word) {
+    int32_t first = t->curve_count, i;
+    bool moved = false, good;
+    if (same_word(word->text, word->length, "boundary")) {
+        if (t->mesh->loop_count == 0)
+            return fail(t, EXIT_USAGE, "--glide boundary: the mesh is closed and has no boundary");
+        for (i = 0; i < t->move_count; ++i) moved |= gproj_mesh_is_boundary_vertex(t->mesh, t->move[i].vertex);
+        if (!moved) {
+            if (word->weight.weight > 0) gproj_add_gliding_boundary(t->form, word->weight.weight);
+            return true;
+        }
+        good = add_curves(t, t->mesh, true, t->input);
+    } else {
+        gproj_mesh *mesh = load(t, word->text, word->length);
+        good = mesh && add_curves(t, mesh, false, word->text);
+        gproj_mesh_destroy(mesh);
+    }
+    if (!good || word->weight.weight <= 0) return good;
+    return glide_along(t, first, word->weight.weight);
+}
+
+/* A wish with its schedule. The first half of the iterations where no last one is given. */
+static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
+    gproj_schedule schedule;
+    schedule.weight = weight->weight;
+    schedule.decay = weight->decay;
+    schedule.last = weight->last > 0 ? weight->last : t->iterations > 1 ? t->iterations / 2 : 1;
+    if (group >= 0) gproj_set_schedule(t->form, group, schedule);
+}
+
+static bool add_reference(tool *t) {
+    gproj_error error;
+    t->reference_mesh = load(t, t->reference.text, t->reference.length);
+    if (!t->reference_mesh) return false;
+    t->surface = gproj_surface_create(t->reference_mesh, &t->host, &error);
+    if (!t->surface) return fail_library(t, t->reference.text, &error);
+    if (t->reference.weight.weight > 0)
+        add_wish(t, &t->reference.weight, gproj_add_reference(t->form, t->surface, t->reference.weight.weight));
+    return true;
+}
+
+static void add_energies(tool *t) {
+    gproj_form *form = t->form;
+    if (t->closeness.weight > 0) add_wish(t, &t->closeness, gproj_add_closeness(form, t->closeness.weight));
+    if (t->fairness.weight > 0) add_wish(t, &t->fairness, gproj_add_fairness(form, t->fairness.weight));
+    if (t->boundary_fairness.weight > 0)
+        add_wish(t, &t->boundary_fairness, gproj_add_boundary_fairness(form, t->boundary_fairness.weight));
+    if (t->tangential.weight > 0)
+        add_wish(t, &t->tangential, gproj_add_tangential_fairness(form, t->tangential.weight));
+    if (t->gauss.weight > 0) add_wish(t, &t->gauss, gproj_add_gauss_fairness(form, t->gauss.weight));
+}
+
+/* The groups stand in the form in the order of the table, whatever their order on the command line. */
+static bool build_form(tool *t) {
+    int32_t i;
+    t->form = gproj_form_create(t->mesh, &t->host);
+    if (!t->form) return fail_memory(t);
+    if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
+    for (i = 0; i < t->fix_count; ++i)
+        if (!add_fixed(t, &t->fix[i])) return false;
+    for (i = 0; i < t->glide_count; ++i)
+        if (!add_gliding(t, &t->glide[i])) return false;
+    if (!add_moves(t)) return false;
+    if (t->reference.text && !add_reference(t)) return false;
+    add_energies(t);
+    if (gproj_form_error(t->form)->code != GPROJ_OK) return fail_library(t, NULL, gproj_form_error(t->form));
+    return true;
+}
+
+/* ---- progress ---- */
+
+static double weight_in(const gproj_schedule *schedule, int32_t n) {
+    double decay = schedule->decay > 0 ? schedule->decay : 1;
+    if (schedule->last > 0 && n > schedule->last) return 0;
+    return schedule->weight * pow(decay, n);
+}
+
+static void show_progress(tool *t, const gproj_iteration *iteration) {
+    enum {
+        WIDTH = 24
+    };
+    double seconds = 0;
+    int i;
+    if (t->quiet) return;
+    for (i = 0; i < GPROJ_PHASE_COUNT; ++i) seconds += iteration->seconds[i];
+    if (isatty(2)) {
+        int full = (int)((int64_t)WIDTH * iteration->number / t->iterations);
+        fputs("\r[", stderr);
+        for (i = 0; i < WIDTH; ++i) fputc(i < full ? '#' : '.', stderr);
+        fprintf(stderr, "] %ld/%ld  residual %.1e ", (long)iteration->number, (long)t->iterations, iteration->residual);
+        t->bar = true;
+    } else
+        fprintf(stderr, "iteration %ld: residual %.2e, step %.2e, energy %.2e, %.1f ms\n", (long)iteration->number,
+                iteration->residual, iteration->step, iteration->energy, 1e3 * seconds);
+    fflush(stderr);
+}
+
+static bool record_groups(tool *t, gproj_system *system, tool_record *record) {
+    int32_t count = gproj_system_group_count(system), i;
+    if (t->group_record_count + count > t->group_record_capacity) {
+        int32_t capacity = 2 * (t->group_record_count + count);
+        void *more = realloc(t->group_record, (size_t)capacity * sizeof *t->group_record);
+        if (!more) return fail_memory(t);
+        t->group_record = (tool_group_record *)more;
+        t->group_record_capacity = capacity;
+    }
+    record->group_start = t->group_record_count;
+    record->group_count = count;
+    for (i = 0; i < count; ++i) {
+        gproj_group_info info = gproj_system_group_info(system, i);
+        tool_group_record *group = &t->group_record[t->group_record_count++];
+        group->weight = weight_in(&info.schedule, record->iteration.number);
+        group->norm = info.rms * sqrt((double)info.rows);
+        group->max = info.max;
+    }
+    return true;
+}
+
+/* The shape as it is now: vertex i is variables 3i .. 3i + 2 in the form's units. */
+static void measure_now(tool *t, gproj_system *system, tool_record *record) {
+    const double *values = gproj_system_values(system);
+    gproj_measures measures;
+    double centre[3], scale = 1;
+    int32_t i;
+    gproj_form_units(t->form, centre, &scale);
+    for (i = 0; i < 3 * t->probe->vertex_count; ++i) t->probe->position[i] = centre[i % 3] + values[i] / scale;
+    measures = gproj_measure(t->probe, NULL, NULL);
+    record->planarity_max = measures.planarity_max;
+    record->planarity_mean = measures.planarity_mean;
+}
+
+static bool on_iteration(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    tool *t = (tool *)user;
+    show_progress(t, iteration);
+    if (t->record && t->record_count < t->iterations) {
+        tool_record *record = &t->record[t->record_count];
+        record->iteration = *iteration;
+        if (!record_groups(t, system, record)) return false;
+        measure_now(t, system, record);
+        t->record_count++;
+    }
+    return true;
+}
+
+static bool solve(tool *t) {
+    gproj_solve_options how;
+    double begin = now(NULL);
+    memset(&how, 0, sizeof how);
+    how.tolerance = t->tolerance;
+    how.epsilon = t->epsilon;
+    how.time_budget = t->time_limit;
+    how.skip_closeness = t->closeness.given && t->closeness.weight <= 0;
+    how.on_iteration = on_iteration;
+    how.user = t;
+    if (t->output[OUTPUT_REPORT].path) {
+        gproj_error error;
+        t->record = (tool_record *)take(t, (size_t)t->iterations, sizeof *t->record);
+        if (!t->record) return false;
+        t->probe = gproj_mesh_copy(t->mesh, &t->host, &error);
+        if (!t->probe) return fail_library(t, NULL, &error);
+    }
+    t->result = gproj_solve(t->form, t->iterations, &how);
+    t->solve_seconds = now(NULL) - begin;
+    if (t->bar) fputc('\n', stderr);
+    t->bar = false;
+    if (t->exit_code != 0) return false; /* the callback ran out of memory */
+    if (t->result.outcome == GPROJ_FAILED) return fail_library(t, NULL, gproj_form_error(t->form));
+    t->after = gproj_measure(t->mesh, t->original, t->planarity);
+    return true;
+}
+
+/* ---- the report ---- */
+
+typedef struct json {
+    FILE *file;
+    int depth;
+    bool comma; /* something stands before in this object or array */
+    bool row;   /* all of it on one line */
+} json;
+
+static void json_text(json *j, const char *text) {
+    fputc('"', j->file);
+    for (; *text; ++text) {
+        unsigned char c = (unsigned char)*text;
+        if (c == '"' || c == '\\')
+            fprintf(j->file, "\\%c", c);
+        else if (c < 32 || c == 127)
+            fprintf(j->file, "\\u%04x", c);
+        else
+            fputc(c, j->file);
+    }
+    fputc('"', j->file);
+}
+
+/* Begins a member of an object, or an entry of an array where key is NULL. */
+static void json_next(json *j, const char *key) {
+    if (j->comma) fputc(',', j->file);
+    if (!j->row)
+        fprintf(j->file, "\n%*s", 2 * j->depth, "");
+    else if (j->comma)
+        fputc(' ', j->file);
+    j->comma = true;
+    if (!key) return;
+    json_text(j, key);
+    fputs(": ", j->file);
+}
+
+static void json_open(json *j, const char *key, char bracket) {
+    if (j->depth > 0) json_next(j, key);
+    fputc(bracket, j->file);
+    j->depth++;
+    j->comma = false;
+}
+
+static void json_close(json *j, char bracket) {
+    j->depth--;
+    if (!j->row && j->comma) fprintf(j->file, "\n%*s", 2 * j->depth, "");
+    fputc(bracket, j->file);
+    j->comma = true;
+}
+
+/* JSON has no infinity and no NaN: they become null. */
+static void json_number(json *j, const char *key, double value) {
+    char text[GPROJ_NUMBER_SIZE];
+    json_next(j, key);
+    if (!(fabs(value) <= 1.7976931348623157e308)) {
+        fputs("null", j->file);
+        return;
+    }
+    gproj_number_write(value, text);
+    fputs(text, j->file);
+}
+
+static void json_integer(json *j, const char *key, int64_t value) {
+    json_next(j, key);
+    fprintf(j->file, "%lld", (long long)value);
+}
+
+/* Bytes that are not UTF-8 (a path may hold any) become question marks. */
+static void json_string(json *j, const char *key, const char *text) {
+    size_t size = strlen(text), i = 0;
+    char *copy = (char *)malloc(size + 1);
+    json_next(j, key);
+    if (!copy) {
+        fputs("null", j->file);
+        return;
+    }
+    memcpy(copy, text, size + 1);
+    while (i < size) {
+        unsigned char c = (unsigned char)copy[i];
+        size_t more = c < 0x80                ? 0
+                      : c >= 0xc2 && c < 0xe0 ? 1
+                      : c >= 0xe0 && c < 0xf0 ? 2
+                      : c >= 0xf0 && c < 0xf5 ? 3
+                                              : 9,
+               k;
+        for (k = 1; k <= more && more < 9; ++k)
+            if (((unsigned char)copy[i + k] & 0xc0) != 0x80) more = 9;
+        if (more < 9)
+            i += more + 1;
+        else
+            copy[i++] = '?';
+    }
+    json_text(j, copy);
+    free(copy);
+}
+
+static const char *place_name(gproj_place place) {
+    switch (place) {
+    case GPROJ_PLACE_VERTEX: return "vertex";
+    case GPROJ_PLACE_EDGE: return "edge";
+    case GPROJ_PLACE_FACE: return "face";
+    default: return "row";
+    }
+}
+
+static const char *phase_name(int phase) {
+    switch ((gproj_phase)phase) {
+    case GPROJ_PHASE_ANALYSE: return "analysis";
+    case GPROJ_PHASE_REFRESH: return "evaluation";
+    case GPROJ_PHASE_ASSEMBLE: return "assembly";
+    case GPROJ_PHASE_FACTOR: return "factorisation";
+    default: return "solve";
+    }
+}
+
+static const char *outcome_name(gproj_outcome outcome) {
+    switch (outcome) {
+    case GPROJ_CONVERGED: return "converged";
+    case GPROJ_ITERATION_LIMIT: return "iteration limit";
+    case GPROJ_STALLED: return "stalled";
+    case GPROJ_CANCELLED: return "cancelled";
+    case GPROJ_TIME_OUT: return "time out";
+    default: return "failed";
+    }
+}
+
+static int verdict_code(const tool *t) {
+    return t->result.outcome == GPROJ_CONVERGED ? EXIT_REACHED : EXIT_NOT_REACHED;
+}
+
+/* How many faces have this many sides. */
+static int32_t count_degree(const gproj_mesh *mesh, int32_t degree) {
+    int32_t i, count = 0;
+    for (i = 0; i < mesh->face_count; ++i) count += mesh->face_degree[i] == degree;
+    return count;
+}
+
+/* The smallest degree of a face above `degree`; 0 where there is none. */
+static int32_t next_degree(const gproj_mesh *mesh, int32_t degree) {
+    int32_t i, best = 0;
+    for (i = 0; i < mesh->face_count; ++i)
+        if (mesh->face_degree[i] > degree && (best == 0 || mesh->face_degree[i] < best)) best = mesh->face_degree[i];
+    return best;
+}
+
+static void report_mesh(json *j, const gproj_mesh *mesh) {
+    int32_t degree;
+    json_open(j, "mesh", '{');
+    json_integer(j, "vertices", mesh->vertex_count);
+    json_integer(j, "edges", mesh->edge_count);
+    json_integer(j, "faces", mesh->face_count);
+    json_open(j, "faces_by_degree", '{');
+    j->row = true;
+    for (degree = next_degree(mesh, 0); degree > 0; degree = next_degree(mesh, degree)) {
+        char key[16];
+        snprintf(key, sizeof key, "%ld", (long)degree);
+        json_integer(j, key, count_degree(mesh, degree));
+    }
+    json_close(j, '}');
+    j->row = false;
+    json_integer(j, "boundary_loops", mesh->loop_count);
+    json_integer(j, "components", mesh->component_count);
+    json_integer(j, "isolated_vertices", mesh->isolated_count);
+    json_integer(j, "reoriented_faces", mesh->reoriented_count);
+    json_close(j, '}');
+}
+
+static void report_group(json *j, const gproj_group_info *group) {
+    json_open(j, NULL, '{');
+    j->row = true;
+    json_string(j, "name", group->name);
+    json_string(j, "kind", group->kind == GPROJ_CONSTRAINT ? "constraint" : "wish");
+    json_number(j, "weight", group->schedule.weight);
+    json_number(j, "decay", group->schedule.decay > 0 ? group->schedule.decay : 1);
+    if (group->schedule.last > 0 && group->schedule.last < INT32_MAX)
+        json_integer(j, "last_iteration", group->schedule.last);
+    else
+        json_number(j, "last_iteration", INFINITY);
+    json_integer(j, "rows", group->rows);
+    json_number(j, "norm", group->rms * sqrt((double)group->rows));
+    json_number(j, "max", group->max);
+    if (group->worst_row >= 0) json_integer(j, place_name(group->place), group->worst_element);
+    json_close(j, '}');
+    j->row = false;
+}
+
+static void report_groups(json *j, tool *t) {
+    gproj_system *system = gproj_form_system(t->form);
+    int32_t count = gproj_system_group_count(system), i;
+    int64_t rows = 0;
+    for (i = 0; i < count; ++i) rows += gproj_system_group_info(system, i).rows;
+    json_integer(j, "variables", gproj_system_variable_count(system));
+    json_integer(j, "rows", rows);
+    json_open(j, "groups", '[');
+    for (i = 0; i < count; ++i) {
+        gproj_group_info group = gproj_system_group_info(system, i);
+        report_group(j, &group);
+    }
+    json_close(j, ']');
+}
+
+static void report_seconds(json *j, const double *seconds) {
+    int i;
+    for (i = 0; i < GPROJ_PHASE_COUNT; ++i) json_number(j, phase_name(i), seconds[i]);
+}
+
+static void report_iteration(json *j, tool *t, const tool_record *record) {
+    const gproj_iteration *iteration = &record->iteration;
+    int32_t i;
+    json_open(j, NULL, '{');
+    json_integer(j, "number", iteration->number);
+    json_number(j, "residual", iteration->residual);
+    json_number(j, "planarity_max", record->planarity_max);
+    json_number(j, "planarity_mean", record->planarity_mean);
+    json_number(j, "merit", iteration->merit);
+    json_number(j, "energy", iteration->energy);
+    json_number(j, "step", iteration->step);
+    json_number(j, "epsilon", iteration->epsilon);
+    json_integer(j, "attempts", iteration->attempts);
+    json_open(j, "groups", '[');
+    for (i = 0; i < record->group_count; ++i) {
+        const tool_group_record *group = &t->group_record[record->group_start + i];
+        json_open(j, NULL, '{');
+        j->row = true;
+        json_string(j, "name", gproj_system_group_info(gproj_form_system(t->form), i).name);
+        json_number(j, "weight", group->weight);
+        json_number(j, "norm", group->norm);
+        json_number(j, "max", group->max);
+        json_close(j, '}');
+        j->row = false;
+    }
+    json_close(j, ']');
+    json_open(j, "seconds", '{');
+    j->row = true;
+    report_seconds(j, iteration->seconds);
+    json_close(j, '}');
+    j->row = false;
+    json_close(j, '}');
+}
+
+static void report_result(json *j, const tool *t) {
+    const gproj_result *result = &t->result;
+    json_open(j, "result", '{');
+    json_string(j, "outcome", outcome_name(result->outcome));
+    json_integer(j, "exit_code", verdict_code(t));
+    json_string(j, "sentence", result->message);
+    json_integer(j, "iterations", result->iterations);
+    json_integer(j, "damped", result->damped);
+    json_number(j, "residual", result->residual);
+    json_number(j, "tolerance", t->tolerance > 0 ? t->tolerance : 1e-12);
+    json_number(j, "last_step", result->step);
+    if (result->worst_group >= 0) {
+        gproj_group_info group = gproj_system_group_info(gproj_form_system(t->form), result->worst_group);
+        json_open(j, "worst", '{');
+        json_string(j, "group", group.name);
+        json_integer(j, place_name(group.place), result->worst_element);
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
+static void report_measures(json *j, const char *key, const gproj_measures *m) {
+    json_open(j, key, '{');
+    json_number(j, "planarity_max", m->planarity_max);
+    json_number(j, "planarity_mean", m->planarity_mean);
+    json_integer(j, "planarity_face", m->planarity_face);
+    json_number(j, "diagonal_distance_max", m->diagonal_max);
+    json_number(j, "deviation_max", m->deviation_max);
+    json_number(j, "deviation_rms", m->deviation_rms);
+    json_number(j, "displacement_mean", m->displacement_mean);
+    json_integer(j, "turned_faces", m->turned_faces);
+    json_integer(j, "folded_edges", m->folded_edges);
+    json_integer(j, "bow_tie_faces", m->bow_tie_faces);
+    json_integer(j, "degenerate_faces", m->degenerate_faces);
+    json_number(j, "gauss_variation", m->gauss_variation);
+    json_number(j, "mean_edge", m->mean_edge);
+    json_number(j, "min_edge", m->min_edge);
+    json_number(j, "max_edge", m->max_edge);
+    json_number(j, "area", m->area);
+    json_number(j, "min_face_area", m->min_face_area);
+    json_number(j, "max_face_area", m->max_face_area);
+    json_close(j, '}');
+}
+
+static gproj_code write_report(tool *t, FILE *file) {
+    json writer = {NULL, 0, false, false}, *j = &writer;
+    int32_t i;
+    writer.file = file;
+    json_open(j, NULL, '{');
+    json_string(j, "version", TOOL_VERSION);
+    json_string(j, "input", t->input);
+    json_string(j, "output", t->output[OUTPUT_MESH].path);
+    report_mesh(j, t->mesh);
+    report_groups(j, t);
+    json_open(j, "iterations", '[');
+    for (i = 0; i < t->record_count; ++i) report_iteration(j, t, &t->record[i]);
+    json_close(j, ']');
+    report_result(j, t);
+    report_measures(j, "measures_before", &t->before);
+    report_measures(j, "measures", &t->after);
+    json_open(j, "seconds", '{');
+    json_number(j, "reading", t->read_seconds);
+    json_number(j, "set_up", t->setup_seconds);
+    report_seconds(j, t->result.seconds);
+    json_number(j, "all_iterations", t->solve_seconds);
+    json_number(j, "total", now(NULL) - t->start);
+    json_close(j, '}');
+    json_close(j, '}');
+    fputc('\n', file);
+    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
+}
+
+/* ---- the other outputs ---- */
+
+static const char *file_name(const char *path) { return strrchr(path, '/') ? strrchr(path, '/') + 1 : path; }
+
+static gproj_code write_picture(tool *t, FILE *file) {
+    gprojx_picture_options picture;
+    char caption[160];
+    memset(&picture, 0, sizeof picture);
+    snprintf(caption, sizeof caption, "%ld vertices, %ld faces \xc2\xb7 planarity %.1e \xe2\x86\x92 %.1e",
+             (long)t->mesh->vertex_count, (long)t->mesh->face_count, t->before.planarity_max, t->after.planarity_max);
+    picture.title = file_name(t->output[OUTPUT_MESH].path);
+    picture.caption = caption;
+    picture.legend = "planarity of the faces, in mean edge lengths";
+    picture.view = t->view_given ? &t->view : NULL;
+    picture.original = t->original;
+    picture.face_value = t->planarity;
+    picture.face_before = t->planarity_before;
+    return gprojx_picture(file, t->mesh, &picture);
+}
+
+static bool write_piece(void *user, const char *text, size_t size) {
+    return fwrite(text, 1, size, (FILE *)user) == size;
+}
+
+static gproj_code write_mesh(tool *t, FILE *file) {
+    gproj_format format = has_ending(t->output[OUTPUT_MESH].path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
+    return gproj_mesh_write(t->mesh, format, write_piece, file);
+}
+
+/* Opens a new file beside the target, with the mode of an old one there. */
+static FILE *open_temporary(tool *t, tool_output *output) {
+    char ending[48];
+    struct stat info;
+    int descriptor;
+    if (output->device) return fopen(output->target, "w");
+    snprintf(ending, sizeof ending, ".%ld.tmp", (long)getpid());
+    output->temporary = join(t, output->target, ending, "");
+    if (!output->temporary) return NULL;
+    descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL, 0666);
+    if (descriptor < 0) {
+        free(output->temporary); /* not ours */
+        output->temporary = NULL;
+        return NULL;
+    }
+    if (stat(output->target, &info) == 0 && fchmod(descriptor, info.st_mode & 0777) != 0)
+        errno = 0; /* as it is, then */
+    return fdopen(descriptor, "w");
+}
+
+static bool write_output(tool *t, tool_output *output, gproj_code (*write)(tool *t, FILE *file)) {
+    FILE *file;
+    gproj_code code;
+    int closed;
+    if (!output->path) return true;
+    errno = 0;
+    file = open_temporary(t, output);
+    if (!file) return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
+    code = write(t, file);
+    closed = fclose(file);
+    if (code == GPROJ_ERROR_MEMORY) return fail_memory(t);
+    if (code != GPROJ_OK || closed != 0)
+        return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path,
+                    errno ? strerror(errno) : gproj_code_string(code));
+    return true;
+}
+
+/* All outputs are complete beside their places before the first is put there. */
+static bool write_outputs(tool *t) {
+    int32_t i;
+    if (!write_output(t, &t->output[OUTPUT_PICTURE], write_picture) ||
+        !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
+        !write_output(t, &t->output[OUTPUT_REPORT], write_report))
+        return false;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        tool_output *output = &t->output[i];
+        if (!output->temporary) continue;
+        if (rename(output->temporary, output->target) != 0)
+            return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
+        free(output->temporary);
+        output->temporary = NULL;
+    }
+    return true;
+}
+
+static void print_mesh(const tool *t) {
+    const gproj_mesh *mesh = t->mesh;
+    int32_t degree, shown = 0;
+    printf("%s: %ld vertices, %ld edges, %ld faces (", file_name(t->input), (long)mesh->vertex_count,
+           (long)mesh->edge_count, (long)mesh->face_count);
+    for (degree = next_degree(mesh, 0); degree > 0 && shown < 6; degree = next_degree(mesh, degree), ++shown)
+        printf("%s%ld of %ld sides", shown ? ", " : "", (long)count_degree(mesh, degree), (long)degree);
+    printf("%s), %ld boundary loop%s\n", degree > 0 ? ", ..." : "", (long)mesh->loop_count,
+           mesh->loop_count == 1 ? "" : "s");
+    if (mesh->reoriented_count > 0)
+        printf("note: %ld faces were turned round to agree with their neighbours\n", (long)mesh->reoriented_count);
+    if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
+}
+
+static void print_summary(const tool *t) {
+    const gproj_measures *b = &t->before, *a = &t->after;
+    print_mesh(t);
+    printf("%s\n", t->result.message);
+    printf("planarity     %.2e -> %.2e largest, %.2e -> %.2e mean (mean edge lengths)\n", b->planarity_max,
+           a->planarity_max, b->planarity_mean, a->planarity_mean);
+    printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding box\n", a->displacement_mean,
+           a->deviation_max);
+    printf("faces         %ld turned over, %ld -> %ld folded edges, %ld -> %ld bow-ties\n", (long)a->turned_faces,
+           (long)b->folded_edges, (long)a->folded_edges, (long)b->bow_tie_faces, (long)a->bow_tie_faces);
+    printf("seconds       %.3f (%ld iterations in %.3f)\n", now(NULL) - t->start, (long)t->result.iterations,
+           t->solve_seconds);
+}
+
+/* ---- main ---- */
+
+static bool start_threads(tool *t) {
+    t->host.clock.now = now;
+    if (t->threads < 2) return true;
+    t->pool = gprojx_threads_create(t->threads);
+    if (!t->pool) return fail(t, EXIT_MEMORY, "%ld threads cannot be had", (long)t->threads);
+    t->host.parallel = gprojx_threads_hook(t->pool);
+    return true;
+}
+
+static bool run(tool *t) {
+    double mark;
+    if (!prepare_outputs(t) || !start_threads(t) || !read_mesh(t)) return false;
+    mark = now(NULL);
+    t->read_seconds = mark - t->start;
+    if (!build_form(t)) return false;
+    t->setup_seconds = now(NULL) - mark;
+    if (!solve(t) || !write_outputs(t)) return false;
+    if (!t->quiet) print_summary(t);
+    return true;
+}
+
+static void clean_up(tool *t) {
+    int32_t i;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        if (t->output[i].temporary) unlink(t->output[i].temporary);
+        free(t->output[i].temporary), free(t->output[i].target);
+    }
+    gproj_form_destroy(t->form);
+    for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
+    gproj_surface_destroy(t->surface);
+    gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
+    gprojx_threads_destroy(t->pool);
+    free(t->curve), free(t->fix), free(t->glide), free(t->move);
+    free(t->original), free(t->planarity_before), free(t->planarity), free(t->record), free(t->group_record);
+}
+
+int main(int argc, char **argv) {
+    tool t;
+    int exit_code;
+    memset(&t, 0, sizeof t);
+    t.start = now(NULL);
+    t.iterations = 12;
+    t.threads = 1;
+    if (read_command_line(&t, argc, argv)) {
+        if (t.help)
+            print_help();
+        else if (t.version)
+            puts("guidedproj " TOOL_VERSION);
+        else if (run(&t))
+            t.exit_code = verdict_code(&t);
+    }
+    exit_code = t.exit_code;
+    clean_up(&t);
+    return exit_code;
+}

@@ -1,0 +1,123 @@
+/* threads.h - a small pool of POSIX threads for gproj_host.parallel, for the command line and the examples.
+
+       gprojx_threads *threads = gprojx_threads_create(4);   NULL: no memory, or the system gave no threads
+       host.parallel = gprojx_threads_hook(threads);         NULL is allowed: then a plain loop
+       ...
+       gprojx_threads_destroy(threads);
+
+   The pool has count - 1 threads, because the calling thread works too. Include guidedproj.h before this file. */
+#ifndef GPROJX_THREADS_H
+#define GPROJX_THREADS_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+typedef struct gprojx_threads {
+    pthread_mutex_t lock;
+    pthread_cond_t wake;  /* there is work, or the end */
+    pthread_cond_t ready; /* the last index is done */
+    gproj_task task;      /* the loop that runs now: task(data, 0 .. count - 1); NULL between loops */
+    void *data;
+    int32_t count;
+    int32_t taken; /* indices given to threads so far */
+    int32_t done;  /* indices whose call has returned */
+    bool quit;
+    int32_t thread_count;
+    pthread_t *thread;
+} gprojx_threads;
+
+/* Works on the present loop until all its indices are taken. The lock is held on entry and on return. */
+static void gprojx_threads_work(gprojx_threads *threads) {
+    while (threads->task && threads->taken < threads->count) {
+        gproj_task task = threads->task;
+        void *data = threads->data;
+        int32_t index = threads->taken++;
+        pthread_mutex_unlock(&threads->lock);
+        task(data, index);
+        pthread_mutex_lock(&threads->lock);
+        if (++threads->done == threads->count) pthread_cond_broadcast(&threads->ready);
+    }
+}
+
+static void *gprojx_threads_main(void *user) {
+    gprojx_threads *threads = (gprojx_threads *)user;
+    pthread_mutex_lock(&threads->lock);
+    while (!threads->quit) {
+        gprojx_threads_work(threads);
+        if (!threads->quit) pthread_cond_wait(&threads->wake, &threads->lock);
+    }
+    pthread_mutex_unlock(&threads->lock);
+    return NULL;
+}
+
+/* gproj_parallel.run. A loop that is begun inside a task of another one runs on its own thread alone. */
+static void gprojx_threads_run(void *user, int32_t count, gproj_task task, void *data) {
+    gprojx_threads *threads = (gprojx_threads *)user;
+    int32_t i;
+    pthread_mutex_lock(&threads->lock);
+    if (threads->task) {
+        pthread_mutex_unlock(&threads->lock);
+        for (i = 0; i < count; ++i) task(data, i);
+        return;
+    }
+    threads->task = task;
+    threads->data = data;
+    threads->count = count;
+    threads->taken = 0;
+    threads->done = 0;
+    pthread_cond_broadcast(&threads->wake);
+    gprojx_threads_work(threads);
+    while (threads->done < threads->count) pthread_cond_wait(&threads->ready, &threads->lock);
+    threads->task = NULL;
+    pthread_mutex_unlock(&threads->lock);
+}
+
+static void gprojx_threads_destroy(gprojx_threads *threads) {
+    int32_t i;
+    if (!threads) return;
+    pthread_mutex_lock(&threads->lock);
+    threads->quit = true;
+    pthread_cond_broadcast(&threads->wake);
+    pthread_mutex_unlock(&threads->lock);
+    for (i = 0; i < threads->thread_count; ++i) pthread_join(threads->thread[i], NULL);
+    pthread_cond_destroy(&threads->ready);
+    pthread_cond_destroy(&threads->wake);
+    pthread_mutex_destroy(&threads->lock);
+    free(threads->thread);
+    free(threads);
+}
+
+/* A pool that works with `count` >= 1 threads, the caller's included. */
+static gprojx_threads *gprojx_threads_create(int32_t count) {
+    gprojx_threads *threads = (gprojx_threads *)calloc(1, sizeof *threads);
+    if (!threads) return NULL;
+    threads->thread = (pthread_t *)calloc((size_t)count, sizeof *threads->thread);
+    if (!threads->thread) {
+        free(threads);
+        return NULL;
+    }
+    pthread_mutex_init(&threads->lock, NULL);
+    pthread_cond_init(&threads->wake, NULL);
+    pthread_cond_init(&threads->ready, NULL);
+    while (threads->thread_count < count - 1) {
+        if (pthread_create(&threads->thread[threads->thread_count], NULL, gprojx_threads_main, threads) != 0) {
+            gprojx_threads_destroy(threads);
+            return NULL;
+        }
+        threads->thread_count++;
+    }
+    return threads;
+}
+
+static gproj_parallel gprojx_threads_hook(gprojx_threads *threads) {
+    gproj_parallel parallel = {NULL, NULL};
+    if (threads && threads->thread_count > 0) {
+        parallel.run = gprojx_threads_run;
+        parallel.user = threads;
+    }
+    return parallel;
+}
+
+#endif
