@@ -75,12 +75,12 @@
      GPROJ_USE_CBLAS            dense kernels by a CBLAS (link one, such as OpenBLAS)
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
 
-   MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it is
-     destroyed. There are no globals. Iterations after the first allocate nothing. Every allocation may fail: the call
-     returns an error and nothing leaks.
+   MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
+     is destroyed. There are no globals. Iterations after the first allocate nothing. Every allocation may fail: the
+     call returns an error and nothing leaks.
 
-   THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used by
-     different threads at the same time; one object by one thread at a time. Reading an object that no one changes is
+   THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
+     by different threads at the same time; one object by one thread at a time. Reading an object that no one changes is
      always safe.
 
    DETERMINISM  The same input gives the same bytes on the same machine and build: on any number of threads, in any run.
@@ -90,8 +90,8 @@
      enough. Misuse that only a programmer can cause is reported like everything else.
 
    REFERENCES
-     Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4), 2014.
-     Others stand in the sections that are based on them. */
+     Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4),
+     2014. Others stand in the sections that are based on them. */
 #ifndef GUIDEDPROJ_H
 #define GUIDEDPROJ_H
 
@@ -339,15 +339,15 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
-/* Called before every evaluation that begins an iteration for groups whose rows depend on x in another way
-   than quadratic (closest points, tangent frames): reads x, and replaces its rows by gproj_system_set_row. */
+/* Called before each iteration for groups whose rows depend on x in another way than quadratic (closest points, tangent
+   frames): reads x, and replaces its rows by gproj_system_set_row. Must not add anything to the system. */
 typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
 
 typedef struct gproj_group {
     const char *name; /* for reports, e.g. "planarity"; copied (at most 31 characters) */
     gproj_kind kind;
-    /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update, which
-       costs one more solve per row. */
+    /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
+       which costs one more solve per row. */
     bool global;
     gproj_place place; /* what the element numbers of its rows count */
     gproj_schedule schedule;
@@ -411,8 +411,8 @@ typedef struct gproj_iteration {
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
-    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or 8 roundings of the largest |x| where that is
-       more. */
+    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or 8 roundings of the largest |x| where that
+       is more. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3) */
     double time_budget; /* seconds by the host's clock; 0 means none */
@@ -511,11 +511,11 @@ typedef struct gproj_mesh {
     const int32_t *polyline_vertex; /* a closed polyline repeats its first vertex at its end */
 } gproj_mesh;
 
-/* Builds a mesh of at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face, face_vertex the corners of all faces one
-   after the other, from 0. The arrays are copied. Refuses, naming the element: indices out of range, a face with
-   fewer than 3 or with repeated vertices, coordinates that are not finite, edges with more than two faces,
-   vertices whose faces form more than one fan, components without a consistent orientation (the first face of a
-   component gives it; faces against it are turned round and counted). */
+/* Builds a mesh of at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
+   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the
+   element: indices out of range, a face with fewer than 3 or with repeated vertices, coordinates that are not finite,
+   edges with more than two faces, vertices whose faces form more than one fan, components without a consistent
+   orientation (the first face of a component gives it; faces against it are turned round and counted). */
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
@@ -604,7 +604,8 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 typedef struct gproj_measures {
     double mean_edge, min_edge, max_edge;
     double area, min_face_area, max_face_area; /* lengths of vectorial areas */
-    /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the mesh. */
+    /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the
+       mesh. */
     double planarity_max, planarity_mean;
     int32_t planarity_face;              /* where the largest is; -1 without faces */
     double diagonal_max;                 /* quads: distance of the lines through the diagonals, in mean edge lengths */
@@ -612,7 +613,7 @@ typedef struct gproj_measures {
     double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
     int32_t turned_faces;                /* vectorial area against the one of the original face */
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
-    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along its vectorial area */
+    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal of its plane */
     int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
     /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
        normals, as a sum of triangle areas about its mean. */
@@ -704,7 +705,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 
 #endif /* GUIDEDPROJ_H */
 
-/* ---------------------------------------- stop here if you only want the API ---------------------------------------- */
+/* ------------------------------ stop here if you only want the API ------------------------------ */
 
 #ifdef GUIDEDPROJ_IMPLEMENTATION
 #ifndef GPROJI_IMPLEMENTED
@@ -751,8 +752,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 #define GPROJI_RESTRICT restrict
 #endif
 
-/* Vector extensions of gcc and clang; every other compiler, and GPROJ_NO_SIMD, takes the scalar path; so does arithmetic
-   in registers of more than double precision (x87). */
+/* Vector extensions of gcc and clang; every other compiler, and GPROJ_NO_SIMD, takes the scalar path; so does
+   arithmetic in registers of more than double precision (x87). */
 #if !defined(GPROJ_NO_SIMD) && (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__) && \
     !(defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD == 2)
 #define GPROJI_SIMD 1
@@ -1569,10 +1570,10 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
 #endif
 
 enum {
-    GPROJI_CHUNK = 128,    /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
-    GPROJI_STRIP = 48,     /* columns of an update matrix that are stored with the same rows; a multiple of B */
+    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
     GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 480 /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+    GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
 #if GPROJI_LANES == 1
@@ -1597,6 +1598,8 @@ typedef double gproji_lanes_at __attribute__((vector_size(8 * GPROJI_LANES), ali
 #else
 #define GPROJI_KERNEL GPROJI_INTERNAL
 #endif
+
+/* clang-format off */
 
 /* Rows 0..T-1 (vectors) of column j of a tile. The loops are written out, because compilers keep a tile in registers
    only when every element of it is a variable of its own: tile_r_j is vector r of column j. */
@@ -1703,10 +1706,14 @@ GPROJI_INLINE void gproji_tile_solve(int32_t blocks, int32_t k, const double *a,
     GPROJI_TILE_SWITCH(gproji_tile_solve_, (k, a, lda, b, ldb, c, ldc, triangle, inverse))
 }
 
-/* The number of empty rows before the pivots of a panel with w pivots. */
-GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return (GPROJI_BLOCK - w % GPROJI_BLOCK) % GPROJI_BLOCK; }
+/* clang-format on */
 
-/* A stride of at least `rows`: a multiple of B, and not one that maps whole columns to the same few lines of a cache. */
+/* The number of empty rows before the pivots of a panel with w pivots. */
+GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) {
+    return (GPROJI_BLOCK - w % GPROJI_BLOCK) % GPROJI_BLOCK;
+}
+
+/* A stride of at least `rows`: a multiple of B, and none that maps whole columns to the same few lines of a cache. */
 GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
     int32_t stride = (rows + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
     return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
@@ -1769,9 +1776,9 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of B; columns [first, last) are being eliminated
-   as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks
-   (or 0). */
+/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of B; columns [first, last) are being
+   eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are ends of
+   column blocks (or 0). */
 typedef struct gproji_panel {
     int32_t rows, w, shift;
     int32_t first, last;
@@ -1785,8 +1792,8 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
     return panel->values + row + (ptrdiff_t)column * panel->stride;
 }
 
-/* A strip of C = [C] - A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, and `rows` rows. A has
-   k columns and the strip's rows; B is the upper end of A. */
+/* A strip of C = [C] - A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, `rows` rows. A
+   has k columns and the strip's rows; B is the upper end of A. */
 GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t k, const double *a, ptrdiff_t lda,
                                          double *c, ptrdiff_t ldc, bool add) {
     const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
@@ -1843,9 +1850,9 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     }
 }
 
-/* The chunk's pivot rows, column block by column block; and all rows of a first column block that is not whole. Returns
-   -1 or the failing column. */
-GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel) {
+/* The chunk's pivot rows, column block by column block; of a first column block that is not whole, all rows up to
+   `rows`. Returns -1 or the failing column. */
+GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel, int32_t rows) {
     const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
     int32_t shift = panel->shift, pivot_end = panel->last + shift, stride = panel->stride, row, start, next, failed;
     for (start = panel->first; start < panel->last; start = next) {
@@ -1857,7 +1864,7 @@ GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel) {
         failed = gproji_tile_factor(next - start, gproji_panel_at(panel, start + shift, start), stride, inverse);
         if (failed >= 0) return start + failed;
         if (start == 0 && shift > 0) {
-            gproji_first_block_solve(panel->rows, next, shift, panel->values, stride, inverse);
+            gproji_first_block_solve(rows, next, shift, panel->values, stride, inverse);
             continue;
         }
         for (row = at + GPROJI_BLOCK; row < pivot_end; row += tile) {
@@ -1869,15 +1876,15 @@ GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel) {
     return -1;
 }
 
-/* Runs a panel's tasks: on the host's threads where they are given and the work, in flops, is worth it. */
-GPROJI_INTERNAL void gproji_panel_run(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
-                                      gproji_panel *panel) {
+/* Runs tasks on the host's threads where they are given and the work, in flops, is worth it. */
+GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
+                                      void *data) {
     int32_t i;
     if (parallel && flops > 4e6) {
-        gproji_for(parallel, count, task, panel);
+        gproji_for(parallel, count, task, data);
         return;
     }
-    for (i = 0; i < count; ++i) task(panel, i);
+    for (i = 0; i < count; ++i) task(data, i);
 }
 
 /* The number of pieces of `size` that cover `all`. */
@@ -1886,6 +1893,10 @@ GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + s
 #ifdef GPROJ_USE_CBLAS
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
+GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
+    return gproji_pivots_factor(panel, panel->last + panel->shift);
+}
+
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -1919,19 +1930,23 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     }
 }
 #else
+GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
+    return gproji_pivots_factor(panel, panel->rows);
+}
+
 /* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
-    gproji_panel_run(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_panel_run(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_STRIP), gproji_trailing_task,
+    gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
+    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_STRIP), gproji_trailing_task,
                      panel);
 }
 
 /* The update matrix of a factored panel. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->w - panel->shift;
-    gproji_panel_run(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
+    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
                      panel);
 }
 #endif
@@ -1942,7 +1957,7 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
         int32_t failed;
         panel->first = panel->last;
         panel->last = gproji_min(panel->w, panel->first + GPROJI_CHUNK - (panel->first ? 0 : panel->shift));
-        failed = gproji_pivots_factor(panel);
+        failed = gproji_chunk_pivots(panel);
         if (failed >= 0) return failed;
         gproji_chunk_finish(parallel, panel);
     }
@@ -2059,7 +2074,9 @@ GPROJI_INTERNAL void gproji_panel_backward(int32_t rows, int32_t w, const double
    are broken by the order in which nodes reach a degree list. */
 
 /* A pool holds the blocks of one piece of work, all given back by one call. */
-enum { GPROJI_POOL_BLOCKS = 48 };
+enum {
+    GPROJI_POOL_BLOCKS = 48
+};
 typedef struct gproji_pool {
     gproji_heap *heap;
     int32_t count;
@@ -2109,37 +2126,42 @@ typedef struct gproji_graph {
 } gproji_graph;
 
 /* The state of the elimination. Each of the graph's nodes is, at any time, one of
-     variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; it has a list in `space`: first
+     variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; its list in `space` has first
                               `elements[i]` elements, then variables, `length[i]` altogether
      element   (kind ELEMENT) a pivot; its list holds the variables of its column of L that are not yet eliminated
      gone      (kind GONE)    a variable absorbed by another one or by an element, or an element absorbed by a later one
      dense     (kind DENSE)   put last, never looked at
    While a new element is formed, the weight of its variables is negated. */
-enum { GPROJI_AMD_VARIABLE, GPROJI_AMD_ELEMENT, GPROJI_AMD_GONE, GPROJI_AMD_DENSE };
+enum {
+    GPROJI_AMD_VARIABLE,
+    GPROJI_AMD_ELEMENT,
+    GPROJI_AMD_GONE,
+    GPROJI_AMD_DENSE
+};
 
 typedef struct gproji_amd {
     int32_t nodes;
-    int32_t total;      /* weight of all nodes that are not dense */
-    int32_t left;       /* of it, not yet eliminated */
-    int32_t lowest;     /* no variable has a smaller degree */
-    int64_t free;       /* space[free..size-1] is unused */
+    int32_t total;  /* weight of all nodes that are not dense */
+    int32_t left;   /* of it, not yet eliminated */
+    int32_t lowest; /* no variable has a smaller degree */
+    int64_t free;   /* space[free..size-1] is unused */
     int64_t size;
-    int64_t stamp;      /* marks below it are old */
-    int32_t *space;     /* size: all lists */
-    int64_t *list;      /* nodes: where the list begins */
-    int32_t *length;    /* nodes */
-    int32_t *elements;  /* nodes: of a variable, the elements at the head of its list */
-    int32_t *weight;    /* nodes */
-    int32_t *degree;    /* nodes: variable: bound of the external degree; element: weight of its list */
-    unsigned char *kind;/* nodes */
-    int64_t *mark;      /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
-    int32_t *head;      /* buckets: first variable of a degree, or -1; used for hash values while comparing */
-    int32_t buckets;    /* total + 1 */
-    int32_t *next;      /* nodes: in a degree list, in a hash list */
-    int32_t *previous;  /* nodes: in a degree list; while comparing, the hash value */
-    int32_t *hash_head; /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;      /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;     /* nodes: next node of that chain, or -1 */
+    int64_t stamp;       /* marks below it are old */
+    int32_t *space;      /* size: all lists */
+    int64_t *list;       /* nodes: where the list begins */
+    int32_t *length;     /* nodes */
+    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
+    int32_t *weight;     /* nodes */
+    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
+    unsigned char *kind; /* nodes */
+    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t buckets;     /* total + 1 */
+    int32_t *next;       /* nodes: in a degree list, in a hash list */
+    int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
+    int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
+    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
+    int32_t *chain;      /* nodes: next node of that chain, or -1 */
 } gproji_amd;
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
@@ -2463,70 +2485,72 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
-   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel stands in
-   the factor, where its update matrix stands in the work memory, and which fronts make up a task.
+   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel is in
+   the factor, where its update matrix is in the work memory, and which fronts make up a task.
 
    A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
    (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
    whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
    node among its pivots; all rows of a front are pivots or rows of its parent. */
 typedef struct gproji_front {
-    int64_t panel;      /* where its panel begins in the values of L */
-    int64_t update;     /* where its update matrix begins in the work memory */
-    int64_t rows;       /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int64_t panel;  /* where its panel begins in the values of L */
+    int64_t update; /* where its update matrix begins in the work memory */
+    int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
     int32_t row_nodes;
     int32_t first_place, end_place; /* its pivot nodes */
-    int32_t first;      /* its first column of L */
+    int32_t first;                  /* its first column of L */
     int32_t width;
     int32_t below;
-    int32_t stride;     /* of its panel, which has as many storage rows: see >>dense */
+    int32_t stride;      /* of its panel, which has as many storage rows: see >>dense */
     int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
-    int32_t parent;     /* -1: none */
-    int32_t child;      /* first child, or -1 */
-    int32_t sibling;    /* next child of the same parent, or -1 */
-    int32_t depth;      /* 0 without parent */
+    int32_t parent;      /* -1: none */
+    int32_t child;       /* first child, or -1 */
+    int32_t sibling;     /* next child of the same parent, or -1 */
+    int32_t depth;       /* 0 without parent */
 } gproji_front;
 
 typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;          /* independent tasks; the fronts on top of them are one more group */
-    int32_t *order;         /* nodes: the node at each place */
-    int32_t *place;         /* nodes: the place of each node */
-    int32_t *column;        /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;      /* nodes: the front of each place */
-    gproji_front *front;    /* fronts */
-    int32_t *row_node;      /* row nodes of all fronts: their places */
-    int32_t *row_at;        /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;      /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;      /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start;    /* tasks + 2: where the groups begin in `schedule` */
-    int64_t *runs_start;    /* tasks + 2: where the groups' room for runs begins (in int32_t) */
-    int64_t work_size;      /* doubles for all update matrices */
-    int64_t values_size;    /* doubles for all panels */
+    int32_t tasks;       /* independent tasks; the fronts on top of them are one more group */
+    int32_t *order;      /* nodes: the node at each place */
+    int32_t *place;      /* nodes: the place of each node */
+    int32_t *column;     /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;   /* nodes: the front of each place */
+    gproji_front *front; /* fronts */
+    int32_t *row_node;   /* row nodes of all fronts: their places */
+    int32_t *row_at;     /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;   /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;   /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start; /* tasks + 2: where the groups begin in `schedule` */
+    int64_t *runs_start; /* tasks + 2: where the groups' room for runs begins (in int32_t) */
+    int64_t work_size;   /* doubles for all update matrices */
+    int64_t values_size; /* doubles for all panels */
     int64_t factor_entries, exact_entries;
-    int32_t most_rows;      /* storage rows of the largest panel */
+    int32_t most_rows; /* storage rows of the largest panel */
     int32_t most_width;
     double flops;
 } gproji_symbolic;
 
-enum { GPROJI_TASK_SHARE = 24 }; /* a task has at most about this part of all flops */
+enum {
+    GPROJI_TASK_SHARE = 24
+}; /* a task has at most about this part of all flops */
 
 /* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
 typedef struct gproji_analysis {
     const gproji_graph *graph;
     gproji_symbolic *out;
-    gproji_pool *keep; /* for what is kept */
-    gproji_pool pool;  /* for what is not */
-    int32_t *parent;   /* elimination tree, by place; -1: root */
-    int32_t *count;    /* weight of a place's column of L, its own weight included */
-    int32_t *rows;     /* the same in nodes */
+    gproji_pool *keep;      /* for what is kept */
+    gproji_pool pool;       /* for what is not */
+    int32_t *parent;        /* elimination tree, by place; -1: root */
+    int32_t *count;         /* weight of a place's column of L, its own weight included */
+    int32_t *rows;          /* the same in nodes */
     int32_t *a, *b, *c, *d; /* of several uses */
     /* supernodes */
     int32_t supernodes;
-    int32_t *head, *tail;   /* first and last place of the chain of its nodes */
-    int32_t *chain;         /* by place: next place of the same supernode, or -1 */
+    int32_t *head, *tail; /* first and last place of the chain of its nodes */
+    int32_t *chain;       /* by place: next place of the same supernode, or -1 */
     int32_t *width, *below, *below_nodes;
     int32_t *super_parent, *child, *sibling;
 } gproji_analysis;
@@ -3093,20 +3117,26 @@ GPROJI_INTERNAL void gproji_locate_block(const gproji_symbolic *sy, int32_t a, i
 }
 
 /* ============================================================================================================
-   >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, dense, ordering, symbolic.
+   >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, dense,
+   ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, where the caller has put
-   A's values; the update matrices of its children are added to them; then they are eliminated, and what they do to the
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, where A's values have
+   been put; the update matrices of its children are added to them; then they are eliminated, and what they do to the
    rows below becomes the front's own update matrix, on a stack. The children's matrices are added in two steps: what
    meets pivot columns before the elimination, the rest after the update matrix has been written by the product of the
    panel with itself, so that it needs no clearing.
+
+   Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
+   of them is cut into strips. Both depend on the matrix alone.
 
    A matrix in compressed columns is first compressed: columns with the same entries become one node. The system section
    gives its nodes itself and adds its values to gproji_cholesky_entries.
 
    Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
-enum { GPROJI_SOLVE_BATCH = 4 }; /* right-hand sides solved together */
+enum {
+    GPROJI_SOLVE_BATCH = 4
+}; /* right-hand sides solved together */
 
 struct gproj_cholesky {
     gproji_heap own;
@@ -3273,14 +3303,15 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
         return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "a matrix cannot have %d columns", n);
     if (n == 0) return GPROJ_OK;
-    if (!start) return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the column starts are missing");
+    if (!start)
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the column starts are missing");
     if (start[0] != 0)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0, "the first column starts at %l, not 0",
-                           start[0]);
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0,
+                           "the first column starts at %l, not 0", start[0]);
     for (j = 0; j < n; ++j)
         if (start[j + 1] < start[j])
-            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j, "column %d ends before it starts",
-                               j);
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j,
+                               "column %d ends before it starts", j);
     if (start[n] > INT64_MAX / 64)
         return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
     if (!row && start[n] > 0)
@@ -3297,19 +3328,19 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
 typedef struct gproji_compression {
     gproji_pool pool;
     int32_t n;
-    int64_t *start;        /* n + 1: neighbours of the columns, */
-    int32_t *neighbour;    /* without the diagonal and without repetition */
-    uint32_t *hash;        /* n: sum over the column and its neighbours */
-    int32_t *mark;         /* n */
-    int32_t *node_of;      /* n: the node of each column, or -1 */
+    int64_t *start;     /* n + 1: neighbours of the columns, */
+    int32_t *neighbour; /* without the diagonal and without repetition */
+    uint32_t *hash;     /* n: sum over the column and its neighbours */
+    int32_t *mark;      /* n */
+    int32_t *node_of;   /* n: the node of each column, or -1 */
     int32_t nodes;
     int32_t *member_start; /* nodes + 1 */
     int32_t *member;       /* n: the columns of each node */
     int32_t *weight;       /* nodes */
     int64_t *node_start;   /* nodes + 1: the graph of the nodes */
     int32_t *adjacent;
-    int32_t *order;        /* n: the order given, or NULL */
-    int32_t *node_order;   /* nodes: the same for the nodes */
+    int32_t *order;      /* n: the order given, or NULL */
+    int32_t *node_order; /* nodes: the same for the nodes */
 } gproji_compression;
 
 /* Both triangles of the pattern without repeated entries. */
@@ -3443,8 +3474,8 @@ GPROJI_INTERNAL int32_t gproji_front_of_entry(const gproj_cholesky *c, const gpr
     return c->symbolic.front_of[gproji_min(place[x->node_of[i]], place[x->node_of[j]])];
 }
 
-/* Sorts the entries by the front that holds them: `entry` and `entry_start`; `target` gets the columns, smaller + larger
-   * 2^32, in which they stand in L. */
+/* Sorts the entries by the front that holds them: `entry` and `entry_start`; `target` gets the two columns of L, the
+   smaller one + 2^32 times the larger one. */
 GPROJI_INTERNAL bool gproji_cholesky_sort_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
                                                   const int32_t *row) {
     int32_t fronts = c->symbolic.fronts, f, j, *place = x->mark; /* columns of A: their column of L */
@@ -3502,7 +3533,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     }
     if (choice->ordering == GPROJ_ORDERING_GIVEN && x->n > 0) {
         if (!choice->permutation || !gproji_is_permutation(x->n, choice->permutation, x->mark))
-            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the order given is no permutation");
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                               "the order given is no permutation");
         memcpy(x->order, choice->permutation, (size_t)x->n * sizeof(int32_t));
     }
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
@@ -3566,7 +3598,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     return false;
 }
 
-/* The values of L, to which A's values are added before gproji_cholesky_factor_entries. NULL when there is no memory. */
+/* The values of L, to which A's values are added before gproji_cholesky_factor_entries. NULL: there is no memory. */
 GPROJI_INTERNAL double *gproji_cholesky_entries(gproj_cholesky *c) {
     GPROJ_ASSERT(c->analysed);
     return gproji_cholesky_take_numeric(c) ? c->values : NULL;
@@ -3585,8 +3617,7 @@ typedef double gproji_four_at __attribute__((vector_size(32), aligned(8), may_al
 GPROJI_INLINE void gproji_add_run(int32_t count, const double *s, double *d) {
     int32_t i = 0;
 #if GPROJI_LANES > 1
-    for (; i + GPROJI_LANES <= count; i += GPROJI_LANES)
-        GPROJI_STORE(d + i, GPROJI_LOAD(d + i) + GPROJI_LOAD(s + i));
+    for (; i + GPROJI_LANES <= count; i += GPROJI_LANES) GPROJI_STORE(d + i, GPROJI_LOAD(d + i) + GPROJI_LOAD(s + i));
 #endif
 #if GPROJI_LANES == 8 /* runs are short: the rest, too, in few steps */
     if (i + 4 <= count) {
@@ -3618,7 +3649,8 @@ GPROJI_INTERNAL int32_t gproji_find_runs(const gproji_symbolic *sy, const gproji
     return runs;
 }
 
-/* One column of a child's update matrix, the j-th of run k, goes to a column of the parent: storage row r to column[r]. */
+/* One column of a child's update matrix, the j-th of run k, goes to a column of the parent: its storage row r to
+   column[r]. */
 GPROJI_INLINE void gproji_add_column(int32_t k, int32_t j, int32_t runs, const int32_t *from, const int32_t *to,
                                      const int32_t *count, const double *source, double *column) {
     int32_t i;
@@ -3626,34 +3658,52 @@ GPROJI_INLINE void gproji_add_column(int32_t k, int32_t j, int32_t runs, const i
     for (i = k + 1; i < runs; ++i) gproji_add_run(count[i], source + from[i], column + to[i]);
 }
 
-/* Adds a child's update matrix to its parent: the columns that meet pivots to the panel, or all others to the parent's
-   update matrix. */
-GPROJI_KERNEL void gproji_extend_add(const gproj_cholesky *c, const gproji_front *child, const gproji_front *front,
-                                     int32_t *from, bool to_panel) {
+/* A child's update matrix on its way to its parent's panel, or to its parent's update matrix. */
+typedef struct gproji_addition {
+    const gproj_cholesky *c;
+    const gproji_front *child, *front;
+    int32_t runs;
+    int32_t *from, *to, *count; /* see gproji_find_runs */
+    bool to_panel;
+} gproji_addition;
+
+/* Adds strip `index` of the child's matrix: those of its columns that meet pivots, or all others. Different columns go
+   to different columns. A task. */
+GPROJI_KERNEL void gproji_add_task(void *data, int32_t index) {
+    const gproji_addition *add = (const gproji_addition *)data;
+    const gproji_front *child = add->child, *front = add->front;
+    const int32_t *from = add->from, *to = add->to, *count = add->count;
+    const double *update = add->c->work + child->update;
     int32_t shift = gproji_panel_shift(front->width), pivot_end = shift + front->width, k, j;
-    int32_t *to = from + child->row_nodes, *count = to + child->row_nodes;
-    int32_t runs = gproji_find_runs(&c->symbolic, child, pivot_end, from, to, count);
-    const double *update = c->work + child->update;
-    for (k = 0; k < runs; ++k) {
-        if ((to[k] < pivot_end) != to_panel) continue;
-        for (j = 0; j < count[k]; ++j) {
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
+    for (k = 0; k < add->runs; ++k) {
+        if ((to[k] < pivot_end) != add->to_panel) continue;
+        for (j = gproji_max(0, begin - from[k]); j < gproji_min(count[k], end - from[k]); ++j) {
             const double *source = update + gproji_update_offset(child->update_rows, from[k] + j);
-            if (to_panel) {
-                double *column = c->values + front->panel + (ptrdiff_t)(to[k] + j - shift) * front->stride;
-                gproji_add_column(k, j, runs, from, to, count, source, column);
-            } else {
-                ptrdiff_t offset = gproji_update_offset(front->update_rows, to[k] + j - pivot_end) - pivot_end;
-                gproji_add_column(k, j, runs, from, to, count, source, c->work + front->update + offset);
-            }
+            double *column;
+            if (add->to_panel)
+                column = add->c->values + front->panel + (ptrdiff_t)(to[k] + j - shift) * front->stride;
+            else
+                column = add->c->work + front->update - pivot_end +
+                         gproji_update_offset(front->update_rows, to[k] + j - pivot_end);
+            gproji_add_column(k, j, add->runs, from, to, count, source, column);
         }
     }
 }
 
 /* Adds the children's update matrices: to the pivot columns, or to the front's own update matrix. */
-GPROJI_INTERNAL void gproji_add_children(gproj_cholesky *c, const gproji_front *front, int32_t *runs, bool to_panel) {
-    int32_t child;
-    for (child = front->child; child >= 0; child = c->symbolic.front[child].sibling)
-        gproji_extend_add(c, &c->symbolic.front[child], front, runs, to_panel);
+GPROJI_INTERNAL void gproji_add_children(gproj_cholesky *c, const gproji_front *front, const gproj_parallel *parallel,
+                                         int32_t *runs, bool to_panel) {
+    int32_t pivot_end = gproji_panel_shift(front->width) + front->width, i;
+    for (i = front->child; i >= 0; i = c->symbolic.front[i].sibling) {
+        gproji_addition add;
+        double rows = c->symbolic.front[i].below;
+        add.c = c, add.front = front, add.child = &c->symbolic.front[i], add.to_panel = to_panel;
+        add.from = runs, add.to = runs + add.child->row_nodes, add.count = add.to + add.child->row_nodes;
+        add.runs = gproji_find_runs(&c->symbolic, add.child, pivot_end, add.from, add.to, add.count);
+        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(add.child->below, GPROJI_STRIP), gproji_add_task,
+                         &add);
+    }
 }
 
 /* Puts A's values into a front's panel, right before they are used. */
@@ -3671,7 +3721,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     gproji_panel panel;
     int32_t failed;
     if (c->source) gproji_load_front(c, f);
-    gproji_add_children(c, front, runs, true);
+    gproji_add_children(c, front, parallel, runs, true);
     panel.w = front->width, panel.shift = gproji_panel_shift(front->width);
     panel.rows = panel.shift + panel.w + front->update_rows, panel.stride = front->stride;
     panel.values = c->values + front->panel, panel.inverse = inverse, panel.update = c->work + front->update;
@@ -3679,7 +3729,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     if (failed >= 0) return front->first + failed;
     if (front->below == 0) return -1;
     gproji_panel_update(parallel, &panel);
-    gproji_add_children(c, front, runs, false);
+    gproji_add_children(c, front, parallel, runs, false);
     return -1;
 }
 
@@ -3784,8 +3834,8 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
     memcpy(x + front->first, z + gproji_panel_shift(front->width), (size_t)front->width * sizeof(double));
 }
 
-/* Solves for `count` <= GPROJI_SOLVE_BATCH right-hand sides: every panel is read once, and is still in the cache for the
-   second and later ones. */
+/* Solves for `count` <= GPROJI_SOLVE_BATCH right-hand sides: every panel is read once, and is still in the cache for
+   the second and later ones. */
 GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
     const gproji_symbolic *sy = &c->symbolic;
     size_t n = (size_t)sy->columns, i;
@@ -3806,7 +3856,8 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
     if (!c) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&c->error);
     if (!c->factored)
-        return gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "solve: there is no factor to solve with");
+        return gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "solve: there is no factor to solve with");
     if (count < 0 || (count > 0 && c->symbolic.columns > 0 && (!b || !x)))
         return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "solve: %d right-hand sides, or an array is missing", count);
@@ -3951,6 +4002,7 @@ struct gproj_system {
     int32_t group_count;
     size_t group_capacity;
 
+    bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     int32_t compiled_variables; /* the size of the arrays below */
     int32_t node_count, wide_count;
@@ -4050,8 +4102,16 @@ GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
 
 GPROJ_API const gproj_error *gproj_system_error(const gproj_system *s) { return s ? &s->error : gproji_no_object(); }
 
-/* May the caller go on building? */
 GPROJI_INTERNAL bool gproji_system_ready(const gproj_system *s) { return s && s->error.code == GPROJ_OK; }
+
+/* May the caller add something, or start a solve? */
+GPROJI_INTERNAL bool gproji_system_is_open(gproj_system *s) {
+    if (!gproji_system_ready(s)) return false;
+    if (!s->solving) return true;
+    gproji_fail(&s->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                "during a solve nothing can be added or started: add groups before it, with weight 0");
+    return false;
+}
 
 GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     gproj_memory sum, part;
@@ -4068,7 +4128,7 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
     size_t needed;
-    if (!gproji_system_ready(s)) return -1;
+    if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
@@ -4128,7 +4188,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     void *groups;
     size_t length;
     bool enough;
-    if (!gproji_system_ready(s)) return -1;
+    if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
         return -1;
@@ -4235,7 +4295,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     gproji_row *row;
     void *rows, *all_terms;
     bool enough;
-    if (!gproji_system_ready(s)) return -1;
+    if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
                     "a row of %d terms for group %d of %d groups", count, group, s->group_count);
@@ -4276,14 +4336,21 @@ GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group,
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
-    int64_t t;
+    int64_t t, count;
+    bool finite;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row))
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, row, "there is no row %d in group %d", row,
                            group);
     g = &s->group[group];
-    for (t = g->row[row].term; coefficients && t < g->row[row + 1].term; ++t) g->term[t].a = *coefficients++;
+    count = g->row[row + 1].term - g->row[row].term;
+    finite = gproji_is_finite(constant);
+    for (t = 0; coefficients && t < count; ++t) finite = finite && gproji_is_finite(coefficients[t]);
+    if (!finite)
+        return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
+                           "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
+    for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
     g->row[row].constant = constant;
     return GPROJ_OK;
 }
@@ -5076,7 +5143,7 @@ GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
 }
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
-    memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
+    if (s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
 }
 
 /* The coefficients of M(t) along dx, for x = saved + dx and rows linearised at `saved`:
@@ -5165,7 +5232,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     double epsilon = loop->options.epsilon;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_epsilon_min), gproji_epsilon_max);
-    memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (; loop->iteration.attempts < GPROJI_ATTEMPTS; epsilon *= 10) {
         if (!gproji_try_step(loop, epsilon)) continue;
@@ -5209,6 +5276,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
         if (gproji_set_weights(s, n)) gproji_linearise(loop);
         s->late = gproji_wishes_are_on(s) && n <= (iterations + 1) / 2 ? 0 : s->late + 1;
         loop->standing = gproji_take_standing(s);
+        if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         if (!gproji_iterate(loop)) return loop->standing.residual <= loop->tolerance ? GPROJ_CONVERGED : GPROJ_STALLED;
@@ -5303,7 +5371,7 @@ GPROJI_INTERNAL double gproji_default_tolerance(const gproj_system *s) {
 
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
-    if (!gproji_system_ready(s)) return gproji_failed_result(gproj_system_error(s));
+    if (!gproji_system_is_open(s)) return gproji_failed_result(gproj_system_error(s));
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     if (options) loop.options = *options;
@@ -5312,57 +5380,67 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     loop.started = loop.lap = gproji_now(s);
     if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_lap(&loop, GPROJ_PHASE_ANALYSE);
+    s->solving = true;
     loop.result.outcome = gproji_run_loop(&loop, iterations);
+    s->solving = false;
     if (s->error.code != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_write_verdict(&loop);
     return loop.result;
 }
 
+/* The v-th of the variables that a row names, two a term; -1 where a linear term has no second one. */
+GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
+    return v % 2 ? g->term[v / 2].j : g->term[v / 2].i;
+}
+
+/* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
+   `gradient`: work, one number a variable, zeros on entry and on exit. */
+GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
+    int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
+    double size = 1, worst = 0;
+    gproji_row_value(g, r, s->x, gradient);
+    for (k = first; k < end; ++k) {
+        int32_t v = gproji_named_variable(g, k);
+        if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
+    }
+    for (k = first; k < end; ++k) {
+        int32_t v = gproji_named_variable(g, k);
+        double x, h, up, down;
+        if (v < 0) continue;
+        x = s->x[v];
+        h = 1e-5 * gproji_fmax(1, fabs(x));
+        s->x[v] = x + h;
+        up = gproji_row_value(g, r, s->x, NULL);
+        s->x[v] = x - h;
+        down = gproji_row_value(g, r, s->x, NULL);
+        s->x[v] = x;
+        worst = gproji_fmax(worst, fabs((up - down) / (2 * h) - gradient[v]) / size);
+    }
+    for (k = first; k < end; ++k)
+        if (gproji_named_variable(g, k) >= 0) gradient[gproji_named_variable(g, k)] = 0;
+    return worst;
+}
+
 GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     double worst = 0, *gradient;
     int32_t i, r;
-    int64_t t;
     size_t n;
-    if (!gproji_system_ready(s)) return HUGE_VAL;
+    if (!gproji_system_is_open(s)) return HUGE_VAL;
     n = (size_t)s->variable_count;
-    gradient = (double *)gproji_take(&s->own, n, sizeof *gradient);
+    gradient = (double *)gproji_take_zeroed(&s->own, n, sizeof *gradient);
     if (!gradient) {
         gproji_fail_memory(&s->error);
         return HUGE_VAL;
     }
+    s->solving = true;
     gproji_set_weights(s, 1);
     gproji_refresh_groups(s);
-    memset(gradient, 0, n * sizeof *gradient);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            double size = 1;
-            gproji_row_value(g, r, s->x, gradient);
-            for (t = 2 * g->row[r].term; t < 2 * g->row[r + 1].term; ++t) {
-                int32_t v = t % 2 ? g->term[t / 2].j : g->term[t / 2].i;
-                if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
-            }
-            for (t = 2 * g->row[r].term; t < 2 * g->row[r + 1].term; ++t) {
-                int32_t v = t % 2 ? g->term[t / 2].j : g->term[t / 2].i;
-                double x, h, up, down;
-                if (v < 0) continue;
-                x = s->x[v];
-                h = 1e-5 * gproji_fmax(1, fabs(x));
-                s->x[v] = x + h;
-                up = gproji_row_value(g, r, s->x, NULL);
-                s->x[v] = x - h;
-                down = gproji_row_value(g, r, s->x, NULL);
-                s->x[v] = x;
-                worst = gproji_fmax(worst, fabs((up - down) / (2 * h) - gradient[v]) / size);
-            }
-            for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-                gradient[g->term[t].i] = 0;
-                if (g->term[t].j >= 0) gradient[g->term[t].j] = 0;
-            }
-        }
-    }
+    s->solving = false;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r)
+            worst = gproji_fmax(worst, gproji_check_row(s, &s->group[i], r, gradient));
     gproji_give(&s->own, gradient, n, sizeof *gradient);
-    return worst;
+    return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
 /* ============================================================================================================
    >>mesh   Half-edge meshes of any polygons. Uses platform, memory, error, vector.
@@ -6020,32 +6098,36 @@ GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
 }
 
-GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]) {
-    int32_t start, h;
-    const double *origin;
+/* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
+   interface, without cancellation far from the coordinates' origin. */
+GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
+    int32_t start = mesh->face_halfedge[face], h;
+    const double *base = position + 3 * (size_t)mesh->origin[start];
     double a[3], b[3], cross[3];
     gproji_set3(0, 0, 0, area);
-    if (face < 0 || face >= mesh->face_count) return;
-    /* 1/2 sum (v_i - v_0) x (v_(i+1) - v_0): the same sum, without cancellation far from the coordinates' origin */
-    start = mesh->face_halfedge[face];
-    origin = mesh->position + 3 * mesh->origin[start];
     for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
-        gproji_sub3(mesh->position + 3 * mesh->origin[h], origin, a);
-        gproji_sub3(mesh->position + 3 * mesh->origin[mesh->next[h]], origin, b);
+        gproji_sub3(position + 3 * (size_t)mesh->origin[h], base, a);
+        gproji_sub3(position + 3 * (size_t)mesh->origin[mesh->next[h]], base, b);
         gproji_cross3(a, b, cross);
         gproji_add_scaled3(0.5, cross, area);
     }
 }
 
-GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
+GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]) {
+    gproji_set3(0, 0, 0, area);
+    if (face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
+}
+
+/* The mean edge length with other positions; 0 without edges. */
+GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
     double sum = 0;
     int32_t h;
-    for (h = 0; h < mesh->halfedge_count; h += 2) {
-        sum += gproji_distance3(mesh->position + 3 * mesh->origin[h], mesh->position + 3 * mesh->origin[h + 1]);
-    }
+    for (h = 0; h < mesh->halfedge_count; h += 2)
+        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
     return mesh->edge_count ? sum / mesh->edge_count : 0;
 }
 
+GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
 /* ============================================================================================================
    >>text   Meshes as OBJ and OFF texts. Uses platform, memory, error, number, mesh.
 
@@ -7633,19 +7715,25 @@ GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, int32_t face, doub
         gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_position(mesh, h), mean);
 }
 
-/* The largest distance of a face's vertices from their least-squares plane, in the mesh's units. */
-GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face) {
-    double mean[3], scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, normal[3], d[3], worst = 0;
-    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
-    if (degree == 3) return 0;
+/* The least-squares plane of a face: the mean of its vertices and a unit normal. */
+GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, int32_t face, double mean[3], double normal[3]) {
+    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3];
+    int32_t h = mesh->face_halfedge[face], k, i, j;
     gproji_face_mean(mesh, face, mean);
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_position(mesh, h), mean, d);
         for (i = 0; i < 3; ++i)
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
     gproji_smallest_eigenvector3(scatter, normal);
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+}
+
+/* The largest distance of a face's vertices from its least-squares plane, in the mesh's units. */
+GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face, const double mean[3],
+                                             const double normal[3]) {
+    double d[3], worst = 0;
+    int32_t h = mesh->face_halfedge[face], k;
+    for (k = 0; mesh->face_degree[face] > 3 && k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_position(mesh, h), mean, d);
         worst = gproji_fmax(worst, fabs(gproji_dot3(normal, d)));
     }
@@ -7674,39 +7762,30 @@ GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], co
     return gproji_dot3(n, axis);
 }
 
-/* Do the segments of half-edges g and h cross properly, seen along `axis`? */
+/* Are a and b of different signs, both clear of rounding? */
+GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
+    return (a > rounding && b < -rounding) || (a < -rounding && b > rounding);
+}
+
+/* Do the segments of half-edges g and h cross properly, seen along the unit vector `axis`? */
 GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, int32_t g, int32_t h, const double axis[3]) {
     const double *a = gproji_corner_position(mesh, g), *b = gproji_corner_position(mesh, mesh->next[g]);
     const double *c = gproji_corner_position(mesh, h), *d = gproji_corner_position(mesh, mesh->next[h]);
-    double abc = gproji_seen_area(a, b, c, axis), abd = gproji_seen_area(a, b, d, axis);
-    double cda = gproji_seen_area(c, d, a, axis), cdb = gproji_seen_area(c, d, b, axis);
-    return ((abc > 0 && abd < 0) || (abc < 0 && abd > 0)) && ((cda > 0 && cdb < 0) || (cda < 0 && cdb > 0));
+    double rounding = 1e-12 * gproji_distance3(a, b) * gproji_distance3(c, d);
+    return gproji_are_opposite(gproji_seen_area(a, b, c, axis), gproji_seen_area(a, b, d, axis), rounding) &&
+           gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
 }
 
-/* Does a side of the face cross another, seen along its vectorial area? */
+/* Does a side of the face cross another, seen along the normal of its least-squares plane? Its vectorial area would not
+   do: a symmetric bow-tie has none. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, int32_t face, const double axis[3]) {
-    int32_t first = mesh->face_halfedge[face], degree = mesh->face_degree[face], g = first, h, i, j;
+    int32_t degree = mesh->face_degree[face], g = mesh->face_halfedge[face], h, i, j;
     for (i = 0; i + 2 < degree; ++i, g = mesh->next[g]) {
         h = mesh->next[mesh->next[g]];
         for (j = i + 2; j < degree; ++j, h = mesh->next[h])
             if (mesh->next[h] != g && gproji_sides_cross(mesh, g, h, axis)) return true;
     }
     return false;
-}
-
-/* The vectorial area 1/2 sum (v_i - v_0) x (v_(i+1) - v_0) of a face of the mesh with other positions. */
-GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
-    int32_t h = mesh->face_halfedge[face], k;
-    const double *base = position + 3 * (size_t)mesh->origin[h];
-    double u[3], v[3], n[3];
-    gproji_set3(0, 0, 0, area);
-    for (k = 1; k + 1 < mesh->face_degree[face]; ++k) {
-        h = mesh->next[h];
-        gproji_sub3(position + 3 * (size_t)mesh->origin[h], base, u);
-        gproji_sub3(position + 3 * (size_t)mesh->origin[mesh->next[h]], base, v);
-        gproji_cross3(u, v, n);
-        gproji_add_scaled3(0.5, n, area);
-    }
 }
 
 GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures *m) {
@@ -7733,14 +7812,16 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
     int32_t f;
     m->planarity_face = mesh->face_count ? 0 : -1;
     for (f = 0; f < mesh->face_count; ++f) {
-        double area_vector[3], area, flatness = gproji_face_planarity(mesh, f) / unit;
+        double area_vector[3], mean[3], normal[3], area, flatness;
         gproji_area_vector(mesh, mesh->position, f, area_vector);
+        gproji_face_plane(mesh, f, mean, normal);
+        flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
         m->area += area;
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
-        m->bow_tie_faces += gproji_is_bow_tie(mesh, f, area_vector);
+        m->bow_tie_faces += gproji_is_bow_tie(mesh, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
         if (flatness > m->planarity_max) {
             m->planarity_max = flatness;
@@ -7791,15 +7872,6 @@ GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count
         }
     }
     return gproji_distance3(low, high);
-}
-
-GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
-    double sum = 0;
-    int32_t e;
-    for (e = 0; e < mesh->edge_count; ++e)
-        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[2 * e],
-                                position + 3 * (size_t)mesh->origin[2 * e + 1]);
-    return mesh->edge_count ? sum / mesh->edge_count : 0;
 }
 
 GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
@@ -8280,8 +8352,8 @@ GPROJI_INTERNAL int32_t gproji_next_segment(const gproj_curve *curve, int32_t se
     return segment < 0 ? curve->segment_count - 1 : 0;
 }
 
-/* Walks from a segment to the one on which p has its foot. Where p is in the wedge outside a vertex of the polyline, with
-   its foot on neither side, it stays. */
+/* Walks from a segment to the one on which p has its foot. Where p is in the wedge outside a vertex of the polyline,
+   with its foot on neither side, it stays. */
 GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, const double p[3]) {
     int32_t direction = gproji_along(curve, segment, p, true) > 0 ? 1 : -1, steps;
     for (steps = 0; steps < curve->segment_count; ++steps) {
@@ -8308,8 +8380,8 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment, and
-   is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
+/* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment,
+   and is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     bool settled = system->late >= 2;
@@ -8732,12 +8804,11 @@ GPROJ_API gproj_group_info gproj_get_group_info(const gproj_form *form, int32_t 
 
 /* -- the guard: a face must not lose its area -- */
 
-/* On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide, and
-   two iterations longer, a face whose area along its normal falls below 0.4 of what it was gets a row that asks for
-   that much,
-       s (A(v)'n - 0.4 a0) = 0,   A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = 1 / sqrt(a0),
-   and a step that would leave a face with less than 0.2 is found again with such a row. These rows act on the steps
-   only: they are no constraints, and the merit knows nothing of them. */
+/* On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
+   and two iterations longer, a face whose area along its normal falls below 0.4 of what it was gets a row that asks
+   for that much, s (A(v)'n - 0.4 a0) = 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = 1 / sqrt(a0), and
+   a step that would leave a face with less than 0.2 is found again with such a row. These rows act on the steps only:
+   they are no constraints, and the merit knows nothing of them. */
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_least = 0.2,
                     gproji_guard_area = 1e-4;
 enum {
@@ -8789,7 +8860,8 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     }
 }
 
-/* After a step: does a face lose too much of its area that is not guarded yet? Its row takes the normal before the step. */
+/* After a step: does a face lose too much of its area that is not guarded yet? Its row takes the normal before the
+   step. */
 GPROJI_INTERNAL bool gproji_check_guard(void *user, gproj_system *system) {
     gproj_form *form = (gproj_form *)user;
     const gproji_group *group = &system->group[form->guard->group];
@@ -8843,7 +8915,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     form->system->check_user = form;
 }
 
-/* Sets the guard for a solve in which wishes guide until iteration `guided` (0: none do, and it guards the first few). */
+/* Sets the guard for a solve in which wishes guide until iteration `guided` (0: none do, and it guards the first few).
+   */
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
     gproj_schedule schedule;
     int32_t i;
@@ -8895,8 +8968,8 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     return false;
 }
 
-/* Where no wish guides, closeness to where this solve begins does: 0.03 * 0.5^n in the first half, at most 5 times (a sixth costs hexagon meshes their last digits). Returns the
-   iteration in which guidance ends, 0 without any. */
+/* Where no wish guides, closeness to where this solve begins does: 0.03 * 0.5^n in the first half, at most 5 times (a
+   sixth costs hexagon meshes their last digits). Returns the iteration in which guidance ends, 0 without any. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
     int32_t half = gproji_max(1, (iterations + 1) / 2), i;

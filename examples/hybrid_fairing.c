@@ -25,7 +25,8 @@ static gproj_mesh *make_carpet(gproj_error *error) {
             bump = (i == 0 || j == 0 || i == LONG || j == WIDE) ? 0 : noise / 4294967296.0 - 0.5;
             position[3 * vertices] = x;
             position[3 * vertices + 1] = y;
-            position[3 * vertices + 2] = 1.4 * sin(0.3 * x) + 0.3 * sin(0.1 * x * y / WIDE) - 0.06 * (y - 7) * (y - 7) + 0.6 * bump;
+            position[3 * vertices + 2] = 1.4 * sin(0.3 * x) - 0.06 * (y - 7) * (y - 7) + 0.3 * sin(0.1 * x * y / WIDE);
+            position[3 * vertices + 2] += 0.6 * bump;
         }
     }
     for (i = 0; i < LONG; ++i) {

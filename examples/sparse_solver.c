@@ -12,7 +12,10 @@
 
 #include <stdio.h>
 
-enum { SIDE = 100, N = SIDE * SIDE };
+enum {
+    SIDE = 100,
+    N = SIDE * SIDE
+};
 static const double PI = 3.14159265358979323846;
 
 /* The lower triangle in compressed columns: in column (x, y) the point itself, its right and its upper neighbour. */

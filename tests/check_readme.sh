@@ -16,10 +16,10 @@ def read(name):
     path = os.path.join(root, name)
     return open(path, encoding="utf-8").read() if os.path.exists(path) else ""
 
-def write_mesh(path):  # a bumpy 6 x 6 grid of quads
+def write_mesh(path):  # a vault of 6 x 6 quads, dented inside
     if os.path.exists(path): return
     with open(path, "w") as mesh:
-        for i in range(49): mesh.write(f"v {i % 7} {i // 7} {((i * 7919) % 13) / 26}\n")
+        for i in range(49): mesh.write(f"v {i % 7} {i // 7} {i % 7 * (6 - i % 7) / 9 * (1 + (i // 7) * (6 - i // 7) * (i % 3) / 99) + i // 7 * (6 - i // 7) / 12}\n")
         for i in range(42):
             if i % 7 < 6: mesh.write(f"f {i + 1} {i + 2} {i + 9} {i + 8}\n")
 header, readme = read("guidedproj.h"), read("README.md")

@@ -1,6 +1,6 @@
-/* test_cholesky.c - >>ordering, >>symbolic, >>cholesky: against dense matrices, naive elimination and SuiteSparse's AMD.
+/* test_cholesky.c - >>ordering, >>symbolic, >>cholesky: against dense matrices, naive elimination, SuiteSparse's AMD.
 
-   Build with -DGPROJT_USE_AMD and -lamd to compare the fill with SuiteSparse. */
+   Build with -DGPROJT_HAVE_AMD and -lamd to compare the fill with SuiteSparse. */
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt.h"
 
@@ -9,7 +9,7 @@
 #define GPROJT_THREADS 1
 #endif
 
-#if defined(GPROJT_USE_AMD) && defined(__has_include)
+#if defined(GPROJT_HAVE_AMD) && defined(__has_include)
 #if __has_include(<suitesparse/amd.h>)
 #include <suitesparse/amd.h>
 #define GPROJT_AMD 1
@@ -109,7 +109,14 @@ static void add_outer(matrix *m, int32_t count, const int32_t *variable, const d
 }
 
 /* Meshes as lists of faces on a grid of nx x ny vertices, closed ones on a torus. */
-enum { QUADS, TRIANGLES, HEXAGONS, TORUS, TORUS_TRIANGLES, MESH_KINDS };
+enum {
+    QUADS,
+    TRIANGLES,
+    HEXAGONS,
+    TORUS,
+    TORUS_TRIANGLES,
+    MESH_KINDS
+};
 
 /* Corners of the face at (x, y); 0 where there is none. */
 static int32_t mesh_face(int32_t kind, int32_t nx, int32_t ny, int32_t x, int32_t y, int32_t part, int32_t corner[6]) {
@@ -305,7 +312,8 @@ static void random_permutation(int32_t n, int32_t *order, uint64_t *seed) {
 
 /* The largest |A x - b| for random b, after analysis, factorisation and solution; -1 when one of them fails. */
 static double solve_error(gproj_cholesky *c, const matrix *m, const gproj_cholesky_options *options) {
-    double *b = (double *)malloc(((size_t)m->n + 1) * sizeof(double)), *x = (double *)malloc(((size_t)m->n + 1) * sizeof(double));
+    double *b = (double *)malloc(((size_t)m->n + 1) * sizeof(double)),
+           *x = (double *)malloc(((size_t)m->n + 1) * sizeof(double));
     double error = -1;
     int32_t i;
     for (i = 0; i < m->n; ++i) b[i] = sin(1.0 + i);
@@ -320,11 +328,14 @@ static double solve_error(gproj_cholesky *c, const matrix *m, const gproj_choles
 
 /* Analyses and factors with these options and compares everything with a dense factorisation. */
 static void check_against_dense(gproj_cholesky *c, const matrix *m, const gproj_cholesky_options *options) {
-    enum { RIGHT = 6 };
+    enum {
+        RIGHT = 6
+    };
     int32_t n = m->n, j, r, failed;
     const int32_t *permutation;
     double *l, flops, error = 0, *b = (double *)calloc((size_t)n * RIGHT + 1, sizeof(double));
-    double *x = (double *)malloc(((size_t)n * RIGHT + 1) * sizeof(double)), *y = (double *)malloc(((size_t)n + 1) * sizeof(double));
+    double *x = (double *)malloc(((size_t)n * RIGHT + 1) * sizeof(double)),
+           *y = (double *)malloc(((size_t)n + 1) * sizeof(double));
     gproj_cholesky_info info;
     GPROJT_CHECK(gproj_cholesky_analyse(c, n, m->start, m->row, options) == GPROJ_OK);
     permutation = gproj_cholesky_permutation(c);
@@ -333,7 +344,8 @@ static void check_against_dense(gproj_cholesky *c, const matrix *m, const gproj_
     GPROJT_CHECK(info.exact_entries == naive_entries(m, permutation, &flops));
     GPROJT_CHECK(fabs(info.flops - flops) <= 1e-9 * flops);
     GPROJT_CHECK(info.columns == n && info.factor_entries >= info.exact_entries);
-    if (options->disable_relaxation || options->disable_postorder) GPROJT_CHECK(info.factor_entries == info.exact_entries);
+    if (options->disable_relaxation || options->disable_postorder)
+        GPROJT_CHECK(info.factor_entries == info.exact_entries);
     if (options->disable_postorder)
         for (j = 0; j < n; ++j) GPROJT_CHECK(permutation[j] == (options->permutation ? options->permutation[j] : j));
     l = dense_of(m, permutation);
@@ -440,10 +452,10 @@ GPROJT_TEST(cholesky_special_shapes) {
         matrix m = matrix_empty(n);
         for (i = 0; i < n; ++i) matrix_add(&m, i, i, 2000.0 + i);
         for (i = 1; i < n; ++i) {
-            if (shape == 1) matrix_add(&m, i, 0, 1.0);                   /* arrow whose head comes first */
-            if (shape == 2 && i < n - 1) matrix_add(&m, n - 1, i, 1.0);  /* and last */
+            if (shape == 1) matrix_add(&m, i, 0, 1.0);                    /* arrow whose head comes first */
+            if (shape == 2 && i < n - 1) matrix_add(&m, n - 1, i, 1.0);   /* and last */
             if (shape == 3 && i % 20 != 0) matrix_add(&m, i, i - 1, 1.0); /* 20 separate chains */
-            if (shape == 4) {                                            /* 5 dense rows and a chain */
+            if (shape == 4) {                                             /* 5 dense rows and a chain */
                 int32_t k;
                 for (k = 0; k < 5; ++k)
                     if (i > 80 * k) matrix_add(&m, i, 80 * k, 1.0);
@@ -489,7 +501,8 @@ GPROJT_TEST(ordering_fill_against_suitesparse) {
     for (number = 0; number < 20; ++number) {
         matrix m = mesh_matrix(number);
         gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN);
-        int32_t *start = (int32_t *)malloc(((size_t)m.n + 1) * sizeof(int32_t)), *order = (int32_t *)malloc((size_t)m.n * sizeof(int32_t));
+        int32_t *start = (int32_t *)malloc(((size_t)m.n + 1) * sizeof(int32_t)),
+                *order = (int32_t *)malloc((size_t)m.n * sizeof(int32_t));
         int64_t ours, theirs;
         double ratio;
         matrix_merge(&m);
@@ -524,7 +537,8 @@ GPROJT_TEST(ordering_keeps_blocks) {
     GPROJT_REQUIRE(gproj_cholesky_analyse(c, m.n, m.start, m.row, NULL) == GPROJ_OK);
     permutation = gproj_cholesky_permutation(c);
     for (k = 0; k < m.n; k += 3)
-        GPROJT_CHECK(permutation[k] % 3 == 0 && permutation[k + 1] == permutation[k] + 1 && permutation[k + 2] == permutation[k] + 2);
+        GPROJT_CHECK(permutation[k] % 3 == 0 && permutation[k + 1] == permutation[k] + 1 &&
+                     permutation[k + 2] == permutation[k] + 2);
     gproj_cholesky_destroy(c);
     matrix_free(&m);
 }
@@ -535,7 +549,8 @@ GPROJT_TEST(ordering_is_deterministic) {
     matrix m = planarity(HEXAGONS, 30, 30);
     GPROJT_CHECK(gproj_cholesky_analyse(a, m.n, m.start, m.row, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_analyse(b, m.n, m.start, m.row, NULL) == GPROJ_OK);
-    GPROJT_CHECK(memcmp(gproj_cholesky_permutation(a), gproj_cholesky_permutation(b), (size_t)m.n * sizeof(int32_t)) == 0);
+    GPROJT_CHECK(memcmp(gproj_cholesky_permutation(a), gproj_cholesky_permutation(b), (size_t)m.n * sizeof(int32_t)) ==
+                 0);
     gproj_cholesky_destroy(a), gproj_cholesky_destroy(b);
     matrix_free(&m);
 }
@@ -543,18 +558,22 @@ GPROJT_TEST(ordering_is_deterministic) {
 /* -- analysis by blocks, the door of the system section -- */
 
 GPROJT_TEST(cholesky_blocks) {
-    enum { NODES = 120 };
+    enum {
+        NODES = 120
+    };
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     uint64_t seed = 11;
     int32_t trial;
     for (trial = 0; trial < 30; ++trial) {
-        int32_t size[NODES], first[NODES + 1], i, j, a, b, n, *adjacent = (int32_t *)malloc(NODES * NODES * sizeof(int32_t));
+        int32_t size[NODES], first[NODES + 1], i, j, a, b, n,
+            *adjacent = (int32_t *)malloc(NODES * NODES * sizeof(int32_t));
         int64_t start[NODES + 1], count = 0;
         unsigned char linked[NODES][NODES];
         matrix m;
         double *entries, *x, *y;
         memset(linked, 0, sizeof linked);
-        for (i = 0, first[0] = 0; i < NODES; ++i) size[i] = 1 + gprojt_below(&seed, 8), first[i + 1] = first[i] + size[i];
+        for (i = 0, first[0] = 0; i < NODES; ++i)
+            size[i] = 1 + gprojt_below(&seed, 8), first[i + 1] = first[i] + size[i];
         n = first[NODES];
         for (i = 0; i < 2 * NODES; ++i) {
             a = gprojt_below(&seed, NODES), b = gprojt_below(&seed, trial % 2 ? NODES : 10) + a - 5;
@@ -607,7 +626,8 @@ GPROJT_TEST(cholesky_blocks) {
 GPROJT_TEST(cholesky_refactor_without_allocation) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     matrix m = planarity(TRIANGLES, 20, 20);
-    double *x = (double *)malloc((size_t)m.n * 9 * sizeof(double)), *b = (double *)malloc((size_t)m.n * 9 * sizeof(double));
+    double *x = (double *)malloc((size_t)m.n * 9 * sizeof(double)),
+           *b = (double *)malloc((size_t)m.n * 9 * sizeof(double));
     uint64_t before;
     int32_t round, i;
     for (i = 0; i < 9 * m.n; ++i) b[i] = cos((double)i);
@@ -630,7 +650,8 @@ GPROJT_TEST(cholesky_refactor_without_allocation) {
 GPROJT_TEST(cholesky_refine_improves) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     matrix m = laplacian(QUADS, 30, 30);
-    double *x = (double *)calloc((size_t)m.n, sizeof(double)), *b = (double *)malloc((size_t)m.n * sizeof(double)), first, last;
+    double *x = (double *)calloc((size_t)m.n, sizeof(double)), *b = (double *)malloc((size_t)m.n * sizeof(double)),
+           first, last;
     int64_t p;
     int32_t i;
     for (i = 0; i < m.n; ++i) b[i] = cos((double)i);
@@ -675,7 +696,8 @@ GPROJT_TEST(cholesky_not_positive_definite) {
             GPROJT_CHECK(gproj_cholesky_get_info(c).failed_column == -1);
         }
     /* NaN off the diagonal is found too */
-    for (p = m.start[7]; m.row[p] == 7; ++p) {}
+    for (p = m.start[7]; m.row[p] == 7; ++p) {
+    }
     m.value[p] = NAN;
     GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_NOT_POSITIVE_DEFINITE);
     free(x);
@@ -799,8 +821,10 @@ GPROJT_TEST(cholesky_same_bits_for_any_workers) {
 
 GPROJT_TEST(cholesky_arguments) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
-    static const int64_t start[] = {0, 2, 3}, backwards[] = {0, 2, 1}, late[] = {1, 2, 3}, huge[] = {0, 1, INT64_MAX / 2};
-    static const int32_t row[] = {0, 1, 1}, outside[] = {0, 2, 1}, negative[] = {0, 1, -1}, twice[] = {0, 0}, beyond[] = {0, 2};
+    static const int64_t start[] = {0, 2, 3}, backwards[] = {0, 2, 1}, late[] = {1, 2, 3},
+                         huge[] = {0, 1, INT64_MAX / 2};
+    static const int32_t row[] = {0, 1, 1}, outside[] = {0, 2, 1}, negative[] = {0, 1, -1}, twice[] = {0, 0},
+                         beyond[] = {0, 2};
     static const double value[] = {2, 1, 2};
     double x[2] = {3, 3};
     gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN);
@@ -857,6 +881,7 @@ GPROJT_TEST(cholesky_sizes) {
     static const int32_t nothing[] = {0};
     gproj_host host;
     gproj_cholesky *c;
+    int32_t step;
     memset(&host, 0, sizeof host);
     host.allocator.limit = (size_t)100 << 20;
     c = gproj_cholesky_create(&host);
@@ -868,6 +893,18 @@ GPROJT_TEST(cholesky_sizes) {
     GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 1, wide + 1, alone, nothing, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproji_cholesky_entries(c) != NULL);
     gproj_cholesky_destroy(c);
+    memset(&host, 0, sizeof host);
+    for (step = 2; step < 12; ++step) { /* an analysis by blocks without memory */
+        gprojt_failing f;
+        memset(&f, 0, sizeof f);
+        f.fail_at = step;
+        host = gprojt_failing_host(&f);
+        c = gproj_cholesky_create(&host);
+        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_ERROR_MEMORY);
+        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_OK);
+        gproj_cholesky_destroy(c);
+        GPROJT_CHECK(f.held == 0);
+    }
 }
 
 GPROJT_TEST(cholesky_every_allocation_fails) {
@@ -893,7 +930,8 @@ GPROJT_TEST(cholesky_every_allocation_fails) {
                 GPROJT_CHECK(code == gproj_cholesky_error(c)->code);
                 if (code == GPROJ_OK) outcome = gproj_cholesky_factor(c, m.value);
                 whole = outcome == GPROJ_FACTORED && f.calls < step;
-                if (!whole) GPROJT_CHECK(outcome == GPROJ_FACTOR_FAILED && gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY);
+                if (!whole)
+                    GPROJT_CHECK(outcome == GPROJ_FACTOR_FAILED && gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY);
                 /* the next try has memory */
                 f.fail_at = 0;
                 GPROJT_CHECK(solve_error(c, &m, &options) >= 0 && solve_error(c, &m, &options) < 1e-9);

@@ -47,7 +47,8 @@ static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
     int32_t stride = gproji_stride(rows);
     size_t panel_size = (size_t)stride * (size_t)w, update_size = (size_t)gproji_update_entries(round_up(u)) + 1;
     double *a = (double *)malloc((size_t)n * (size_t)n * sizeof(double));
-    double *panel = (double *)calloc(panel_size, sizeof(double)), *inverse = (double *)malloc((size_t)w * sizeof(double));
+    double *panel = (double *)calloc(panel_size, sizeof(double)),
+           *inverse = (double *)malloc((size_t)w * sizeof(double));
     double *update = (double *)malloc(update_size * sizeof(double));
     double *z = (double *)calloc((size_t)stride, sizeof(double)), *b = (double *)malloc((size_t)n * sizeof(double));
     double error = 0, bound = 1e-11;
@@ -60,8 +61,7 @@ static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
     job = panel_of(rows, w, panel, stride, inverse, update);
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
     for (j = 0; j < w; ++j) {
-        for (i = j; i < n; ++i)
-            error = fmax(error, fabs(panel[at(storage(w, i), j, stride)] - a[at(i, j, n)]));
+        for (i = j; i < n; ++i) error = fmax(error, fabs(panel[at(storage(w, i), j, stride)] - a[at(i, j, n)]));
         for (i = storage(w, n); i < rows; ++i) error = fmax(error, fabs(panel[at(i, j, stride)]));
     }
     if (u > 0) {
@@ -117,7 +117,10 @@ GPROJT_TEST(dense_panels) {
 /* Every column may be the one that fails; NaN and infinity fail too. */
 GPROJT_TEST(dense_failing_pivots) {
     const double bad[] = {-1.0, 0.0, NAN, INFINITY};
-    enum { W = 140, STRIDE = 200 };
+    enum {
+        W = 140,
+        STRIDE = 200
+    };
     double *panel = (double *)malloc(sizeof(double) * W * STRIDE), inverse[W];
     int32_t w = W, column, i, kind;
     for (column = 0; column < w; column += 7)
@@ -134,7 +137,11 @@ GPROJT_TEST(dense_failing_pivots) {
 
 /* One tile: C = [C] - A B', and C = (C - A B') L^-T, for every height and depth. */
 GPROJT_TEST(dense_tiles) {
-    enum { MOST = GPROJI_TILE_BLOCKS * GPROJI_BLOCK, DEEP = 20, B = GPROJI_BLOCK };
+    enum {
+        MOST = GPROJI_TILE_BLOCKS * GPROJI_BLOCK,
+        DEEP = 20,
+        B = GPROJI_BLOCK
+    };
     static double a[MOST * DEEP], b[B * DEEP], c[MOST * B], was[MOST * B], triangle[MOST * B];
     double inverse[B];
     int32_t blocks, k, i, j, t, mode;
@@ -146,7 +153,8 @@ GPROJT_TEST(dense_tiles) {
                 double error = 0;
                 for (i = 0; i < MOST * DEEP; ++i) a[i] = gprojt_uniform(&seed);
                 for (i = 0; i < B * DEEP; ++i) b[i] = gprojt_uniform(&seed);
-                for (i = 0; i < MOST * B; ++i) c[i] = was[i] = gprojt_uniform(&seed), triangle[i] = gprojt_uniform(&seed);
+                for (i = 0; i < MOST * B; ++i)
+                    c[i] = was[i] = gprojt_uniform(&seed), triangle[i] = gprojt_uniform(&seed);
                 for (j = 0; j < B; ++j) triangle[j + j * MOST] += 1.0, inverse[j] = 1.0 / triangle[j + j * MOST];
                 if (mode < 2)
                     gproji_tile_update(blocks, k, a, MOST, b, B, c, MOST, mode == 1);
