@@ -27,13 +27,26 @@
          gproj_add_planarity(form, 1.0);      // each returns the number of its group;
          gproj_add_fixed_boundary(form, 1.0); // after an error they do nothing:
          gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
-         result = gproj_solve(form, 12, NULL);
+         result = gproj_solve(form, 20, NULL);
          printf("%s\n", result.message);
          if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
          gproj_form_destroy(form);
          gproj_mesh_destroy(mesh);
          return result.outcome == GPROJ_CONVERGED ? 0 : 1;
      }
+
+   A CONSTRAINT OF YOUR OWN is rows of terms a x_i x_j and b x_i with a constant: "vertex v has height h" is
+
+     gproj_group group = {"height", GPROJ_CONSTRAINT, false, GPROJ_PLACE_VERTEX, {1, 0, 0}, NULL, NULL};
+     gproj_system *system = gproj_form_system(form);
+     int32_t number = gproj_system_add_group(system, &group);
+     gproj_term z = {3 * v + 2, -1, 1.0};             // 1.0 * z of vertex v, in the form's units:
+     gproj_form_units(form, centre, &scale);          // internal = (position - centre) * scale
+     gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
+
+   WORDS   A wish is what guides: fairness, closeness. Wishes fade after half of the iterations, so that what must hold
+     can hold exactly. A group is a set of rows of one kind with a common weight. Residuals of a form are in mean edge
+     lengths.
 
    CONTENTS (search for the tag)
      the interface
@@ -326,7 +339,8 @@ typedef enum gproj_kind {
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
    last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations. So {w} is the
-   constant weight w. Needs weight >= 0, 0 <= decay <= 1, last >= 0. */
+   constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1,
+   last >= 0. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
@@ -343,8 +357,12 @@ typedef struct gproj_term {
    frames): reads x, and replaces its rows by gproj_system_set_row. Must not add anything to the system. */
 typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
 
+enum {
+    GPROJ_NAME_SIZE = 32 /* of a group's name, with the final NUL */
+};
+
 typedef struct gproj_group {
-    const char *name; /* for reports, e.g. "planarity"; copied (at most 31 characters) */
+    const char *name; /* for reports, e.g. "planarity"; copied, cut to GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
        which costs one more solve per row. */
@@ -357,7 +375,7 @@ typedef struct gproj_group {
 
 /* The state of a group at the current x, in the units of its rows, without weights. */
 typedef struct gproj_group_info {
-    const char *name;
+    char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
     gproj_place place;
     gproj_schedule schedule;
@@ -428,6 +446,7 @@ typedef struct gproj_result {
     int32_t iterations;  /* steps taken */
     int32_t damped;      /* of these, steps that were damped or shortened */
     double residual;     /* largest |phi| of all constraint rows with weight > 0 */
+    double tolerance;    /* what it was compared with */
     double step;         /* largest |dx| of the last step */
     int32_t worst_group; /* where that residual is; -1 without constraints */
     int32_t worst_element;
@@ -615,6 +634,7 @@ typedef struct gproj_measures {
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
     int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal of its plane */
     int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
+    int32_t collapsed_edges;             /* shorter than 1e-6 mean edges */
     /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
        normals, as a sum of triangle areas about its mean. */
     double gauss_variation;
@@ -637,7 +657,7 @@ typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
-GPROJ_API void gproj_form_destroy(gproj_form *form);
+GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
 GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form);
 /* The system underneath, for rows of your own. Variables 3i, 3i+1, 3i+2 are vertex i in the form's units:
@@ -659,8 +679,10 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight);
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight);
 GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions);
-/* The vertices stay on the curve: v_i on the tangent at the closest point, 2 rows each, anew in each iteration. The
-   curve must outlive the form. */
+/* The vertices stay on the curve. 3 rows each, anew in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the
+   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only where v_i would
+   leave the curve's end or the segments around a corner, t'(v_i - p) = 0 pins it there (t along the segment). Vertices
+   walk from segment to segment, and settle on one after the wishes have faded. The curve must outlive the form. */
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight);
 /* Every boundary vertex glides along the original of its boundary loop; corners stay. */
@@ -687,16 +709,24 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight);
 
 /* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
-GPROJ_API gproj_group_info gproj_get_group_info(const gproj_form *form, int32_t group);
+GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
 
 /* Is the boundary vertex a corner: only one face there, or the boundary turns by more than 45 degrees. */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* -- solving -- */
 
-/* Takes at most `iterations` steps and writes the positions to the mesh. Where no wish guides, closeness to the
-   original with weight 0.03 * 0.5^n, n <= 5, is added (options: skip_closeness). After an error nothing is written.
-   A second call goes on from the positions of the first. */
+/* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
+   second call goes on from where the first ended, or from where you have moved the vertices to. The system's values of
+   vertices and face normals are overwritten at the beginning; variables of your own keep theirs. "The original" of
+   fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
+   the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
+   written.
+
+   With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
+   face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
+   the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
+   gproj_measure. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
 #ifdef __cplusplus
@@ -1372,6 +1402,13 @@ GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_heap heap;
     memcpy(&heap, object, sizeof heap);
     gproji_give(&heap, object, 1, size);
+}
+
+/* The accounts of an object and its parts, added up. The peak is that of the parts, as if they came together. */
+GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
+    sum->used += part.used;
+    sum->peak += part.peak;
+    sum->allocations += part.allocations;
 }
 
 /* ============================================================================================================
@@ -3932,7 +3969,6 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 
 enum {
     GPROJI_BLOCK_MAX = 8,       /* variables of a block */
-    GPROJI_NAME_SIZE = 32,      /* of a group, with the final NUL */
     GPROJI_WIDE_ROW = 512,      /* a row with more variables than this is treated as a global one */
     GPROJI_ROWS_PER_TASK = 2048 /* of the evaluation */
 };
@@ -3957,7 +3993,7 @@ typedef struct gproji_term_local {
 } gproji_term_local;
 
 typedef struct gproji_group {
-    char name[GPROJI_NAME_SIZE];
+    char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
     gproj_place place;
     bool global;
@@ -3975,7 +4011,7 @@ typedef struct gproji_group {
     gproji_term_local *term_local; /* one per term; as many as term_local_count */
     int32_t *local_variable;       /* of every row, one row after the other */
     double *local_gradient;        /* at the last evaluation */
-    int64_t *slot_local;           /* first local of every slot, and the end of the last */
+    int64_t *slot_local;           /* first local of every slot */
     int64_t *pair_entry;           /* where the pair's block begins in the factor's entries */
     size_t term_local_count, local_capacity, gradient_count, slot_count, pair_count;
 } gproji_group;
@@ -4002,6 +4038,7 @@ struct gproj_system {
     int32_t group_count;
     size_t group_capacity;
 
+    bool changed; /* a row got other numbers since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     int32_t compiled_variables; /* the size of the arrays below */
@@ -4114,14 +4151,11 @@ GPROJI_INTERNAL bool gproji_system_is_open(gproj_system *s) {
 }
 
 GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
-    gproj_memory sum, part;
+    gproj_memory sum;
     memset(&sum, 0, sizeof sum);
     if (!s) return sum;
-    sum = s->own.account;
-    part = gproj_cholesky_memory(s->cholesky);
-    sum.used += part.used;
-    sum.peak += part.peak;
-    sum.allocations += part.allocations;
+    gproji_add_memory(&sum, s->own.account);
+    gproji_add_memory(&sum, gproj_cholesky_memory(s->cholesky));
     return sum;
 }
 
@@ -4172,15 +4206,15 @@ GPROJ_API double *gproj_system_values(gproj_system *s) { return s ? s->x : NULL;
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *s) { return s ? s->group_count : 0; }
 
 GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule schedule) {
-    return gproji_is_finite(schedule.weight) && schedule.weight >= 0 && schedule.decay >= 0 && schedule.decay <= 1 &&
+    return schedule.weight >= 0 && schedule.weight <= 1e50 && schedule.decay >= 0 && schedule.decay <= 1 &&
            schedule.last >= 0;
 }
 
 GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
-    return gproji_fail(
-        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-        "the schedule of group '%s' (weight %g, decay %g, last %d) needs weight >= 0, 0 <= decay <= 1, last >= 0", name,
-        schedule.weight, schedule.decay, schedule.last);
+    return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                       "the schedule of group '%s' (weight %g, decay %g, last %d) needs 0 <= weight <= 1e50, 0 <= "
+                       "decay <= 1, last >= 0",
+                       name, schedule.weight, schedule.decay, schedule.last);
 }
 
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
@@ -4216,7 +4250,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         memset(&g->row[0], 0, sizeof g->row[0]);
     }
     length = strlen(group->name);
-    if (length >= GPROJI_NAME_SIZE) length = GPROJI_NAME_SIZE - 1;
+    if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
     memcpy(g->name, group->name, length);
     g->kind = group->kind;
     g->place = group->place;
@@ -4238,17 +4272,17 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_
     double sum = 0;
     int32_t r;
     memset(&info, 0, sizeof info);
-    info.name = "";
     info.worst_row = info.worst_element = -1;
     if (!gproji_system_has_group(s, group)) return info;
     g = &s->group[group];
-    info.name = g->name;
+    memcpy(info.name, g->name, sizeof info.name);
     info.kind = g->kind;
     info.place = g->place;
     info.schedule = g->schedule;
     info.rows = g->row_count;
     for (r = 0; r < g->row_count; ++r) {
         double phi = fabs(g->row[r].phi);
+        if (!(phi <= DBL_MAX)) phi = HUGE_VAL;
         sum += phi * phi;
         if (info.worst_row >= 0 && !(phi > info.max)) continue;
         info.max = phi;
@@ -4352,17 +4386,19 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
     g->row[row].constant = constant;
+    s->changed = true;
     return GPROJ_OK;
 }
 
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group, int32_t row, double weight) {
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
-    if (!gproji_system_has_row(s, group, row) || !gproji_is_finite(weight) || weight < 0)
+    if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= 1e50))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
-                           "weight %g for row %d of group %d: there is no such row, or the weight is not >= 0", weight,
-                           row, group);
+                           "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
+                           weight, row, group);
     s->group[group].row[row].weight = weight;
+    s->changed = true;
     return GPROJ_OK;
 }
 
@@ -4659,7 +4695,6 @@ GPROJI_INTERNAL void gproji_compile_places(gproj_system *s, gproji_group *g) {
             }
         }
     }
-    g->slot_local[g->row[g->row_count].slot] = g->row[g->row_count].local;
 }
 
 /* Step 4: every row's places in the factor. */
@@ -4668,7 +4703,7 @@ GPROJI_INTERNAL bool gproji_compile_group(gproj_system *s, gproji_group *g, cons
     gproji_compile_slots(s, g, order, scratch);
     g->term_local_count = (size_t)end->term;
     g->gradient_count = (size_t)end->local;
-    g->slot_count = (size_t)end->slot + 1;
+    g->slot_count = (size_t)end->slot;
     g->pair_count = (size_t)end->pair;
     g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
     g->local_gradient = (double *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_gradient);
@@ -4791,6 +4826,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
 /* The values and gradients of all rows at the current x. */
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
     int32_t i;
+    s->changed = false;
     for (i = 0; i < s->group_count; ++i) {
         gproji_evaluation e;
         e.group = &s->group[i];
@@ -4826,18 +4862,25 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = row->local; l < row[1].local; ++l) out[g->local_variable[l]] += scale * g->local_gradient[l];
 }
 
-/* gradient = sum w^2 phi grad phi: half the gradient of the merit. */
+/* gradient = sum w^2 phi grad phi over narrow rows: half the gradient of their part of the merit. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
     memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
-            gproji_row_add(g, &g->row[r], gproji_weight2(g, &g->row[r]) * g->row[r].phi, s->gradient);
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!row->wide) gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->gradient);
+        }
     }
 }
 
 /* -- the matrix -- */
+
+/* The end of a slot's locals. The next slot may belong to a later row, with the locals of wide rows in between. */
+GPROJI_INLINE int64_t gproji_slot_end(const gproji_group *g, const gproji_row *row, int64_t slot) {
+    return slot + 1 < row[1].slot ? g->slot_local[slot + 1] : row[1].local;
+}
 
 /* Adds the outer product w2 g g' of one narrow row: for each pair of slots the block g_a g_b', lower triangle. */
 GPROJI_INTERNAL void gproji_assemble_row(const gproj_system *s, const gproji_group *g, const gproji_row *row, double w2,
@@ -4846,14 +4889,15 @@ GPROJI_INTERNAL void gproji_assemble_row(const gproj_system *s, const gproji_gro
     int64_t a, b, p, q;
     for (b = row->slot; b < row[1].slot; ++b) {
         int32_t node = s->node[g->local_variable[g->slot_local[b]]], first_b = s->node_first[node];
-        int64_t stride = s->node_stride[node];
+        int64_t stride = s->node_stride[node], end_b = gproji_slot_end(g, row, b);
         for (a = b; a < row[1].slot; ++a) {
             int32_t first_a = s->node_first[s->node[g->local_variable[g->slot_local[a]]]];
+            int64_t end_a = gproji_slot_end(g, row, a);
             double *block = entries + *place++;
-            for (q = g->slot_local[b]; q < g->slot_local[b + 1]; ++q) {
+            for (q = g->slot_local[b]; q < end_b; ++q) {
                 double *column = block + (g->local_variable[q] - first_b) * stride;
                 double scale = w2 * g->local_gradient[q];
-                for (p = a == b ? q : g->slot_local[a]; p < g->slot_local[a + 1]; ++p)
+                for (p = a == b ? q : g->slot_local[a]; p < end_a; ++p)
                     column[g->local_variable[p] - first_a] += scale * g->local_gradient[p];
             }
         }
@@ -4878,18 +4922,26 @@ GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
     }
 }
 
-/* out = (sum w^2 g g' + eps^2 I) v over all rows, wide ones too. */
+/* out = A v, A = sum w^2 g g' + eps^2 I over narrow rows. */
 GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, const double *v, double *out) {
     int32_t i, r;
     for (i = 0; i < s->variable_count; ++i) out[i] = epsilon * epsilon * v[i];
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
-            gproji_row_add(g, &g->row[r], gproji_weight2(g, &g->row[r]) * gproji_row_times(g, &g->row[r], v), out);
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!row->wide) gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, v), out);
+        }
     }
 }
 
-/* -- wide rows: the matrix is A + U U', U = (w g_1, w g_2, ...); Sherman, Morrison, Woodbury -- */
+/* -- wide rows -- */
+
+/* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
+       A dx + U m = -gradient,    m = w phi + U'dx
+   (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
+   an approximation dx, with r = -gradient - A dx and c = A^-1 r, the correction is
+       c - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
 
 /* Calls `visit` for the wide rows with a weight in a fixed order; returns how many there are. */
 typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
@@ -4921,17 +4973,21 @@ GPROJI_INTERNAL void gproji_wide_response(gproj_system *s, const gproji_group *g
 }
 
 GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * gproji_row_times(g, row, s->correction);
+    double ahead = gproji_row_times(g, row, s->step) + gproji_row_times(g, row, s->correction);
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + ahead);
 }
 
-/* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix. */
+/* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix, so no pivot is less
+   than 1; where rounding says so (rows that depend on each other), the pivot is what rounding lets be known. */
 GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride) {
     int32_t i, j, k;
     for (i = 0; i < n; ++i) {
+        double *row = m + (int64_t)i * stride, least = gproji_fmax(1, 8 * DBL_EPSILON * row[i]);
         for (j = 0; j <= i; ++j) {
-            double sum = m[(int64_t)i * stride + j];
-            for (k = 0; k < j; ++k) sum -= m[(int64_t)i * stride + k] * m[(int64_t)j * stride + k];
-            m[(int64_t)i * stride + j] = i == j ? sqrt(gproji_fmax(sum, 1e-300)) : sum / m[(int64_t)j * stride + j];
+            const double *other = m + (int64_t)j * stride;
+            double sum = row[j];
+            for (k = 0; k < j; ++k) sum -= row[k] * other[k];
+            row[j] = i == j ? sqrt(gproji_fmax(sum, least)) : sum / other[j];
         }
     }
 }
@@ -4948,7 +5004,7 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* correction = (A + U U')^-1 residual with the factor of A. `wide`: columns of U. */
+/* The correction of s->step from s->residual = r: see above. `wide`: columns of U with a weight. */
 GPROJI_INTERNAL void gproji_solve_factored(gproj_system *s, int32_t wide) {
     int64_t n = s->variable_count, i;
     int32_t k;
@@ -4969,8 +5025,7 @@ GPROJI_INTERNAL void gproji_solve_factored(gproj_system *s, int32_t wide) {
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
    is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx):
-   - while wishes guide, a step may raise the merit (it trades wishes for constraints), but not tenfold: then the t of
-     smallest merit is taken;
+   - while wishes guide, a step that would raise the merit is shortened to the t of smallest merit;
    - without wishes a step that raises the merit is found again with a larger eps, as in the method of Levenberg (1944)
      and Marquardt (1963); and where the merit goes on falling beyond t = 1, as it does near singular points of the
      constraints, the step is lengthened. */
@@ -5061,15 +5116,16 @@ GPROJI_INTERNAL bool gproji_set_weights(gproj_system *s, int32_t n) {
     return back;
 }
 
+/* Does the group count in merit and residual? */
+GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && !g->guard; }
+
 GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0 && s->group[i].row_count > 0) return true;
+        if (gproji_group_counts(&s->group[i]) && s->group[i].kind == GPROJ_WISH && s->group[i].row_count > 0)
+            return true;
     return false;
 }
-
-/* Does the group count in merit and residual? */
-GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && !g->guard; }
 
 GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     gproji_standing standing;
@@ -5082,6 +5138,7 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
         if (!gproji_group_counts(g)) continue;
         for (r = 0; r < g->row_count; ++r) {
             double phi = fabs(g->row[r].phi);
+            if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
             sum += gproji_weight2(g, &g->row[r]) * phi * phi;
             if (g->kind != GPROJ_CONSTRAINT || (standing.group >= 0 && phi <= standing.residual)) continue;
             standing.residual = phi;
@@ -5094,11 +5151,22 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     return standing;
 }
 
+/* The caller's tolerance, or what rounding allows at this x. */
+GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
+    const gproj_system *s = loop->system;
+    double largest = 0;
+    int32_t v;
+    if (loop->options.tolerance > 0) return loop->options.tolerance;
+    for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
+    return gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+}
+
 /* Rows, gradients and standing at the current x. */
 GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
     gproji_refresh_groups(loop->system);
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
+    loop->tolerance = gproji_tolerance_at(loop);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
@@ -5117,6 +5185,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     wide = gproji_for_wide_rows(s, gproji_wide_response);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
     for (v = 0; v < s->variable_count; ++v) s->residual[v] = -s->gradient[v];
+    memset(s->step, 0, (size_t)s->variable_count * sizeof *s->step);
     gproji_solve_factored(s, wide);
     memcpy(s->step, s->correction, (size_t)s->variable_count * sizeof *s->step);
     for (round = 0; wide > 0 && round < GPROJI_REFINEMENTS; ++round) {
@@ -5153,7 +5222,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, double c[5]) {
     memset(c, 0, 5 * sizeof *c);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; gproji_group_counts(g) && r < g->row_count; ++r) {
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             double w2 = gproji_weight2(g, row), h, q;
             if (!(w2 > 0)) continue;
@@ -5172,23 +5241,30 @@ GPROJI_INTERNAL double gproji_quartic(const double c[5], double t) {
     return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * c[4])));
 }
 
-/* The t in [low, high] with the smallest value: the best of evenly spaced samples, then golden section around it. */
+GPROJI_INTERNAL double gproji_quartic_slope(const double c[5], double t) {
+    return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * 4 * c[4]));
+}
+
+/* The t in [low, high] with the smallest value: the best of evenly spaced samples, then bisection for the root of the
+   slope beside it. (Comparing values would find t to half the digits only.) */
 GPROJI_INTERNAL double gproji_minimise_quartic(const double c[5], double low, double high) {
-    double step = (high - low) / (double)GPROJI_LINE_SAMPLES, best = low;
+    double spacing = (high - low) / (double)GPROJI_LINE_SAMPLES, best = low;
     int32_t i;
     for (i = 1; i <= GPROJI_LINE_SAMPLES; ++i)
-        if (gproji_quartic(c, low + i * step) < gproji_quartic(c, best)) best = low + i * step;
-    low = gproji_fmax(low, best - step);
-    high = gproji_fmin(high, best + step);
-    for (i = 0; i < 40; ++i) {
-        double third = 0.38196601125010515 * (high - low);
-        if (gproji_quartic(c, low + third) < gproji_quartic(c, high - third)) {
-            high = high - third;
+        if (gproji_quartic(c, low + i * spacing) < gproji_quartic(c, best)) best = low + i * spacing;
+    low = gproji_fmax(low, best - spacing);
+    high = gproji_fmin(high, best + spacing);
+    if (gproji_quartic_slope(c, low) >= 0) return low;
+    if (gproji_quartic_slope(c, high) <= 0) return high;
+    for (i = 0; i < 60; ++i) {
+        double middle = low + (high - low) / 2;
+        if (gproji_quartic_slope(c, middle) < 0) {
+            low = middle;
         } else {
-            low = low + third;
+            high = middle;
         }
     }
-    return (low + high) / 2;
+    return low;
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
@@ -5196,8 +5272,11 @@ GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const double 
     double full = gproji_quartic(c, 1), t;
     if (!(full <= DBL_MAX)) return 0;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
-    if (gproji_wishes_are_on(loop->system)) return full <= 10 * c[0] ? 1 : gproji_minimise_quartic(c, 0.05, 1);
-    if (full > c[0]) return 0;
+    if (full > c[0]) {
+        t = gproji_minimise_quartic(c, 0.05, 1);
+        return gproji_quartic(c, t) < c[0] ? t : 0;
+    }
+    if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
     t = gproji_minimise_quartic(c, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
@@ -5252,42 +5331,52 @@ GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) 
     loop->result.step = loop->iteration.step;
 }
 
+/* Do the constraints hold? */
+GPROJI_INTERNAL bool gproji_holds(const gproji_loop *loop) { return loop->standing.residual <= loop->tolerance; }
+
 /* Do the constraints hold, with nothing left to be wished for? */
 GPROJI_INTERNAL bool gproji_has_converged(const gproji_loop *loop) {
-    if (!(loop->standing.residual <= loop->tolerance)) return false;
+    if (!gproji_holds(loop)) return false;
     if (!gproji_wishes_are_on(loop->system)) return true;
     return loop->result.iterations > 0 && loop->result.step <= loop->tolerance;
 }
 
 GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
-    return loop->options.time_budget > 0 && gproji_now(loop->system) - loop->started >= loop->options.time_budget;
+    return loop->options.time_budget > 0 && !(gproji_now(loop->system) - loop->started < loop->options.time_budget);
+}
+
+/* What comes before iteration n: its weights, and rows that they or the caller have changed. */
+GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
+    gproj_system *s = loop->system;
+    memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+    if (gproji_set_weights(s, n) || s->changed) gproji_linearise(loop);
+    s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
+    loop->standing = gproji_take_standing(s);
 }
 
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterations) {
     gproj_system *s = loop->system;
     double best = HUGE_VAL;
-    int32_t n, waited = 0;
+    int32_t half = iterations / 2 + iterations % 2, waited = 0;
     s->late = 0;
     gproji_set_weights(s, 1);
     gproji_linearise(loop);
-    for (n = 1; n <= iterations; ++n) {
-        memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-        if (gproji_set_weights(s, n)) gproji_linearise(loop);
-        s->late = gproji_wishes_are_on(s) && n <= (iterations + 1) / 2 ? 0 : s->late + 1;
-        loop->standing = gproji_take_standing(s);
+    while (loop->result.iterations < iterations) {
+        gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
-        if (!gproji_iterate(loop)) return loop->standing.residual <= loop->tolerance ? GPROJ_CONVERGED : GPROJ_STALLED;
-        gproji_report_iteration(loop, n);
+        if (!gproji_iterate(loop)) return gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
+        gproji_report_iteration(loop, loop->result.iterations + 1);
         if (loop->options.on_iteration && !loop->options.on_iteration(loop->options.user, s, &loop->iteration))
             return GPROJ_CANCELLED;
         waited = loop->standing.residual < 0.9 * best || gproji_wishes_are_on(s) ? 0 : waited + 1;
         best = gproji_fmin(best, loop->standing.residual);
-        if (waited >= GPROJI_PATIENCE && loop->standing.residual > loop->tolerance) return GPROJ_STALLED;
+        if (waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
     }
-    return loop->standing.residual <= loop->tolerance ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
+    if (s->changed) gproji_linearise(loop);
+    return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
 /* The other constraint group with the largest residual above the tolerance; -1: none. */
@@ -5312,30 +5401,26 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
     const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
+    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
     int32_t second = gproji_second_group(loop);
-    char more[GPROJ_MESSAGE_SIZE / 2];
-    more[0] = 0;
+    char fight[3 * GPROJ_NAME_SIZE];
+    r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
     r->worst_element = g ? g->row[standing->row].element : -1;
     if (!g) {
-        gproji_format(r->message, sizeof r->message, "there are no constraints; %d steps towards the wishes",
-                      r->iterations);
+        gproji_format(r->message, sizeof r->message,
+                      "there is nothing that must hold; %d iteration%s towards the wishes", r->iterations, plural);
         return;
     }
-    if (r->outcome == GPROJ_CONVERGED) {
-        gproji_format(r->message, sizeof r->message, "%s: %d iterations, largest residual %g (%s of %s %d)",
-                      gproji_outcome_string(r->outcome), r->iterations, r->residual, g->name,
-                      gproji_place_word(g->place), r->worst_element);
-        return;
+    if (r->outcome == GPROJ_ITERATION_LIMIT) more = "; allow more iterations, or ask for less";
+    if (r->outcome == GPROJ_STALLED && second >= 0) {
+        gproji_format(fight, sizeof fight, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+        more = fight;
     }
-    if (r->outcome == GPROJ_STALLED && second >= 0)
-        gproji_format(more, sizeof more, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
-    if (r->outcome == GPROJ_ITERATION_LIMIT)
-        gproji_format(more, sizeof more, "; allow more iterations, or ask for less");
-    gproji_format(r->message, sizeof r->message, "%s: after %d iterations %s of %s %d is off by %g%s",
-                  gproji_outcome_string(r->outcome), r->iterations, g->name, gproji_place_word(g->place),
-                  r->worst_element, r->residual, more);
+    gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s, %s %d)%s",
+                  gproji_outcome_string(r->outcome), r->iterations, plural, r->residual, g->name,
+                  gproji_place_word(g->place), r->worst_element, more);
 }
 
 /* A result that carries an error's sentence. */
@@ -5348,35 +5433,43 @@ GPROJI_INTERNAL gproj_result gproji_failed_result(const gproj_error *error) {
     return result;
 }
 
-/* Refuses options that mean nothing. */
-GPROJI_INTERNAL bool gproji_options_are_valid(gproj_system *s, int32_t iterations, const gproj_solve_options *o) {
+/* Refuses start values that are not finite: the caller may have written them. */
+GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) {
+        if (gproji_is_finite(s->x[v])) continue;
+        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, v, "solve: variable %d is not a finite number",
+                    v);
+        return false;
+    }
+    return true;
+}
+
+/* Refuses options that mean nothing; that is an error of the call, not of the system. */
+GPROJI_INTERNAL bool gproji_options_are_valid(const gproj_system *s, int32_t iterations, const gproj_solve_options *o,
+                                              gproj_error *error) {
     bool numbers = gproji_is_finite(o->tolerance) && gproji_is_finite(o->epsilon) && gproji_is_finite(o->time_budget);
     if (iterations >= 0 && numbers && o->tolerance >= 0 && o->epsilon >= 0 && o->time_budget >= 0 &&
         (o->time_budget == 0 || s->host.clock.now))
         return true;
     gproji_fail(
-        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time budget needs "
-        "a clock in the host",
+        error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time budget "
+        "needs a clock in the host",
         iterations, o->tolerance, o->epsilon, o->time_budget);
     return false;
 }
 
-GPROJI_INTERNAL double gproji_default_tolerance(const gproj_system *s) {
-    double largest = 0;
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
-    return gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
-}
-
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
+    gproj_error refused;
     if (!gproji_system_is_open(s)) return gproji_failed_result(gproj_system_error(s));
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     if (options) loop.options = *options;
-    if (!gproji_options_are_valid(s, iterations, &loop.options)) return gproji_failed_result(&s->error);
-    loop.tolerance = loop.options.tolerance > 0 ? loop.options.tolerance : gproji_default_tolerance(s);
+    gproji_error_clear(&refused);
+    if (!gproji_options_are_valid(s, iterations, &loop.options, &refused)) return gproji_failed_result(&refused);
+    if (!gproji_values_are_valid(s)) return gproji_failed_result(&s->error);
     loop.started = loop.lap = gproji_now(s);
     if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_lap(&loop, GPROJ_PHASE_ANALYSE);
@@ -5405,7 +5498,7 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
     }
     for (k = first; k < end; ++k) {
         int32_t v = gproji_named_variable(g, k);
-        double x, h, up, down;
+        double x, h, up, down, difference;
         if (v < 0) continue;
         x = s->x[v];
         h = 1e-5 * gproji_fmax(1, fabs(x));
@@ -5414,7 +5507,8 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
         s->x[v] = x - h;
         down = gproji_row_value(g, r, s->x, NULL);
         s->x[v] = x;
-        worst = gproji_fmax(worst, fabs((up - down) / (2 * h) - gradient[v]) / size);
+        difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
+        worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
     for (k = first; k < end; ++k)
         if (gproji_named_variable(g, k) >= 0) gradient[gproji_named_variable(g, k)] = 0;
@@ -7660,9 +7754,8 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 /* ============================================================================================================
    >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
 
-   The least-squares plane of a face is the plane through the mean of its vertices that is orthogonal to the
-   eigenvector of the smallest eigenvalue of their scatter matrix. That vector is found by Jacobi's method (1846) on
-   the 3x3 matrix, which is accurate to rounding for faces that are planar to rounding. */
+   The least-squares plane of a face is the plane through the mean of its vertices that is orthogonal to the direction
+   in which they scatter least; eigenvectors by Jacobi's method (1846). */
 
 /* Rotates rows and columns p, q of the symmetric matrix m so that m[p][q] = 0, and the columns of v along. */
 GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_t p, int32_t q) {
@@ -7690,18 +7783,18 @@ GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_
     }
 }
 
-/* The unit eigenvector of the smallest eigenvalue of a symmetric 3x3 matrix (destroyed). */
-GPROJI_INTERNAL void gproji_smallest_eigenvector3(double m[3][3], double out[3]) {
+/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
+GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    int32_t sweep, smallest = 0, k;
+    int32_t sweep, largest = 0, k;
     for (sweep = 0; sweep < 12; ++sweep) {
         gproji_jacobi_rotate(m, v, 0, 1);
         gproji_jacobi_rotate(m, v, 0, 2);
         gproji_jacobi_rotate(m, v, 1, 2);
     }
     for (k = 1; k < 3; ++k)
-        if (m[k][k] < m[smallest][smallest]) smallest = k;
-    for (k = 0; k < 3; ++k) out[k] = v[k][smallest];
+        if (m[k][k] > m[largest][largest]) largest = k;
+    for (k = 0; k < 3; ++k) out[k] = v[k][largest];
 }
 
 GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
@@ -7715,17 +7808,28 @@ GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, int32_t face, doub
         gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_position(mesh, h), mean);
 }
 
-/* The least-squares plane of a face: the mean of its vertices and a unit normal. */
+/* The least-squares plane of a face: the mean of its vertices and a unit normal. Its directions are found one after the
+   other, the longest first and then, from the points without their part along it, the one across: so a narrow face has
+   its normal to rounding, too, where the eigenvectors of its scatter matrix would have half the digits. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, int32_t face, double mean[3], double normal[3]) {
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3];
-    int32_t h = mesh->face_halfedge[face], k, i, j;
+    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
+    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
     gproji_face_mean(mesh, face, mean);
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_position(mesh, h), mean, d);
         for (i = 0; i < 3; ++i)
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
-    gproji_smallest_eigenvector3(scatter, normal);
+    gproji_largest_eigenvector3(scatter, along);
+    gproji_tangents3(along, u, v);
+    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        uu += gproji_dot3(d, u) * gproji_dot3(d, u);
+        uv += gproji_dot3(d, u) * gproji_dot3(d, v);
+        vv += gproji_dot3(d, v) * gproji_dot3(d, v);
+    }
+    angle = 0.5 * atan2(2 * uv, uu - vv); /* of the direction across, in the basis u, v */
+    for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
 }
 
 /* The largest distance of a face's vertices from its least-squares plane, in the mesh's units. */
@@ -7788,23 +7892,27 @@ GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, int32_t face, con
     return false;
 }
 
+/* Do the normals of an edge's two faces make more than 120 degrees? */
+GPROJI_INTERNAL bool gproji_is_folded(const gproj_mesh *mesh, int32_t edge) {
+    static const double none[3] = {0, 0, 0};
+    int32_t left = mesh->face[2 * edge], right = mesh->face[2 * edge + 1];
+    double a[3], b[3];
+    if (left < 0 || right < 0) return false;
+    gproji_area_vector(mesh, mesh->position, left, a);
+    gproji_area_vector(mesh, mesh->position, right, b);
+    return gproji_normalise3(a, none) && gproji_normalise3(b, none) && gproji_dot3(a, b) < -0.5;
+}
+
 GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures *m) {
-    static const double up[3] = {0, 0, 1};
-    double left[3], right[3], sum = 0;
     int32_t e;
+    m->mean_edge = gproji_mean_edge(mesh, mesh->position);
     for (e = 0; e < mesh->edge_count; ++e) {
-        int32_t h = 2 * e;
-        double length = gproji_distance3(gproji_corner_position(mesh, h), gproji_corner_position(mesh, mesh->twin[h]));
-        sum += length;
+        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
         if (e == 0 || length < m->min_edge) m->min_edge = length;
         if (length > m->max_edge) m->max_edge = length;
-        if (mesh->face[h] < 0 || mesh->face[mesh->twin[h]] < 0) continue;
-        gproji_area_vector(mesh, mesh->position, mesh->face[h], left);
-        gproji_area_vector(mesh, mesh->position, mesh->face[mesh->twin[h]], right);
-        if (!gproji_normalise3(left, up) || !gproji_normalise3(right, up)) continue;
-        m->folded_edges += gproji_dot3(left, right) < -0.5; /* cos 120 degrees */
+        m->collapsed_edges += length <= 1e-6 * m->mean_edge;
+        m->folded_edges += gproji_is_folded(mesh, e);
     }
-    if (mesh->edge_count) m->mean_edge = sum / mesh->edge_count;
 }
 
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
@@ -7931,7 +8039,7 @@ typedef struct gproji_part {
     const gproj_curve *curve;     /* the caller's, in the mesh's units; or NULL: */
     int32_t curve_count;          /* curves of its own, in internal units */
     gproj_curve **own_curve;
-    int32_t *curve_of; /* of each vertex, its own curve */
+    int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
 } gproji_part;
 
@@ -7944,6 +8052,7 @@ struct gproj_form {
     double centre[3], scale;
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
     int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
+    double *area;     /* work: the vectorial area of each face */
     int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
     int32_t ring_size;
     int32_t closeness;  /* the group of the default guidance; -1: none yet */
@@ -7977,6 +8086,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     if (form->mesh) {
         gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
         gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
+        gproji_give(&form->own, form->area, 3 * (size_t)form->mesh->face_count, sizeof *form->area);
         gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
     }
     gproj_system_destroy(form->system);
@@ -8016,6 +8126,19 @@ GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
     return largest;
 }
 
+/* Refuses coordinates that are not finite: the caller may have written them. */
+GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
+    int32_t i;
+    for (i = 0; i < form->mesh->vertex_count; ++i) {
+        const double *p = form->mesh->position + 3 * (size_t)i;
+        if (gproji_is_finite(p[0]) && gproji_is_finite(p[1]) && gproji_is_finite(p[2])) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                    "a coordinate of vertex %d is not a finite number", i);
+        return false;
+    }
+    return true;
+}
+
 /* The rest of gproj_form_create, when the form itself is there. */
 GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     gproj_mesh *mesh = form->mesh;
@@ -8026,15 +8149,12 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     form->ring_size = gproji_largest_ring(mesh);
     form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
     form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
+    form->area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->area);
     form->ring = (int32_t *)gproji_take(&form->own, (size_t)form->ring_size, sizeof *form->ring);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->normal || !form->ring || !form->system) return gproji_fail_memory(&form->error);
-    for (i = 0; i < mesh->vertex_count; ++i) {
-        const double *p = mesh->position + 3 * (size_t)i;
-        if (!gproji_is_finite(p[0]) || !gproji_is_finite(p[1]) || !gproji_is_finite(p[2]))
-            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                               "a coordinate of vertex %d is not a finite number", i);
-    }
+    if (!form->original || !form->normal || !form->area || !form->ring || !form->system)
+        return gproji_fail_memory(&form->error);
+    if (!gproji_positions_are_finite(form)) return form->error.code;
     gproji_form_measure_units(form);
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
@@ -8065,14 +8185,16 @@ GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form) {
 GPROJI_INTERNAL bool gproji_form_ready(const gproj_form *form) { return gproj_form_error(form)->code == GPROJ_OK; }
 
 GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
-    gproj_memory sum, part;
+    const gproji_part *part;
+    gproj_memory sum;
+    int32_t i;
     memset(&sum, 0, sizeof sum);
     if (!form) return sum;
-    sum = form->own.account;
-    part = gproj_system_memory(form->system);
-    sum.used += part.used;
-    sum.peak += part.peak;
-    sum.allocations += part.allocations;
+    gproji_add_memory(&sum, form->own.account);
+    gproji_add_memory(&sum, gproj_system_memory(form->system));
+    for (part = form->part; part; part = part->next)
+        for (i = 0; part->own_curve && i < part->curve_count; ++i)
+            if (part->own_curve[i]) gproji_add_memory(&sum, part->own_curve[i]->heap.account);
     return sum;
 }
 
@@ -8278,28 +8400,35 @@ GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
 
 /* -- planar faces -- */
 
-/* The unit vector of a face's vectorial area at the system's x; where it has none, that of the sum over the faces
-   around its first vertex; then e_z. */
-GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
+/* form->area at the system's x. */
+GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
+    int32_t f;
+    for (f = 0; f < form->mesh->face_count; ++f)
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->area + 3 * (size_t)f);
+}
+
+/* The unit sum of form->area over the faces around a vertex; e_z where that has no direction. */
+GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    int32_t start = mesh->face_halfedge[face], h = start;
-    gproji_area_vector(mesh, x, face, out);
-    if (gproji_length3(out) > 1e-12) {
-        gproji_normalise3(out, up);
-        return;
-    }
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
     gproji_set3(0, 0, 0, out);
     do {
-        double area[3];
-        if (mesh->face[h] >= 0) {
-            gproji_area_vector(mesh, x, mesh->face[h], area);
-            gproji_add_scaled3(1, area, out);
-        }
+        if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->area + 3 * (size_t)mesh->face[h], out);
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
     gproji_normalise3(out, up);
+}
+
+/* The unit vector of form->area of a face; where it has none, the normal at its first vertex. */
+GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
+    static const double none[3] = {0, 0, 0};
+    gproji_copy3(form->area + 3 * (size_t)face, out);
+    if (gproji_length3(out) > 1e-12) {
+        gproji_normalise3(out, none);
+    } else {
+        gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
+    }
 }
 
 /* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. */
@@ -8325,9 +8454,15 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
 }
 
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
+    gproj_schedule schedule = {weight, 0, 0};
     int32_t group, f;
     if (!gproji_form_ready(form)) return -1;
+    if (form->planarity >= 0) { /* there already: a new weight for it */
+        gproj_system_set_schedule(form->system, form->planarity, schedule);
+        return gproji_form_ready(form) ? form->planarity : -1;
+    }
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
@@ -8380,6 +8515,11 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
+/* Does vertex i of a gliding part stay where it was? */
+GPROJI_INTERNAL bool gproji_stays(const gproji_part *part, int32_t i) {
+    return part->curve_of && part->curve_of[i] < 0;
+}
+
 /* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment,
    and is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
@@ -8387,10 +8527,12 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     bool settled = system->late >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        const gproj_curve *curve = part->curve ? part->curve : part->own_curve[part->curve_of[i]];
+        const gproj_curve *curve = part->curve;
         const double *tangent;
         double p[3], end[3];
         bool after, before;
+        if (gproji_stays(part, i)) continue;
+        if (!curve) curve = part->own_curve[part->curve_of[i]];
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
         if (part->curve) gproji_from_internal(part->form, p, p);
         if (part->segment[i] < 0) {
@@ -8405,7 +8547,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         tangent = curve->tangent + 3 * (size_t)part->segment[i];
         gproji_copy3(curve->point + 3 * ((size_t)part->segment[i] + after), end);
         if (part->curve) gproji_to_internal(part->form, end, end);
-        gproji_set_gliding(system, group, 3 * i, tangent, end, settled && (after || before));
+        gproji_set_gliding(system, group, 3 * i, tangent, end, after || before);
     }
 }
 
@@ -8415,6 +8557,7 @@ GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
     int32_t i;
     for (part = form->part; part; part = part->next) {
         for (i = 0; part->segment && i < part->count; ++i) {
+            if (gproji_stays(part, i)) continue;
             part->segment[i] = -1;
             gproj_system_set_row_weight(form->system, part->group, 3 * i + 2, 0);
         }
@@ -8422,6 +8565,7 @@ GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
 }
 
 GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *part, const char *name, double weight) {
+    static const double axis[3] = {1, 0, 0};
     int32_t i, k, c;
     part->segment = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->segment);
     if (!part->segment) {
@@ -8431,9 +8575,13 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *p
     part->group =
         gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_gliding, part);
     for (i = 0; i < part->count; ++i) {
+        const double *place = form->original + 3 * (size_t)part->vertex[i];
         gproj_term term[3];
+        part->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+        if (gproji_form_ready(form))
+            gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
     }
     return gproji_form_ready(form) ? part->group : -1;
 }
@@ -8450,27 +8598,45 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
     return gproji_add_gliding_part(form, part, "gliding", weight);
 }
 
-/* The boundary loops of the original as curves in internal units, and the loop of each vertex of the part. `loop_of`:
-   work, one entry a vertex of the mesh; `points`: work, 3 numbers a vertex. */
-GPROJI_INTERNAL bool gproji_take_loops(gproj_form *form, gproji_part *part, int32_t *loop_of, double *points) {
+/* The boundary loops of the original as curves in internal units. A loop without extent gives NULL. `points`: work, 3
+   numbers a vertex of the mesh. */
+GPROJI_INTERNAL bool gproji_take_loop_curves(gproj_form *form, gproji_part *part, double *points) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t l, i;
+    int32_t l;
     for (l = 0; l < mesh->loop_count; ++l) {
         int32_t h = mesh->loop_halfedge[l], count = 0;
+        gproj_error error;
+        gproji_error_clear(&error);
         do {
-            loop_of[mesh->origin[h]] = l;
             gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[l]);
-        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &form->error);
-        if (!part->own_curve[l]) return false;
+        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
+        if (part->own_curve[l] || error.code == GPROJ_ERROR_DEGENERATE) continue;
+        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+        return false;
     }
-    for (i = 0; i < part->count; ++i) part->curve_of[i] = loop_of[part->vertex[i]];
     return true;
 }
 
+/* The curve of each vertex of the part, -1 for those that stay: corners, and loops without extent. `loop_of`: work, one
+   entry a vertex of the mesh. */
+GPROJI_INTERNAL void gproji_assign_loops(const gproj_form *form, gproji_part *part, int32_t *loop_of) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t l, i;
+    for (l = 0; l < mesh->loop_count; ++l) {
+        int32_t h = mesh->loop_halfedge[l];
+        do {
+            loop_of[mesh->origin[h]] = part->own_curve[l] ? l : -1;
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[l]);
+    }
+    for (i = 0; i < part->count; ++i)
+        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) ? -1 : loop_of[part->vertex[i]];
+}
+
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
-    gproji_part *part = gproji_new_selected_part(form, gproji_select_gliding);
+    gproji_part *part = gproji_new_selected_part(form, gproji_select_boundary);
     size_t vertices;
     int32_t *loop_of;
     double *points;
@@ -8484,15 +8650,14 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
     if (part->own_curve && part->curve_of && loop_of && points) {
-        done = gproji_take_loops(form, part, loop_of, points);
+        done = gproji_take_loop_curves(form, part, points);
+        if (done) gproji_assign_loops(form, part, loop_of);
     } else {
         gproji_fail_memory(&form->error);
     }
     gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->own, points, 3 * vertices, sizeof *points);
-    if (!done) return -1;
-    gproj_add_fixed_corners(form, weight);
-    return gproji_add_gliding_part(form, part, "gliding boundary", weight);
+    return done ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
 }
 
 /* The row n'(v - p) = 0 for each vertex: p the closest point of the surface, n its normal there. */
@@ -8649,23 +8814,6 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The unit sum of the vectorial areas around a vertex at the system's x. */
-GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
-    static const double up[3] = {0, 0, 1};
-    const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    gproji_set3(0, 0, 0, out);
-    do {
-        double area[3];
-        if (mesh->face[h] >= 0) {
-            gproji_area_vector(mesh, gproj_system_values(form->system), mesh->face[h], area);
-            gproji_add_scaled3(1, area, out);
-        }
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
-    gproji_normalise3(out, up);
-}
-
 /* Fills in rows `row` and `row` + 1: u' and w' of a difference, u, w spanning the plane orthogonal to `normal`. */
 GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
                                                const double normal[3]) {
@@ -8690,6 +8838,7 @@ GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system,
     const gproji_part *part = (const gproji_part *)user;
     double normal[3] = {0, 0, 1};
     int32_t i;
+    gproji_update_areas(part->form);
     for (i = 0; i < part->count; ++i) {
         if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
         gproji_refresh_difference(system, group, 2 * i, normal);
@@ -8761,6 +8910,7 @@ GPROJI_INTERNAL int32_t gproji_add_gauss_differences(gproj_form *form, int32_t g
 /* Triangles have no normals as variables until something needs them. Other faces get theirs from the planarity. */
 GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form) {
     int32_t f, group = -1;
+    gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         if (form->normal[f] >= 0) continue;
         if (form->mesh->face_degree[f] > 3) {
@@ -8798,7 +8948,7 @@ GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_s
     return gproj_system_set_schedule(form->system, group, schedule);
 }
 
-GPROJ_API gproj_group_info gproj_get_group_info(const gproj_form *form, int32_t group) {
+GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group) {
     return gproj_system_group_info(form ? form->system : NULL, group);
 }
 
@@ -8920,7 +9070,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
     gproj_schedule schedule;
     int32_t i;
-    bool wanted = !skip && form->planarity >= 0;
+    bool wanted = !skip && form->planarity >= 0 && form->system->group[form->planarity].schedule.weight > 0;
     if (wanted && !form->guard) gproji_add_guard(form);
     if (!form->guard || !gproji_form_ready(form)) return;
     schedule.weight = wanted ? gproji_guard_weight : 0;
@@ -8940,6 +9090,7 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     int32_t i;
     for (i = 0; i < form->mesh->vertex_count; ++i)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, x + 3 * (size_t)i);
+    gproji_update_areas(form);
     for (i = 0; i < form->mesh->face_count; ++i)
         if (form->normal[i] >= 0) gproji_face_normal(form, i, x + form->normal[i]);
 }
@@ -8968,16 +9119,21 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     return false;
 }
 
-/* Where no wish guides, closeness to where this solve begins does: 0.03 * 0.5^n in the first half, at most 5 times (a
-   sixth costs hexagon meshes their last digits). Returns the iteration in which guidance ends, 0 without any. */
+/* Half of the iterations, rounded up and at least 1: as long as wishes last by default. */
+GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
+
+/* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
+   most 5 times. Weaker or slower guidance moves the mesh less, but lets rounding of the input grow (0.5^n: ten times
+   more), and longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which
+   guidance ends, 0 without any. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
-    int32_t half = gproji_max(1, (iterations + 1) / 2), i;
+    int32_t half = gproji_half(iterations), i;
     gproj_schedule schedule;
     if (wanted && form->closeness < 0) form->closeness = gproj_add_closeness(form, 0);
     if (form->closeness >= 0) {
         schedule.weight = wanted ? 0.03 : 0;
-        schedule.decay = 0.5;
+        schedule.decay = 0.3;
         schedule.last = gproji_min(5, half);
         gproj_system_set_schedule(form->system, form->closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
@@ -9004,6 +9160,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     int32_t g, r, count;
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
+        if (form->system->group[g].guard) continue;
         for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
             const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
             if (gproji_row_holds(form, term, count)) return true;
@@ -9017,13 +9174,14 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
         "; nothing holds the mesh, so the fairness shrinks it: fix vertices or add a reference";
     gproj_result result;
     int32_t guided;
-    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
+        return gproji_failed_result(gproj_form_error(form));
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
-    form->system->default_last = gproji_max(1, (iterations + 1) / 2);
+    form->system->default_last = gproji_half(iterations);
     result = gproj_system_solve(form->system, iterations, options);
     form->system->default_last = 0;
     if (result.outcome == GPROJ_FAILED) return result;

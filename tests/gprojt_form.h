@@ -31,14 +31,15 @@ static inline int32_t gprojt_add_group(gproj_system *s, const char *name, gproj_
 }
 
 /* The row a x_i + c. */
-static inline int32_t gprojt_add_linear(gproj_system *s, int32_t group, int32_t i, double a, double c, int32_t element) {
+static inline int32_t gprojt_add_linear(gproj_system *s, int32_t group, int32_t i, double a, double c,
+                                        int32_t element) {
     gproj_term term = gprojt_term(i, -1, a);
     return gproj_system_add_row(s, group, 1, &term, c, element);
 }
 
 /* The row |p - q|^2 - d^2 of the points with first variables p and q. */
-static inline int32_t gprojt_add_distance(gproj_system *s, int32_t group, int32_t p, int32_t q, int32_t dimension, double d,
-                                          int32_t element) {
+static inline int32_t gprojt_add_distance(gproj_system *s, int32_t group, int32_t p, int32_t q, int32_t dimension,
+                                          double d, int32_t element) {
     gproj_term term[9];
     int32_t k;
     for (k = 0; k < dimension; ++k) {
@@ -49,7 +50,9 @@ static inline int32_t gprojt_add_distance(gproj_system *s, int32_t group, int32_
     return gproj_system_add_row(s, group, 3 * dimension, term, -d * d, element);
 }
 
-static inline gproj_group_info gprojt_info(const gproj_system *s, int32_t group) { return gproj_system_group_info(s, group); }
+static inline gproj_group_info gprojt_info(const gproj_system *s, int32_t group) {
+    return gproj_system_group_info(s, group);
+}
 
 /* -- threads: the tasks in reverse order, in leaps, or on `user` threads -- */
 
@@ -99,7 +102,9 @@ static inline void gprojt_run_threads(void *user, int32_t count, gproj_task task
 }
 
 /* One worker, two orders of one worker, 2 and 5 workers. */
-enum { GPROJT_CREWS = 5 };
+enum {
+    GPROJT_CREWS = 5
+};
 static inline gproj_host gprojt_crew(int index) {
     static int two = 2, five = 5;
     gproj_host host;

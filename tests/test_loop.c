@@ -1,4 +1,4 @@
-/* test_loop.c - >>loop: known problems, every verdict, schedules, damping, time, memory, the same bits for all workers. */
+/* test_loop.c - >>loop: known problems, every verdict, schedules, damping, time, memory, the same bits. */
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_form.h"
 
@@ -74,7 +74,8 @@ GPROJT_TEST(sphere_and_planes) {
     GPROJT_NEAR(gproj_system_values(s)[2], 1, 1e-12);
     GPROJT_NEAR(gproj_system_values(s)[0] + gproj_system_values(s)[1], 2, 1e-12);
     gprojt_check_quadratic(&watch);
-    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 && watch.seen[0].epsilon == gproji_epsilon_max);
+    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 &&
+                 watch.seen[0].epsilon == gproji_epsilon_max);
     GPROJT_CHECK(watch.seen[watch.count - 1].epsilon == gproji_epsilon_min); /* it follows the residual */
     GPROJT_CHECK(watch.seen[watch.count - 1].residual == result.residual && watch.seen[0].energy == 0);
     gproj_system_destroy(s);
@@ -220,7 +221,7 @@ GPROJT_TEST(seconds_add_up) {
         sum += result.seconds[phase];
         for (n = 0; n < watch.count; ++n) of_iterations += watch.seen[n].seconds[phase];
     }
-    GPROJT_NEAR(sum, ticks.now - 1, 0); /* the first reading is the start */
+    GPROJT_NEAR(sum, ticks.now - 1, 0);     /* the first reading is the start */
     GPROJT_NEAR(sum - of_iterations, 2, 0); /* the analysis and the rows before the first step */
     result = gproj_system_solve(s, 1, NULL);
     GPROJT_NEAR(result.seconds[GPROJ_PHASE_ANALYSE], 1, 0); /* one tick: nothing to do */
@@ -244,6 +245,11 @@ GPROJT_TEST(failed_by_an_error_on_the_way) {
     result = gproj_system_solve(s, 9, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "no row 99"));
     GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_INDEX && gproj_system_error(s)->index == 99);
+    gproj_system_destroy(s);
+    s = gprojt_system(NULL, 1, 1, x);
+    calls = 1;
+    gproj_system_add_group(s, &group);
+    GPROJT_CHECK(gproj_system_check_gradients(s) == HUGE_VAL);
     gproj_system_destroy(s);
 }
 
@@ -286,7 +292,7 @@ static void gprojt_check_meddler(gprojt_meddler m) {
     gproj_system_add_group(s, &group);
     result = gproj_system_solve(s, 5, &options);
     GPROJT_CHECK(m.answer == -1 && result.outcome == GPROJ_FAILED && gproj_system_error(s)->code == GPROJ_ERROR_STATE);
-    GPROJT_CHECK(strstr(result.message, "callback") != NULL && gproj_system_variable_count(s) == 1);
+    GPROJT_CHECK(strstr(result.message, "during a solve") != NULL && gproj_system_variable_count(s) == 1);
     gproj_system_destroy(s);
 }
 
@@ -318,18 +324,37 @@ GPROJT_TEST(values_that_are_no_numbers) {
     }
 }
 
-/* Rows that overflow: no step is possible, and x stays as it was. */
+/* Rows that overflow, to infinity or to no number: no step is possible, x stays, and the verdict is not a good one. */
 GPROJT_TEST(rows_that_overflow) {
-    static const double x[2] = {1e200, 2};
-    gproj_system *s = gprojt_system(NULL, 2, 1, x);
-    gproj_term square = gprojt_term(0, 0, 1);
+    static const double x[3] = {1e200, 1e200, 2};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_system *s = gprojt_system(NULL, 3, 1, x);
+        gproj_term squares[2] = {{0, 0, 1}, {1, 1, -1}};
+        gproj_result result;
+        gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
+        gproj_system_add_row(s, 0, i + 1, squares, -1, 7);
+        gprojt_add_linear(s, 0, 2, 1, -2, 8); /* holds */
+        result = gproj_system_solve(s, 9, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.worst_element == 7 && result.residual > 1e300);
+        GPROJT_CHECK(gproj_system_group_info(s, 0).max > 1e300 && gproj_system_group_info(s, 0).worst_element == 7);
+        GPROJT_CHECK(!memcmp(x, gproj_system_values(s), sizeof x));
+        gproj_system_destroy(s);
+    }
+}
+
+/* A step beyond what a double holds is not taken. */
+GPROJT_TEST(steps_that_overflow) {
+    static const double x[1] = {1};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_solve_options options;
     gproj_result result;
-    gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
-    gproj_system_add_row(s, 0, 1, &square, -1, 7);
-    gprojt_add_linear(s, 0, 1, 1, -2, 8);
-    result = gproj_system_solve(s, 9, NULL);
-    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.worst_element == 7 && result.residual > 1e300);
-    GPROJT_CHECK(!memcmp(x, gproj_system_values(s), sizeof x));
+    memset(&options, 0, sizeof options);
+    options.epsilon = 1e-150;
+    gprojt_add_group(s, "faint", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1e-160, 1e300, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && gproj_system_values(s)[0] == 1);
     gproj_system_destroy(s);
 }
 
@@ -393,6 +418,7 @@ GPROJT_TEST(steps_are_lengthened_near_singular_points) {
     gproj_result result;
     memset(&watch, 0, sizeof watch);
     options = gprojt_watched(&watch);
+    options.tolerance = 1e-12; /* nearer to the root the gradient is less than eps */
     result = gproj_system_solve(s, 60, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations < 15);
     GPROJT_CHECK(watch.seen[0].length > 1.3 && watch.seen[0].length <= 2);
@@ -428,7 +454,8 @@ static gproj_system *gprojt_scheduled(gproj_schedule schedule) {
     return s;
 }
 
-static void gprojt_check_energies(gproj_schedule schedule, int32_t iterations, int32_t change_at, gproj_schedule change) {
+static void gprojt_check_energies(gproj_schedule schedule, int32_t iterations, int32_t change_at,
+                                  gproj_schedule change) {
     gproj_system *s = gprojt_scheduled(schedule);
     gprojt_watch watch;
     gproj_solve_options options;
@@ -472,7 +499,8 @@ GPROJT_TEST(a_group_goes_and_comes_back) {
     gproj_result result;
     int calls = 0, before;
     memset(&group, 0, sizeof group);
-    group.name = "watched", group.schedule.weight = 1, group.refresh = gprojt_count_refresh, group.refresh_user = &calls;
+    group.name = "watched", group.schedule.weight = 1, group.refresh = gprojt_count_refresh,
+    group.refresh_user = &calls;
     gproj_system_add_group(s, &group);
     memset(&watch, 0, sizeof watch);
     gproj_system_set_schedule(s, 0, gprojt_schedule(0, 0, 0));
@@ -516,7 +544,8 @@ GPROJT_TEST(epsilon_given_and_followed) {
     gproj_system_solve(s, 20, &options);
     GPROJT_CHECK(watch.seen[0].epsilon == gproji_epsilon_max);
     for (n = 1; n < watch.count; ++n)
-        GPROJT_NEAR(watch.seen[n].epsilon, fmin(fmax(watch.seen[n - 1].residual, gproji_epsilon_min), gproji_epsilon_max), 1e-15);
+        GPROJT_NEAR(watch.seen[n].epsilon,
+                    fmin(fmax(watch.seen[n - 1].residual, gproji_epsilon_min), gproji_epsilon_max), 1e-15);
     gproj_system_destroy(s);
 }
 
@@ -555,8 +584,8 @@ GPROJT_TEST(wishes_alone) {
 GPROJT_TEST(words_for_every_place) {
     static const gproj_place places[] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE, GPROJ_PLACE_VARIABLE,
                                          GPROJ_PLACE_NONE};
-    static const char *const words[] = {"pull of vertex 17", "pull of edge 17", "pull of face 17", "pull of variable 17",
-                                        "pull of element 17"};
+    static const char *const words[] = {"pull of vertex 17", "pull of edge 17", "pull of face 17",
+                                        "pull of variable 17", "pull of element 17"};
     int i;
     for (i = 0; i < 5; ++i) {
         gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
@@ -642,7 +671,8 @@ GPROJT_TEST(same_bits_for_all_workers) {
             memcpy(first, gproj_system_values(s), (size_t)n * sizeof *first);
         }
         GPROJT_CHECK(!memcmp(first, gproj_system_values(s), (size_t)n * sizeof *first));
-        GPROJT_CHECK(!memcmp(&first_result.residual, &result.residual, sizeof(double)) && first_result.step == result.step);
+        GPROJT_CHECK(!memcmp(&first_result.residual, &result.residual, sizeof(double)) &&
+                     first_result.step == result.step);
         GPROJT_CHECK(!strcmp(first_result.message, result.message));
         gproj_system_destroy(s);
     }
@@ -662,6 +692,7 @@ int main(void) {
     GPROJT_RUN(callbacks_may_not_rebuild);
     GPROJT_RUN(values_that_are_no_numbers);
     GPROJT_RUN(rows_that_overflow);
+    GPROJT_RUN(steps_that_overflow);
     GPROJT_RUN(not_positive_definite);
     GPROJT_RUN(steps_that_raise_the_merit_are_damped);
     GPROJT_RUN(steps_are_lengthened_near_singular_points);

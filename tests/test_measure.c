@@ -72,7 +72,8 @@ GPROJT_TEST(planarity_is_of_the_least_squares_plane) {
             double sum = 0, w[3], length = 0;
             for (k = 0; k < 3; ++k) w[k] = v[k] + 0.1 * (gprojt_uniform(&seed) - 0.5), length += w[k] * w[k];
             for (k = 0; k < 6; ++k) {
-                double d = (w[0] * (x[3 * k] - mean[0]) + w[1] * (x[3 * k + 1] - mean[1]) + w[2] * (x[3 * k + 2] - mean[2]));
+                double d =
+                    (w[0] * (x[3 * k] - mean[0]) + w[1] * (x[3 * k + 1] - mean[1]) + w[2] * (x[3 * k + 2] - mean[2]));
                 sum += d * d / length;
             }
             GPROJT_CHECK(sum >= best - 1e-15);
@@ -105,7 +106,8 @@ GPROJT_TEST(areas_and_edges) {
     gproj_mesh *mesh = gprojt_polygon(6, x);
     gproj_measures m = gproj_measure(mesh, NULL, NULL);
     GPROJT_NEAR(m.area, 5, 1e-15);
-    GPROJT_CHECK(m.min_face_area == m.area && m.max_face_area == m.area && m.bow_tie_faces == 0 && m.degenerate_faces == 0);
+    GPROJT_CHECK(m.min_face_area == m.area && m.max_face_area == m.area && m.bow_tie_faces == 0 &&
+                 m.degenerate_faces == 0);
     GPROJT_CHECK(m.min_edge == 1 && m.max_edge == 3);
     GPROJT_NEAR(m.mean_edge, (3 + 2 + 2 + 1 + 1 + 1) / 6.0, 1e-15);
     GPROJT_CHECK(m.planarity_max < 1e-15 && m.gauss_variation == 0 && m.diagonal_max == 0);
@@ -159,7 +161,8 @@ GPROJT_TEST(bow_ties) {
     static const double convex[8] = {0, 0, 1, 0, 1, 1, 0, 1}, dart[8] = {0, 0, 2, 1, 0, 2, 0.5, 1};
     static const double tie[8] = {0, 0, 2, 0, 0, 1, 1, 1};
     static const double star[10] = {0, 1, 0.59, -0.81, -0.95, 0.31, 0.95, 0.31, -0.59, -0.81}; /* a pentagram */
-    static const double six[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, 1, 0, 1}, crossed[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, -1, 0, 1};
+    static const double six[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, 1, 0, 1},
+                        crossed[12] = {0, 0, 3, 0, 3, 2, 1, 2, 1, -1, 0, 1};
     double tilt;
     for (tilt = 0; tilt < 3; tilt += 0.7) {
         GPROJT_CHECK(gprojt_bow_ties(4, convex, tilt) == 0 && gprojt_bow_ties(4, dart, tilt) == 0);
@@ -297,7 +300,8 @@ GPROJT_TEST(meshes_without_extent) {
         before = gprojt_keep(mesh);
         m = gproj_measure(mesh, before, NULL);
         gprojt_check_numbers(&m);
-        GPROJT_CHECK(m.area == 0 && m.degenerate_faces == mesh->face_count && m.planarity_max < 1e-15 && m.turned_faces == 0);
+        GPROJT_CHECK(m.area == 0 && m.degenerate_faces == mesh->face_count && m.planarity_max < 1e-15 &&
+                     m.turned_faces == 0);
         mesh->position[0] = 3;
         m = gproj_measure(mesh, before, NULL);
         gprojt_check_numbers(&m);

@@ -19,7 +19,9 @@ static const gprojt_hand_row gprojt_hand_rows[] = {
     {4, {{0, 1, 2}, {0, 0, 3}, {2, -1, -1}, {1, 0, 1}}, 5, 4 + 3 - 3 + 2 + 5, {2 * 2 + 6 + 2, 2 + 1, -1}},
     {3, {{1, -1, 1}, {1, -1, 1}, {1, -1, -2}}, 0.5, 0.5, {0, 0, 0}},
 };
-enum { GPROJT_HAND_ROWS = sizeof gprojt_hand_rows / sizeof gprojt_hand_rows[0] };
+enum {
+    GPROJT_HAND_ROWS = sizeof gprojt_hand_rows / sizeof gprojt_hand_rows[0]
+};
 
 static gproj_system *gprojt_hand_system(void) {
     static const double x[3] = {1, 2, 3};
@@ -28,7 +30,8 @@ static gproj_system *gprojt_hand_system(void) {
     gproj_system_add_variables(s, 3, 3, x);
     group = gprojt_add_group(s, "by hand", GPROJ_CONSTRAINT, 1);
     for (r = 0; r < GPROJT_HAND_ROWS; ++r)
-        gproj_system_add_row(s, group, gprojt_hand_rows[r].count, gprojt_hand_rows[r].term, gprojt_hand_rows[r].constant, 100 + r);
+        gproj_system_add_row(s, group, gprojt_hand_rows[r].count, gprojt_hand_rows[r].term,
+                             gprojt_hand_rows[r].constant, 100 + r);
     return s;
 }
 
@@ -85,7 +88,8 @@ GPROJT_TEST(group_info) {
     GPROJT_CHECK(!strcmp(info.name, "") && info.rows == 0 && info.worst_row == -1 && info.worst_element == -1);
     gprojt_add_group(s, "a name of more than thirty-one characters is cut", GPROJ_WISH, 0.5);
     info = gproj_system_group_info(s, 1);
-    GPROJT_CHECK(!strcmp(info.name, "a name of more than thirty-one ") && info.kind == GPROJ_WISH && info.worst_row == -1);
+    GPROJT_CHECK(!strcmp(info.name, "a name of more than thirty-one ") && info.kind == GPROJ_WISH &&
+                 info.worst_row == -1);
     GPROJT_CHECK(info.rms == 0 && gproj_system_group_count(s) == 2 && gproj_system_variable_count(s) == 3);
     gproj_system_destroy(s);
 }
@@ -134,6 +138,19 @@ GPROJT_TEST(gradients_by_finite_differences) {
     gproj_system_destroy(s);
 }
 
+/* Rows that overflow cannot be checked, and later rows do not make up for it. */
+GPROJT_TEST(gradients_that_overflow) {
+    static const double x[2] = {1e200, 1};
+    gproj_system *s = gproj_system_create(NULL);
+    gproj_term square = gprojt_term(0, 0, 1);
+    gproj_system_add_variables(s, 2, 1, x);
+    gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_row(s, 0, 1, &square, 0, 0);
+    gprojt_add_linear(s, 0, 1, 1, 0, 1);
+    GPROJT_CHECK(!(gproj_system_check_gradients(s) < 1e-3));
+    gproj_system_destroy(s);
+}
+
 /* -- refusals -- */
 
 typedef enum gprojt_call {
@@ -169,7 +186,8 @@ typedef enum gprojt_call {
     GPROJT_CALLS
 } gprojt_call;
 
-static int64_t gprojt_wrong_group(gproj_system *s, double weight, double decay, int32_t last, const char *name, bool given) {
+static int64_t gprojt_wrong_group(gproj_system *s, double weight, double decay, int32_t last, const char *name,
+                                  bool given) {
     gproj_group group;
     memset(&group, 0, sizeof group);
     group.name = name;
@@ -177,7 +195,8 @@ static int64_t gprojt_wrong_group(gproj_system *s, double weight, double decay, 
     return gproj_system_add_group(s, given ? &group : NULL);
 }
 
-static int64_t gprojt_wrong_solve(gproj_system *s, int32_t iterations, double tolerance, double epsilon, double budget) {
+static int64_t gprojt_wrong_solve(gproj_system *s, int32_t iterations, double tolerance, double epsilon,
+                                  double budget) {
     gproj_solve_options options;
     gproj_result result;
     memset(&options, 0, sizeof options);
@@ -218,7 +237,8 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     case GPROJT_INFINITE_ROW_WEIGHT: return -(gproj_system_set_row_weight(s, 0, 0, HUGE_VAL) == GPROJ_ERROR_ARGUMENT);
     case GPROJT_SCHEDULE_OF_NO_GROUP:
         return -(gproj_system_set_schedule(s, 1, gprojt_schedule(1, 1, 0)) == GPROJ_ERROR_INDEX);
-    case GPROJT_BAD_SCHEDULE: return -(gproj_system_set_schedule(s, 0, gprojt_schedule(1, -1, 0)) == GPROJ_ERROR_ARGUMENT);
+    case GPROJT_BAD_SCHEDULE:
+        return -(gproj_system_set_schedule(s, 0, gprojt_schedule(1, -1, 0)) == GPROJ_ERROR_ARGUMENT);
     case GPROJT_SOLVE_NEGATIVE: return gprojt_wrong_solve(s, -1, 0, 0, 0);
     case GPROJT_SOLVE_NAN: return gprojt_wrong_solve(s, 1, NAN, 0, 0);
     case GPROJT_SOLVE_NEGATIVE_EPSILON: return gprojt_wrong_solve(s, 1, 0, -1, 0);
@@ -307,8 +327,8 @@ GPROJT_TEST(refusals) {
         GPROJT_CHECK(gprojt_do_wrong(s, (gprojt_call)call) == -1);
         if (error->code != want->code || error->place != want->place || error->index != want->index ||
             !strstr(error->message, want->says)) {
-            printf("  refusal %d: code %d place %d index %d \"%s\"\n", call, error->code, error->place, (int)error->index,
-                   error->message);
+            printf("  refusal %d: code %d place %d index %d \"%s\"\n", call, error->code, error->place,
+                   (int)error->index, error->message);
             GPROJT_CHECK(!"code, place and sentence");
         }
         gprojt_check_stuck(s);
@@ -348,7 +368,9 @@ GPROJT_TEST(no_object) {
 
 /* -- one step against a dense solve -- */
 
-enum { GPROJT_ROW_TERMS = 8 };
+enum {
+    GPROJT_ROW_TERMS = 8
+};
 
 /* The test's own copy of a system, independent of the library's. */
 typedef struct gprojt_twin_row {
@@ -388,7 +410,8 @@ static void gprojt_twin_group(gprojt_twin *t, gproj_kind kind, bool global, doub
     t->groups++;
 }
 
-static void gprojt_twin_add(gprojt_twin *t, int32_t group, int32_t count, const gproj_term *term, double constant, double weight) {
+static void gprojt_twin_add(gprojt_twin *t, int32_t group, int32_t count, const gproj_term *term, double constant,
+                            double weight) {
     gprojt_twin_row *row;
     int32_t number;
     t->row = (gprojt_twin_row *)realloc(t->row, (size_t)(t->rows + 1) * sizeof *t->row);
@@ -473,8 +496,10 @@ static void gprojt_twin_stand(gprojt_twin *t, const double *x) {
         double w = t->weight[row->group] * row->weight, phi = fabs(gprojt_twin_phi(row, x, NULL));
         if (!(w > 0)) continue;
         t->merit += w * w * phi * phi;
-        if (t->kind[row->group] == GPROJ_WISH) t->energy += w * w * phi * phi;
-        else t->residual = fmax(t->residual, phi);
+        if (t->kind[row->group] == GPROJ_WISH)
+            t->energy += w * w * phi * phi;
+        else
+            t->residual = fmax(t->residual, phi);
     }
 }
 
@@ -509,7 +534,8 @@ static void gprojt_check_step_bound(gprojt_twin *t, double epsilon, double bound
         return;
     }
     gprojt_twin_stand(t, x);
-    GPROJT_CHECK(iteration.number == 1 && iteration.attempts == 1 && iteration.length == 1 && iteration.epsilon == epsilon);
+    GPROJT_CHECK(iteration.number == 1 && iteration.attempts == 1 && iteration.length == 1 &&
+                 iteration.epsilon == epsilon);
     GPROJT_NEAR(iteration.step, largest, bound * fmax(largest, 1e-6));
     GPROJT_NEAR(iteration.residual, t->residual, 1e-12 * (1 + t->residual));
     GPROJT_NEAR(iteration.merit, t->merit, 1e-12 * (1 + t->merit));
@@ -581,7 +607,8 @@ static gprojt_twin gprojt_wide_twin(int32_t n, int32_t wide, bool by_word, uint6
         gprojt_twin_add(&t, 0, 4, term, gprojt_uniform(seed), 1);
     }
     for (r = 0; r < wide; ++r) {
-        for (k = 0; k < n; ++k) term[k] = gprojt_term((k + r) % n, k % 3 == 0 ? (k + 1) % n : -1, 2 * gprojt_uniform(seed) - 1);
+        for (k = 0; k < n; ++k)
+            term[k] = gprojt_term((k + r) % n, k % 3 == 0 ? (k + 1) % n : -1, 2 * gprojt_uniform(seed) - 1);
         gprojt_twin_add(&t, 1, n, term, gprojt_uniform(seed), r == 3 ? 0 : r == 4 ? 2 : 1);
     }
     free(term);
@@ -750,6 +777,7 @@ int main(void) {
     GPROJT_RUN(rows_and_weights_are_replaced);
     GPROJT_RUN(group_info);
     GPROJT_RUN(gradients_by_finite_differences);
+    GPROJT_RUN(gradients_that_overflow);
     GPROJT_RUN(refusals);
     GPROJT_RUN(refuses_nan_in_set_row);
     GPROJT_RUN(no_object);

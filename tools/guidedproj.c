@@ -398,7 +398,7 @@ static const tool_option options[] = {
      "left out)",
      set_reference, PLACE(reference)},
     {0, "closeness", "W", false,
-     "stay near the original places. Where nothing else is wished, 0.03*0.5:6 is; --closeness 0 turns that off", NULL,
+     "stay near the original places. Where nothing else is wished, 0.03*0.3:5 is; --closeness 0 turns that off", NULL,
      set_wish, PLACE(closeness)},
     {0, "fairness", "W", false, "smooth polylines of edges", NULL, set_wish, PLACE(fairness)},
     {0, "boundary-fairness", "W", false, "smooth boundary", NULL, set_wish, PLACE(boundary_fairness)},
@@ -407,9 +407,9 @@ static const tool_option options[] = {
     {0, "gauss", "W", false, "smooth Gauss image: face normals change evenly", NULL, set_wish, PLACE(gauss)},
 
     {0, "iterations", "N", false, "at most so many (12)", "how", set_iterations, PLACE(iterations)},
-    {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-12)", NULL, set_positive,
+    {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
-    {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-6 to 1e-3)", NULL,
+    {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", NULL,
      set_positive, PLACE(epsilon)},
     {0, "time-limit", "SECONDS", false, "stop after the iteration that passes this", NULL, set_positive,
      PLACE(time_limit)},
@@ -569,6 +569,12 @@ static bool check_options(tool *t) {
                     "--fairness 0.2)");
     if (t->view_given && !t->output[OUTPUT_PICTURE].path)
         return fail(t, EXIT_USAGE, "--view is for a picture: add --picture FILE.svg");
+    if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
+        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
+    if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
+    if (t->gauss.given && !t->planar.given)
+        return fail(t, EXIT_USAGE, "--gauss needs the normals of planar faces: add --planar");
     return true;
 }
 
@@ -1313,7 +1319,7 @@ static void report_result(json *j, const tool *t) {
     json_integer(j, "iterations", result->iterations);
     json_integer(j, "damped", result->damped);
     json_number(j, "residual", result->residual);
-    json_number(j, "tolerance", t->tolerance > 0 ? t->tolerance : 1e-12);
+    json_number(j, "tolerance", result->tolerance);
     json_number(j, "last_step", result->step);
     if (result->worst_group >= 0) {
         gproj_group_info group = gproj_system_group_info(gproj_form_system(t->form), result->worst_group);
@@ -1338,6 +1344,7 @@ static void report_measures(json *j, const char *key, const gproj_measures *m) {
     json_integer(j, "folded_edges", m->folded_edges);
     json_integer(j, "bow_tie_faces", m->bow_tie_faces);
     json_integer(j, "degenerate_faces", m->degenerate_faces);
+    json_integer(j, "collapsed_edges", m->collapsed_edges);
     json_number(j, "gauss_variation", m->gauss_variation);
     json_number(j, "mean_edge", m->mean_edge);
     json_number(j, "min_edge", m->min_edge);
@@ -1480,12 +1487,14 @@ static void print_summary(const tool *t) {
     printf("%s\n", t->result.message);
     printf("planarity     %.2e -> %.2e largest, %.2e -> %.2e mean (mean edge lengths)\n", b->planarity_max,
            a->planarity_max, b->planarity_mean, a->planarity_mean);
-    printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding box\n", a->displacement_mean,
-           a->deviation_max);
-    printf("faces         %ld turned over, %ld -> %ld folded edges, %ld -> %ld bow-ties\n", (long)a->turned_faces,
-           (long)b->folded_edges, (long)a->folded_edges, (long)b->bow_tie_faces, (long)a->bow_tie_faces);
-    printf("seconds       %.3f (%ld iterations in %.3f)\n", now(NULL) - t->start, (long)t->result.iterations,
-           t->solve_seconds);
+    printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
+           a->displacement_mean, a->deviation_max);
+    printf("faces         %ld turned over, %ld -> %ld bow-ties\n", (long)a->turned_faces, (long)b->bow_tie_faces,
+           (long)a->bow_tie_faces);
+    printf("edges         %ld -> %ld folded, %ld -> %ld collapsed\n", (long)b->folded_edges, (long)a->folded_edges,
+           (long)b->collapsed_edges, (long)a->collapsed_edges);
+    printf("seconds       %.3f, of these %.3f for %ld iteration%s\n", now(NULL) - t->start, t->solve_seconds,
+           (long)t->result.iterations, t->result.iterations == 1 ? "" : "s");
 }
 
 /* ---- main ---- */
