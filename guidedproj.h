@@ -2,9 +2,10 @@
    Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
 
    WHAT IT DOES
-     Take a polygon mesh and say what must hold (flat panels, boundaries on curves, fixed vertices, constraints of your
-     own) and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all constraints
-     together to machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
+     Take a polygon mesh and say what must hold (flat or circular panels, boundaries on curves, fixed vertices, a
+     volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like steps the mesh
+     satisfies all constraints together to machine precision, and you get an honest verdict: what holds, how exactly,
+     and where it does not.
      Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
      and projection onto any system of quadratic equations.
 
@@ -626,15 +627,18 @@ typedef struct gproj_measures {
     /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the
        mesh. */
     double planarity_max, planarity_mean;
-    int32_t planarity_face;              /* where the largest is; -1 without faces */
-    double diagonal_max;                 /* quads: distance of the lines through the diagonals, in mean edge lengths */
+    int32_t planarity_face; /* where the largest is; -1 without faces */
+    double circularity_max; /* of faces with more than 3 sides: largest difference of the distances of a face's vertices
+                               from its circumcentre, in mean edge lengths */
+    double area_spread;     /* standard deviation of the face areas over their mean */
+    double diagonal_max;    /* quads: distance of the lines through the diagonals, in mean edge lengths */
     double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
     double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
     int32_t turned_faces;                /* vectorial area against the one of the original face */
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
     int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal of its plane */
     int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
-    int32_t collapsed_edges;             /* shorter than 1e-6 mean edges */
+    int32_t collapsed_edges;             /* not longer than 1e-6 mean edges */
     /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
        normals, as a sum of triangle areas about its mean. */
     double gauss_variation;
@@ -643,6 +647,8 @@ typedef struct gproj_measures {
 /* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
    `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
+/* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
+GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
@@ -688,6 +694,18 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
 /* Every boundary vertex glides along the original of its boundary loop; corners stay. */
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 
+/* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
+   c_k on the axis of the circle with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are
+   variables that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k.
+   A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (collapsed_edges of
+   gproj_measure). */
+GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
+/* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
+   positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
+   triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
+   iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
+GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
+
 /* -- what is wished -- */
 
 /* Closeness to the original: v_i = p_i. */
@@ -706,6 +724,12 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
 /* Fairness of the Gauss image: the differences of face normals with those of the neighbouring faces, projected to the
    plane orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight);
+
+/* Quads are parallelograms: v_1 - v_2 + v_3 - v_4 = 0 (paper, Figure 8). */
+GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight);
+/* All faces have the same, unknown area: |a_k| = A, a_k the vectorial area; linearised anew in each iteration (paper
+   3.5). */
+GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
 /* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
@@ -4053,7 +4077,7 @@ struct gproj_system {
     double *saved;         /* x before the step */
     double *residual;      /* work of refinement and of the low-rank update */
     double *correction;    /* the same */
-    double *wide_response; /* wide_count columns A^-1 (w g) */
+    double *wide_response; /* wide_count columns A^-1 (w g), and one for the right-hand side */
     double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
     double *wide_vector;   /* wide_count */
     size_t wide_taken;     /* wide_count when the three were taken */
@@ -4104,7 +4128,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
     gproji_give(&s->own, s->residual, n, sizeof *s->residual);
     gproji_give(&s->own, s->correction, n, sizeof *s->correction);
-    gproji_give(&s->own, s->wide_response, s->wide_taken * n, sizeof *s->wide_response);
+    gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
     s->node = s->node_first = s->node_stride = s->position = NULL;
@@ -4733,9 +4757,9 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
-    if (n > 0 && k > SIZE_MAX / 2 / sizeof(double) / n) return false;
+    if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
     s->wide_taken = k;
-    s->wide_response = (double *)gproji_take(&s->own, k * n, sizeof *s->wide_response);
+    s->wide_response = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
     s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
     return s->wide_response && s->wide_matrix && s->wide_vector;
@@ -4957,19 +4981,20 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     return index;
 }
 
-/* Column `index` of A^-1 U, and the entries of I + U' A^-1 U that columns 0..index give. */
-GPROJI_INTERNAL void gproji_wide_response(gproj_system *s, const gproji_group *g, const gproji_row *row,
+/* Column `index` of U. */
+GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    double *column = s->wide_response + (int64_t)s->variable_count * index;
+    memset(column, 0, (size_t)s->variable_count * sizeof *column);
+    gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
+}
+
+/* Row `index` of I + U'A^-1 U, up to the diagonal. */
+GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           int32_t index) {
-    int64_t n = s->variable_count;
-    double *column = s->wide_response + n * index;
-    double weight = sqrt(gproji_weight2(g, row));
+    double *out = s->wide_matrix + (int64_t)index * s->wide_count, weight = sqrt(gproji_weight2(g, row));
     int32_t k;
-    memset(column, 0, (size_t)n * sizeof *column);
-    gproji_row_add(g, row, weight, column);
-    gproj_cholesky_solve(s->cholesky, 1, column, column);
     for (k = 0; k <= index; ++k)
-        s->wide_matrix[(int64_t)index * s->wide_count + k] =
-            weight * gproji_row_times(g, row, s->wide_response + n * k) + (k == index);
+        out[k] = weight * gproji_row_times(g, row, s->wide_response + (int64_t)s->variable_count * k) + (k == index);
 }
 
 GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
@@ -5004,16 +5029,63 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* The correction of s->step from s->residual = r: see above. `wide`: columns of U with a weight. */
-GPROJI_INTERNAL void gproji_solve_factored(gproj_system *s, int32_t wide) {
+/* correction = c - A^-1 U m from correction = c: see above. `wide`: columns of U. */
+GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide) {
     int64_t n = s->variable_count, i;
     int32_t k;
-    gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
     if (wide == 0) return;
     gproji_for_wide_rows(s, gproji_wide_project);
     gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
     for (k = 0; k < wide; ++k)
         for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
+}
+
+/* The step with the factor of A. The columns of U and the right-hand side are solved for together, which costs little
+   more than one of them. Returns the number of wide rows. */
+GPROJI_INTERNAL int32_t gproji_solve_step(gproj_system *s) {
+    size_t n = (size_t)s->variable_count, v;
+    int32_t wide = gproji_for_wide_rows(s, gproji_wide_column);
+    double *last = s->wide_response + n * (size_t)wide;
+    for (v = 0; v < n; ++v) last[v] = -s->gradient[v];
+    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
+    gproji_for_wide_rows(s, gproji_wide_products);
+    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
+    memset(s->step, 0, n * sizeof *s->step);
+    memcpy(s->correction, last, n * sizeof *last);
+    gproji_wide_correct(s, wide);
+    memcpy(s->step, s->correction, n * sizeof *s->step);
+    return wide;
+}
+
+/* correction += U m at this step. */
+GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    (void)index;
+    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->correction);
+}
+
+/* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
+GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
+    double left = 0, size = 0;
+    int32_t v;
+    gproji_matrix_times(s, epsilon, s->step, s->residual);
+    memset(s->correction, 0, (size_t)s->variable_count * sizeof *s->correction);
+    gproji_for_wide_rows(s, gproji_wide_pull);
+    for (v = 0; v < s->variable_count; ++v) {
+        s->residual[v] = -s->gradient[v] - s->residual[v];
+        left = gproji_fmax(left, fabs(s->residual[v] - s->correction[v]));
+        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->correction[v]));
+    }
+    return left <= 1e-9 * size;
+}
+
+/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. */
+GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, int32_t rounds) {
+    int32_t v;
+    while (wide > 0 && rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
+        gproji_wide_correct(s, wide);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
+    }
 }
 
 /* ============================================================================================================
@@ -5024,17 +5096,17 @@ GPROJI_INTERNAL void gproji_solve_factored(gproj_system *s, int32_t wide) {
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx):
-   - while wishes guide, a step that would raise the merit is shortened to the t of smallest merit;
-   - without wishes a step that raises the merit is found again with a larger eps, as in the method of Levenberg (1944)
-     and Marquardt (1963); and where the merit goes on falling beyond t = 1, as it does near singular points of the
-     constraints, the step is lengthened. */
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
+   raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
+   in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
+   goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
+   needed. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
 enum {
     GPROJI_ATTEMPTS = 8,    /* factorisations of one iteration */
     GPROJI_PATIENCE = 5,    /* iterations without progress before the loop stops */
-    GPROJI_REFINEMENTS = 2, /* rounds for systems with wide rows */
+    GPROJI_REFINEMENTS = 3, /* rounds at most for systems with wide rows */
     GPROJI_LINE_SAMPLES = 40
 };
 
@@ -5173,7 +5245,6 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    int32_t wide, v, round;
     gproj_factor_outcome outcome;
     gproji_assemble(s, epsilon);
     gproji_merit_gradient(s);
@@ -5182,18 +5253,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (outcome != GPROJ_FACTORED) return false;
-    wide = gproji_for_wide_rows(s, gproji_wide_response);
-    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
-    for (v = 0; v < s->variable_count; ++v) s->residual[v] = -s->gradient[v];
-    memset(s->step, 0, (size_t)s->variable_count * sizeof *s->step);
-    gproji_solve_factored(s, wide);
-    memcpy(s->step, s->correction, (size_t)s->variable_count * sizeof *s->step);
-    for (round = 0; wide > 0 && round < GPROJI_REFINEMENTS; ++round) {
-        gproji_matrix_times(s, epsilon, s->step, s->residual);
-        for (v = 0; v < s->variable_count; ++v) s->residual[v] = -s->gradient[v] - s->residual[v];
-        gproji_solve_factored(s, wide);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
-    }
+    gproji_refine_step(s, gproji_solve_step(s), epsilon, GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -5403,7 +5463,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
     const char *plural = r->iterations == 1 ? "" : "s", *more = "";
     int32_t second = gproji_second_group(loop);
-    char fight[3 * GPROJ_NAME_SIZE];
+    char fight[3 * GPROJ_NAME_SIZE], element[GPROJ_NAME_SIZE];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
@@ -5418,9 +5478,11 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
         gproji_format(fight, sizeof fight, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
         more = fight;
     }
-    gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s, %s %d)%s",
-                  gproji_outcome_string(r->outcome), r->iterations, plural, r->residual, g->name,
-                  gproji_place_word(g->place), r->worst_element, more);
+    element[0] = 0;
+    if (g->place != GPROJ_PLACE_NONE)
+        gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
+    gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
+                  gproji_outcome_string(r->outcome), r->iterations, plural, r->residual, g->name, element, more);
 }
 
 /* A result that carries an error's sentence. */
@@ -7844,6 +7906,48 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     return worst;
 }
 
+/* The point in the plane of a face that is, in the least-squares sense, on the perpendicular bisectors of all its
+   edges: with d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e, in the plane's coordinates. False
+   where the face has no such point (its edges are parallel). */
+GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *position, int32_t face,
+                                         const double mean[3], const double normal[3], double out[3]) {
+    double u[3], v[3], e[3], m[3], uu = 0, uv = 0, vv = 0, bu = 0, bv = 0, determinant, along, eu, ev;
+    int32_t h = mesh->face_halfedge[face], k, i;
+    gproji_tangents3(normal, u, v);
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+        const double *a = position + 3 * (size_t)mesh->origin[h],
+                     *b = position + 3 * (size_t)mesh->origin[mesh->next[h]];
+        gproji_sub3(b, a, e);
+        for (i = 0; i < 3; ++i) m[i] = (a[i] + b[i]) / 2 - mean[i];
+        eu = gproji_dot3(e, u);
+        ev = gproji_dot3(e, v);
+        along = eu * gproji_dot3(m, u) + ev * gproji_dot3(m, v);
+        uu += eu * eu, uv += eu * ev, vv += ev * ev;
+        bu += eu * along, bv += ev * along;
+    }
+    gproji_copy3(mean, out);
+    determinant = uu * vv - uv * uv;
+    if (!(determinant > 1e-12 * (uu + vv) * (uu + vv))) return false;
+    gproji_add_scaled3((bu * vv - bv * uv) / determinant, u, out);
+    gproji_add_scaled3((bv * uu - bu * uv) / determinant, v, out);
+    return true;
+}
+
+/* The largest difference of the distances of a face's vertices from its circumcentre; infinite without one. */
+GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
+                                               const double normal[3]) {
+    double centre[3], least = HUGE_VAL, most = 0;
+    int32_t h = mesh->face_halfedge[face], k;
+    if (mesh->face_degree[face] == 3) return 0;
+    if (!gproji_circumcentre(mesh, mesh->position, face, mean, normal, centre)) return HUGE_VAL;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+        double distance = gproji_distance3(gproji_corner_position(mesh, h), centre);
+        least = gproji_fmin(least, distance);
+        most = gproji_fmax(most, distance);
+    }
+    return most - least;
+}
+
 /* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
    the vector that joins them over the area they span. */
 GPROJI_INTERNAL double gproji_diagonal_distance(const gproj_mesh *mesh, int32_t face) {
@@ -7916,7 +8020,7 @@ GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures
 }
 
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
-    double unit = m->mean_edge > 0 ? m->mean_edge : 1;
+    double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area;
     int32_t f;
     m->planarity_face = mesh->face_count ? 0 : -1;
     for (f = 0; f < mesh->face_count; ++f) {
@@ -7926,6 +8030,8 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
         m->area += area;
+        squares += area * area;
+        m->circularity_max = gproji_fmax(m->circularity_max, gproji_face_circularity(mesh, f, mean, normal) / unit);
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
@@ -7939,6 +8045,9 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
             m->diagonal_max = gproji_fmax(m->diagonal_max, gproji_diagonal_distance(mesh, f) / unit);
         if (planarity) planarity[f] = flatness;
     }
+    mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
+    if (mean_area > 0)
+        m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
 }
 
 /* The area of the spherical polygon of the normals around an interior vertex, as a fan of plane triangles about their
@@ -7967,6 +8076,63 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
         h = mesh->twin[mesh->prev[h]];
     } while (h != start);
     return sum;
+}
+
+/* The volume of one triangle of the mesh: a closed mesh, the tetrahedron with the origin, det(a, b, c) / 6; else the
+   prism over the plane z = -height, its area seen from above times its mean height. With `gradient` (9 numbers: of a,
+   b, c) the derivatives times `scale` are added to it. */
+GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], bool closed, double height, double scale,
+                                              double *const gradient[3]) {
+    double cross[3], seen, mean;
+    int32_t k;
+    if (closed) {
+        for (k = 0; gradient && k < 3; ++k) {
+            gproji_cross3(corner[(k + 1) % 3], corner[(k + 2) % 3], cross);
+            gproji_add_scaled3(scale / 6, cross, gradient[k]);
+        }
+        gproji_cross3(corner[1], corner[2], cross);
+        return gproji_dot3(corner[0], cross) / 6;
+    }
+    seen = 0;
+    mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
+    for (k = 0; k < 3; ++k) {
+        const double *a = corner[k], *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
+        seen += (a[0] * b[1] - a[1] * b[0]) / 2;
+        if (!gradient) continue;
+        gradient[k][0] += scale * mean * (b[1] - c[1]) / 2;
+        gradient[k][1] += scale * mean * (c[0] - b[0]) / 2;
+    }
+    for (k = 0; gradient && k < 3; ++k) gradient[k][2] += scale * seen / 3;
+    return seen * mean;
+}
+
+/* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height; adds `scale` times its
+   derivatives to `gradient`, 3 numbers a vertex, unless that is NULL. */
+GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
+                                     double *gradient) {
+    bool closed = mesh->loop_count == 0;
+    double sum = 0, *slope[3];
+    const double *corner[3];
+    int32_t f, k, h;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t start = mesh->face_halfedge[f];
+        for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
+            size_t vertex[3];
+            vertex[0] = (size_t)mesh->origin[start];
+            vertex[1] = (size_t)mesh->origin[h];
+            vertex[2] = (size_t)mesh->origin[mesh->next[h]];
+            for (k = 0; k < 3; ++k) {
+                corner[k] = position + 3 * vertex[k];
+                slope[k] = gradient ? gradient + 3 * vertex[k] : NULL;
+            }
+            sum += gproji_triangle_volume(corner, closed, height, scale, gradient ? slope : NULL);
+        }
+    }
+    return sum;
+}
+
+GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
+    return mesh ? gproji_volume(mesh, mesh->position, 0, 1, NULL) : 0;
 }
 
 GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count) {
@@ -8040,6 +8206,8 @@ typedef struct gproji_part {
     int32_t curve_count;          /* curves of its own, in internal units */
     gproj_curve **own_curve;
     int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
+    double target;     /* the volume, internal units */
+    double *gradient;  /* of the volume: 3 numbers a vertex of the mesh */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
 } gproji_part;
 
@@ -8052,6 +8220,7 @@ struct gproj_form {
     double centre[3], scale;
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
     int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
+    int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
     double *area;     /* work: the vectorial area of each face */
     int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
     int32_t ring_size;
@@ -8069,6 +8238,7 @@ GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
     for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
     gproji_give(&form->own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
     gproji_give(&form->own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
+    gproji_give(&form->own, part->gradient, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
     gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
     gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
     gproji_give(&form->own, part, 1, sizeof *part);
@@ -8086,6 +8256,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     if (form->mesh) {
         gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
         gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
+        gproji_give(&form->own, form->axis, (size_t)form->mesh->face_count, sizeof *form->axis);
         gproji_give(&form->own, form->area, 3 * (size_t)form->mesh->face_count, sizeof *form->area);
         gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
     }
@@ -8952,6 +9123,181 @@ GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t
     return gproj_system_group_info(form ? form->system : NULL, group);
 }
 
+/* -- shapes of faces, areas, volume -- */
+
+/* Where the axis points of circular faces start: the circumcentre at the system's x, else the mean. */
+GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    double mean[3] = {0, 0, 0}, normal[3];
+    int32_t h = mesh->face_halfedge[face], k;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
+    gproji_face_normal(form, face, normal);
+    gproji_circumcentre(mesh, x, face, mean, normal, out);
+}
+
+/* The row |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 of an edge, c the variables from `axis` on. */
+GPROJI_INTERNAL void gproji_add_axis_row(gproj_form *form, int32_t group, int32_t face, int32_t axis,
+                                         int32_t halfedge) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t i = 3 * mesh->origin[halfedge], j = 3 * mesh->origin[mesh->next[halfedge]], k;
+    gproj_term term[12];
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[4 * k], j + k, j + k, 0.5);
+        gproji_set_term(&term[4 * k + 1], i + k, i + k, -0.5);
+        gproji_set_term(&term[4 * k + 2], axis + k, j + k, -1);
+        gproji_set_term(&term[4 * k + 3], axis + k, i + k, 1);
+    }
+    gproj_system_add_row(form->system, group, 12, term, 0, face);
+}
+
+GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
+    int32_t group, f, k, h;
+    if (!gproji_form_ready(form)) return -1;
+    if (!form->axis) {
+        form->axis = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->face_count, sizeof *form->axis);
+        if (!form->axis) {
+            gproji_fail_memory(&form->error);
+            return -1;
+        }
+        for (f = 0; f < form->mesh->face_count; ++f) form->axis[f] = -1;
+    }
+    group = gproji_new_group(form, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    gproji_update_areas(form);
+    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
+        double start[3];
+        if (form->mesh->face_degree[f] == 3) continue;
+        gproji_start_axis_point(form, f, start);
+        if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
+        h = form->mesh->face_halfedge[f];
+        for (k = 0; k < form->mesh->face_degree[f] && gproji_form_ready(form); ++k, h = form->mesh->next[h])
+            gproji_add_axis_row(form, group, f, form->axis[f], h);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
+    int32_t group, f, k, c;
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    for (f = 0; f < form->mesh->face_count; ++f) {
+        gproj_term term[4];
+        if (form->mesh->face_degree[f] != 4) continue;
+        for (k = 0; k < 3; ++k) {
+            int32_t h = form->mesh->face_halfedge[f];
+            for (c = 0; c < 4; ++c, h = form->mesh->next[h])
+                gproji_set_term(&term[c], 3 * form->mesh->origin[h] + k, -1, c % 2 ? -1 : 1);
+            gproj_system_add_row(form->system, group, 4, term, 0, f);
+        }
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* The row |a(v)| + grad |a|'(v' - v) - A = 0 of each face: d|a| / dv_i = (v_(i+1) - v_(i-1)) x a / (2 |a|). */
+GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
+    static const double none[3] = {0, 0, 0};
+    gproj_form *form = ((const gproji_part *)user)->form;
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(system);
+    int32_t f, k, c, count;
+    gproji_update_areas(form);
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproj_term *term = gproji_row_terms(system, group, f, &count);
+        int32_t h = mesh->face_halfedge[f];
+        double normal[3], across[3], slope[3], constant;
+        gproji_copy3(form->area + 3 * (size_t)f, normal);
+        constant = gproji_length3(normal);
+        gproji_normalise3(normal, none);
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            const double *v = x + 3 * (size_t)mesh->origin[h];
+            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]],
+                        across);
+            gproji_cross3(across, normal, slope);
+            for (c = 0; c < 3; ++c) term[3 * k + c].a = slope[c] / 2;
+            constant -= gproji_dot3(slope, v) / 2;
+        }
+        gproj_system_set_row(system, group, f, NULL, constant);
+    }
+}
+
+GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
+    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    gproj_term *term = part ? gproji_take_terms(form) : NULL;
+    int32_t common, f, k, c, h;
+    double area = 0;
+    if (!term) return -1;
+    gproji_update_areas(form);
+    for (f = 0; f < form->mesh->face_count; ++f)
+        area += gproji_length3(form->area + 3 * (size_t)f) / form->mesh->face_count;
+    common = gproj_system_add_variables(form->system, 1, 1, &area);
+    part->group =
+        gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
+    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
+        int32_t degree = form->mesh->face_degree[f];
+        h = form->mesh->face_halfedge[f];
+        for (k = 0; k < degree; ++k, h = form->mesh->next[h])
+            for (c = 0; c < 3; ++c) gproji_set_term(&term[3 * k + c], 3 * form->mesh->origin[h] + c, -1, 0);
+        gproji_set_term(&term[3 * degree], common, -1, -1);
+        gproj_system_add_row(form->system, part->group, 3 * degree + 1, term, 0, f);
+    }
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* The row (V(v) + grad V'(v' - v) - volume) / area; the terms are those of all vertices in order. */
+GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    gproj_form *form = part->form;
+    const double *x = gproj_system_values(system);
+    double height = form->centre[2] * form->scale, area = 0, constant;
+    int32_t count, t, f;
+    gproj_term *term = gproji_row_terms(system, group, 0, &count);
+    gproji_update_areas(form);
+    for (f = 0; f < form->mesh->face_count; ++f) area += gproji_length3(form->area + 3 * (size_t)f);
+    area = gproji_fmax(area, 1e-12);
+    memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
+    constant = (gproji_volume(form->mesh, x, height, 1 / area, part->gradient) - part->target) / area;
+    for (t = 0; t < count; ++t) {
+        term[t].a = part->gradient[t];
+        constant -= part->gradient[t] * x[t];
+    }
+    gproj_system_set_row(system, group, 0, NULL, constant);
+}
+
+GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
+    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    size_t count;
+    gproj_term *term;
+    gproj_group group;
+    int32_t t;
+    if (!part) return -1;
+    if (!gproji_is_finite(volume)) {
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
+        return -1;
+    }
+    count = 3 * (size_t)form->mesh->vertex_count;
+    part->target = volume * form->scale * form->scale * form->scale;
+    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
+    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
+    if (!term) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    memset(&group, 0, sizeof group);
+    group.name = "volume";
+    group.kind = GPROJ_CONSTRAINT;
+    group.global = true;
+    group.schedule.weight = weight;
+    group.refresh = gproji_refresh_volume;
+    group.refresh_user = part;
+    part->group = gproj_system_add_group(form->system, &group);
+    for (t = 0; t < (int32_t)count; ++t) gproji_set_term(&term[t], t, -1, 0);
+    gproj_system_add_row(form->system, part->group, (int32_t)count, term, 0, 0);
+    gproji_give(&form->own, term, count, sizeof *term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
 /* -- the guard: a face must not lose its area -- */
 
 /* On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
@@ -9093,6 +9439,8 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     gproji_update_areas(form);
     for (i = 0; i < form->mesh->face_count; ++i)
         if (form->normal[i] >= 0) gproji_face_normal(form, i, x + form->normal[i]);
+    for (i = 0; form->axis && i < form->mesh->face_count; ++i)
+        if (form->axis[i] >= 0) gproji_start_axis_point(form, i, x + form->axis[i]);
 }
 
 /* The mesh's positions = x; a vertex that has not moved keeps its coordinates to the bit. */
@@ -9161,6 +9509,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
         if (form->system->group[g].guard) continue;
+        if (form->system->group[g].global && info.schedule.weight > 0) return true; /* such as a volume */
         for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
             const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
             if (gproji_row_holds(form, term, count)) return true;

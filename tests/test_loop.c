@@ -74,9 +74,8 @@ GPROJT_TEST(sphere_and_planes) {
     GPROJT_NEAR(gproj_system_values(s)[2], 1, 1e-12);
     GPROJT_NEAR(gproj_system_values(s)[0] + gproj_system_values(s)[1], 2, 1e-12);
     gprojt_check_quadratic(&watch);
-    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 &&
-                 watch.seen[0].epsilon == gproji_epsilon_max);
-    GPROJT_CHECK(watch.seen[watch.count - 1].epsilon == gproji_epsilon_min); /* it follows the residual */
+    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 && watch.seen[0].epsilon == 1e-3);
+    GPROJT_CHECK(watch.seen[watch.count - 1].epsilon == 1e-5); /* it follows the residual */
     GPROJT_CHECK(watch.seen[watch.count - 1].residual == result.residual && watch.seen[0].energy == 0);
     gproj_system_destroy(s);
 }
@@ -126,7 +125,7 @@ GPROJT_TEST(stalled_names_both_groups) {
     GPROJT_NEAR(gproj_system_values(s)[0], 0.5, 1e-6);
     GPROJT_NEAR(result.residual, 0.5, 1e-6);
     GPROJT_CHECK(strstr(result.message, "'zero'") && strstr(result.message, "'one'"));
-    GPROJT_CHECK(strstr(result.message, "work against each other") && strstr(result.message, "of vertex 4"));
+    GPROJT_CHECK(strstr(result.message, "work against each other") && strstr(result.message, ", vertex 4"));
     GPROJT_CHECK(result.worst_element == 40 + result.worst_group);
     gproj_system_destroy(s);
 }
@@ -135,7 +134,10 @@ GPROJT_TEST(iteration_limit) {
     gproj_system *s = gprojt_conflict();
     gproj_result result = gproj_system_solve(s, 2, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 2);
-    GPROJT_CHECK(strstr(result.message, "after 2 iterations") && strstr(result.message, "allow more iterations"));
+    GPROJT_CHECK(!strncmp(
+        result.message, "the iterations ran out before all constraints held: 2 iterations, largest residual 0.5", 85));
+    GPROJT_CHECK(strstr(result.message, ", vertex 4") &&
+                 strstr(result.message, "); allow more iterations, or ask for less"));
     result = gproj_system_solve(s, 0, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 0 && result.step == 0);
     gproj_system_destroy(s);
@@ -410,37 +412,137 @@ GPROJT_TEST(steps_that_raise_the_merit_are_damped) {
     gproj_system_destroy(s);
 }
 
-/* At a double root Newton halves; the lengthened step reaches it. */
+/* At a double root Newton halves; the lengthened step reaches it, from where all constraints nearly hold. */
 GPROJT_TEST(steps_are_lengthened_near_singular_points) {
-    gproj_system *s = gprojt_square_plus(1, 0);
+    gproj_system *s = gprojt_square_plus(0.09, 0);
     gprojt_watch watch;
     gproj_solve_options options;
     gproj_result result;
+    int32_t n, first = -1;
     memset(&watch, 0, sizeof watch);
     options = gprojt_watched(&watch);
-    options.tolerance = 1e-12; /* nearer to the root the gradient is less than eps */
+    options.tolerance = 2.5e-11; /* nearer to the root the gradient 2 x is less than eps */
     result = gproj_system_solve(s, 60, &options);
-    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations < 15);
-    GPROJT_CHECK(watch.seen[0].length > 1.3 && watch.seen[0].length <= 2);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 2); /* halving takes 14 */
+    GPROJT_CHECK(watch.seen[0].length > 1.3 && watch.seen[0].length <= 2 && watch.seen[0].residual < 1e-6);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(1, 0); /* from afar: full steps until the residual is 1e-2, then a longer one */
+    options = gprojt_watched(&watch);
+    options.tolerance = 2.5e-11;
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 6);
+    for (n = 0; first < 0 && n < watch.count; ++n) {
+        double before = n ? watch.seen[n - 1].residual : 1;
+        GPROJT_CHECK((watch.seen[n].length == 1) == (before > 1e-2));
+        if (watch.seen[n].length > 1) first = n;
+    }
+    GPROJT_CHECK(first > 0 && watch.seen[first].length >= 1.3);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(0.09, 0); /* a wish that is on keeps steps at their length */
+    gprojt_add_group(s, "wish", GPROJ_WISH, 1e-5);
+    gprojt_add_linear(s, 1, 0, 1, 0, 0);
+    options = gprojt_watched(&watch);
+    options.tolerance = 1e-12;
+    gproj_system_solve(s, 4, &options);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].length == 1);
+    GPROJT_CHECK(watch.count > 1);
     gproj_system_destroy(s);
 }
 
-/* A wish guides: a step may raise the merit, but not tenfold. */
-GPROJT_TEST(wishes_shorten_wild_steps) {
+/* A simple root is reached by full steps alone: nothing is gained by longer ones. */
+GPROJT_TEST(steps_are_not_lengthened_without_need) {
+    gproj_system *s = gprojt_square_plus(1.004, -1);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    int32_t n;
+    memset(&watch, 0, sizeof watch);
+    options = gprojt_watched(&watch);
+    GPROJT_CHECK(gproj_system_solve(s, 20, &options).outcome == GPROJ_CONVERGED);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].length == 1 && watch.seen[n].attempts == 1);
+    gproj_system_destroy(s);
+}
+
+/* A full step that raises the merit, by much or by little, with a wish or without: it is shortened to where the merit
+   is smallest, here the root. */
+GPROJT_TEST(wild_steps_are_shortened_to_the_smallest_merit) {
+    static const double starts[4] = {0.2, 0.4, -0.3, -0.42};
+    int i;
+    for (i = 0; i < 8; ++i) {
+        double x = starts[i / 2], full = x + (1 - x * x) / (2 * x), reached;
+        gproj_system *s = gprojt_square_plus(x, -1);
+        gprojt_watch watch;
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&watch, 0, sizeof watch);
+        GPROJT_CHECK(fabs(full * full - 1) > 1 - x * x);
+        if (i % 2) {
+            gprojt_add_group(s, "wish", GPROJ_WISH, 1e-4);
+            gprojt_add_linear(s, 1, 0, 1, 0, 0);
+            gproj_system_set_schedule(s, 1, gprojt_schedule(1e-4, 1, 3));
+        }
+        options = gprojt_watched(&watch);
+        options.epsilon = 1e-5;
+        result = gproj_system_solve(s, 30, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped >= 1);
+        GPROJT_CHECK(watch.seen[0].length < 1 && watch.seen[0].attempts == 1);
+        reached = x + watch.seen[0].length * (full - x);
+        GPROJT_NEAR(fabs(reached), 1, 1e-6);
+        GPROJT_NEAR(watch.x[0], reached, 1e-6);
+        GPROJT_CHECK(watch.seen[0].merit < 1e-7);
+        if (i % 2 == 0) GPROJT_CHECK(watch.seen[0].merit < 1e-24); /* the minimum to rounding */
+        GPROJT_CHECK((watch.seen[0].energy > 0) == (i % 2 == 1) && watch.seen[watch.count - 1].energy == 0);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Where the whole line rises, or falls only within a twentieth of the step, a larger eps finds another one. */
+GPROJT_TEST(a_larger_epsilon_where_no_length_is_good) {
     gproj_system *s = gprojt_square_plus(0.01, -1); /* the full step goes to 50 */
     gprojt_watch watch;
     gproj_solve_options options;
     gproj_result result;
+    int32_t n;
     memset(&watch, 0, sizeof watch);
     gprojt_add_group(s, "wish", GPROJ_WISH, 1e-4);
     gprojt_add_linear(s, 1, 0, 1, 0, 0);
     options = gprojt_watched(&watch);
     gproj_system_set_schedule(s, 1, gprojt_schedule(1e-4, 1, 3));
-    result = gproj_system_solve(s, 30, &options);
+    result = gproj_system_solve(s, 40, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped >= 1);
-    GPROJT_CHECK(watch.seen[0].length < 1 && watch.seen[0].attempts == 1);
-    GPROJT_CHECK(watch.seen[0].energy > 0 && watch.seen[watch.count - 1].energy == 0);
+    GPROJT_CHECK(watch.seen[0].attempts > 1 && watch.seen[0].epsilon > 9 * gproji_epsilon_max);
+    for (n = 0; n < watch.count; ++n) {
+        double before = n ? watch.seen[n - 1].merit : 1;
+        GPROJT_CHECK(watch.seen[n].merit <= before || before < 1e-15);
+    }
     gproj_system_destroy(s);
+}
+
+/* The minimum along a line: no sample is lower, and the slope vanishes there to rounding. */
+GPROJT_TEST(quartics_are_minimised) {
+    static const double wells[5] = {1.0 / 3, 0.05, 0.7071067811865476, 1.2345678901234567, 1.9999};
+    uint64_t seed = 77;
+    int i, k;
+    for (i = 0; i < 5; ++i) { /* (t - a)^2, and (t^2 - a^2)^2 */
+        double a = wells[i], parabola[5] = {0, 0, 1, 0, 0}, well[5] = {0, 0, 0, 0, 1};
+        parabola[0] = a * a, parabola[1] = -2 * a;
+        well[0] = a * a * a * a, well[2] = -2 * a * a;
+        GPROJT_NEAR(gproji_minimise_quartic(parabola, 0.05, 2), a, 4e-16);
+        GPROJT_NEAR(gproji_minimise_quartic(well, 0.05, 2), a, 4e-15);
+        GPROJT_NEAR(gproji_minimise_quartic(parabola, 0.05, 1), fmin(a, 1), 4e-16);
+    }
+    for (i = 0; i < 500; ++i) { /* sums of squares of quadratics, as merits are */
+        double c[5] = {0, 0, 0, 0, 0}, low = i % 2 ? 0.05 : 0.1, high = i % 2 ? 1 : 2, t, least = HUGE_VAL;
+        for (k = 0; k < 3; ++k) {
+            double p = 2 * gprojt_uniform(&seed) - 1, h = 4 * gprojt_uniform(&seed) - 2,
+                   q = 4 * gprojt_uniform(&seed) - 2;
+            c[0] += p * p, c[1] += 2 * p * h, c[2] += h * h + 2 * p * q, c[3] += 2 * h * q, c[4] += q * q;
+        }
+        t = gproji_minimise_quartic(c, low, high);
+        GPROJT_CHECK(t >= low && t <= high);
+        for (k = 0; k <= 4000; ++k) least = fmin(least, gproji_quartic(c, low + k * (high - low) / 4000));
+        GPROJT_CHECK(gproji_quartic(c, t) <= least + 1e-14);
+        if (t > low && t < high) GPROJT_NEAR(gproji_quartic_slope(c, t), 0, 1e-13);
+    }
 }
 
 /* -- schedules -- */
@@ -542,10 +644,9 @@ GPROJT_TEST(epsilon_given_and_followed) {
     s = gprojt_square_plus(1, -4);
     options = gprojt_watched(&watch);
     gproj_system_solve(s, 20, &options);
-    GPROJT_CHECK(watch.seen[0].epsilon == gproji_epsilon_max);
+    GPROJT_CHECK(watch.seen[0].epsilon == 1e-3);
     for (n = 1; n < watch.count; ++n)
-        GPROJT_NEAR(watch.seen[n].epsilon,
-                    fmin(fmax(watch.seen[n - 1].residual, gproji_epsilon_min), gproji_epsilon_max), 1e-15);
+        GPROJT_NEAR(watch.seen[n].epsilon, fmin(fmax(watch.seen[n - 1].residual, 1e-5), 1e-3), 1e-15);
     gproj_system_destroy(s);
 }
 
@@ -558,11 +659,22 @@ GPROJT_TEST(tolerance_follows_the_size_of_x) {
     gprojt_add_linear(s, 0, 0, 1.0 / 3, -1e6 / 3, 0);
     result = gproj_system_solve(s, 9, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual < 2e-9);
+    GPROJT_NEAR(result.tolerance, 8 * DBL_EPSILON * 1e6, 1e-14); /* at the x of the end, not at the one of the start */
     gproj_system_values(s)[0] = 1e6 + 0.3;
     memset(&options, 0, sizeof options);
     options.tolerance = 0.2;
     result = gproj_system_solve(s, 9, &options);
-    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0 && result.tolerance == 0.2);
+    gproj_system_set_row(s, 0, 0, NULL, -1); /* from 1e6 to 3: the tolerance shrinks on the way */
+    result = gproj_system_solve(s, 30, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.tolerance == 1e-13 && result.residual <= 1e-13);
+    GPROJT_NEAR(gproj_system_values(s)[0], 3, 1e-12);
+    gproj_system_set_row(s, 0, 0, NULL, -1e6); /* and grows */
+    result = gproj_system_solve(s, 30, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    GPROJT_NEAR(result.tolerance, 8 * DBL_EPSILON * 3e6, 1e-14);
+    gproj_system_set_schedule(s, 0, gprojt_schedule(0, 0, 0));
+    GPROJT_NEAR(gproj_system_solve(s, 3, NULL).tolerance, 8 * DBL_EPSILON * 3e6, 1e-14); /* nothing must hold */
     gproj_system_destroy(s);
 }
 
@@ -575,19 +687,26 @@ GPROJT_TEST(wishes_alone) {
     gprojt_add_linear(s, 0, 0, 1, -2, 0);
     result = gproj_system_solve(s, 40, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.worst_group == -1 && result.worst_element == -1);
-    GPROJT_CHECK(strstr(result.message, "there are no constraints"));
+    {
+        char sentence[GPROJ_MESSAGE_SIZE];
+        snprintf(sentence, sizeof sentence, "there is nothing that must hold; %d iterations towards the wishes",
+                 result.iterations);
+        GPROJT_CHECK(result.iterations > 1 && !strcmp(result.message, sentence));
+    }
     GPROJT_NEAR(gproj_system_values(s)[0], 1.5, 1e-9);
     GPROJT_CHECK(gproj_system_values(s)[1] == -5);
     gproj_system_destroy(s);
 }
 
 GPROJT_TEST(words_for_every_place) {
-    static const gproj_place places[] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE, GPROJ_PLACE_VARIABLE,
-                                         GPROJ_PLACE_NONE};
-    static const char *const words[] = {"pull of vertex 17", "pull of edge 17", "pull of face 17",
-                                        "pull of variable 17", "pull of element 17"};
+    static const gproj_place places[] = {GPROJ_PLACE_VERTEX,   GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE,
+                                         GPROJ_PLACE_VARIABLE, GPROJ_PLACE_ROW,  GPROJ_PLACE_NONE};
+    static const char *const words[] = {
+        "largest residual 1 (pull, vertex 17)",  "largest residual 1 (pull, edge 17)",
+        "largest residual 1 (pull, face 17)",    "largest residual 1 (pull, variable 17)",
+        "largest residual 1 (pull, element 17)", "largest residual 1 (pull)"};
     int i;
-    for (i = 0; i < 5; ++i) {
+    for (i = 0; i < 6; ++i) {
         gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
         gproj_group group;
         memset(&group, 0, sizeof group);
@@ -597,6 +716,151 @@ GPROJT_TEST(words_for_every_place) {
         GPROJT_CHECK(strstr(gproj_system_solve(s, 0, NULL).message, words[i]) != NULL);
         gproj_system_destroy(s);
     }
+}
+
+/* The sentences in full. */
+GPROJT_TEST(sentences) {
+    static const double x[2] = {3, 5};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gprojt_watch watch;
+    gproj_solve_options options;
+    gproj_result result;
+    GPROJT_CHECK(!strcmp(gproj_system_solve(s, 0, NULL).message,
+                         "there is nothing that must hold; 0 iterations towards the wishes"));
+    gprojt_add_group(s, "pull", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 0, 0, 1, -1, 4);
+    result = gproj_system_solve(s, 0, NULL);
+    GPROJT_CHECK(!strcmp(result.message, "the iterations ran out before all constraints held: 0 iterations, largest "
+                                         "residual 2 (pull, vertex 4); allow more iterations, or ask for less"));
+    memset(&watch, 0, sizeof watch);
+    watch.cancel_at = 1;
+    options = gprojt_watched(&watch);
+    options.epsilon = 1; /* half of the way */
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(!strcmp(result.message, "cancelled by the caller: 1 iteration, largest residual 1 (pull, vertex 4)"));
+    gproj_system_values(s)[0] = 1;
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(!strcmp(result.message,
+                         "all constraints hold to the tolerance: 0 iterations, largest residual 0 (pull, vertex 4)"));
+    gproj_system_destroy(s);
+    s = gprojt_conflict();
+    result = gproj_system_solve(s, 50, NULL);
+    GPROJT_CHECK(!strncmp(result.message,
+                          "no step makes the constraints hold better: they conflict, or this is a "
+                          "minimum: ",
+                          80));
+    GPROJT_CHECK(strstr(result.message, "; 'zero' and 'one' work against each other") ||
+                 strstr(result.message, "; 'one' and 'zero' work against each other"));
+    gproj_system_destroy(s);
+}
+
+/* -- what a callback changes -- */
+
+/* Does `what` after iteration `at`. */
+typedef struct gprojt_change {
+    int32_t at, what;
+    double constant;
+} gprojt_change;
+
+enum {
+    GPROJT_CHANGE_ROW,
+    GPROJT_CHANGE_ROW_WEIGHT,
+    GPROJT_CHANGE_SCHEDULE,
+    GPROJT_CHANGES
+};
+
+static bool gprojt_change_something(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    const gprojt_change *c = (const gprojt_change *)user;
+    if (iteration->number != c->at) return true;
+    if (c->what == GPROJT_CHANGE_ROW) gproj_system_set_row(s, 1, 0, NULL, c->constant);
+    if (c->what == GPROJT_CHANGE_ROW_WEIGHT) gproj_system_set_row_weight(s, 1, 0, 1);
+    if (c->what == GPROJT_CHANGE_SCHEDULE) gproj_system_set_schedule(s, 1, gprojt_schedule(1, 0, 0));
+    return true;
+}
+
+/* x_0 = 1 at once, and a second row x_1 = 7 that holds as `what` leaves it, until the callback changes that. */
+static gproj_system *gprojt_changing(int what) {
+    static const double x[2] = {0, 0};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gprojt_add_group(s, "first", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "second", GPROJ_CONSTRAINT, what == GPROJT_CHANGE_SCHEDULE ? 0 : 1);
+    gprojt_add_linear(s, 0, 0, 1, -1, 0);
+    gprojt_add_linear(s, 1, 1, 1, what == GPROJT_CHANGE_ROW ? 0 : -7, 1);
+    if (what == GPROJT_CHANGE_ROW_WEIGHT) gproj_system_set_row_weight(s, 1, 0, 0);
+    return s;
+}
+
+/* "All constraints hold" is said of the rows as the callback left them: when iterations go on, and after the last. */
+GPROJT_TEST(changes_of_a_callback_are_judged) {
+    int what, at, limit;
+    for (what = 0; what < GPROJT_CHANGES; ++what) {
+        for (at = 1; at <= 3; ++at) {
+            for (limit = at; limit <= 20; limit += 20 - at) {
+                gproj_system *s = gprojt_changing(what);
+                gprojt_change change;
+                gproj_solve_options options;
+                gproj_result result;
+                double off;
+                memset(&options, 0, sizeof options);
+                change.at = at, change.what = what, change.constant = -7;
+                options.on_iteration = gprojt_change_something, options.user = &change;
+                options.epsilon = 1e-3;
+                options.tolerance = at == 1 ? 0 : 1e-10; /* eps^2 of the way is left in each step: 1, 1e-6, 1e-12 */
+                result = gproj_system_solve(s, limit, &options);
+                off = fmax(fabs(gproj_system_values(s)[0] - 1),
+                           result.iterations >= at ? fabs(gproj_system_values(s)[1] - 7) : 0);
+                if ((result.outcome == GPROJ_CONVERGED) != (off <= result.tolerance) ||
+                    fabs(result.residual - off) > 1e-12) {
+                    printf("  change %d after iteration %d of %d: %s, but %g\n", what, at, limit, result.message, off);
+                    GPROJT_CHECK(!"judged as it is");
+                }
+                if (at == 1) GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (limit > at));
+                gproj_system_destroy(s);
+            }
+        }
+    }
+}
+
+/* The loop is about to stop because nothing helps, and then the callback takes the conflict away. */
+static bool gprojt_make_peace(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    if (iteration->number == *(const int32_t *)user) gproj_system_set_row(s, 1, 0, NULL, 0);
+    return true;
+}
+
+GPROJT_TEST(changes_of_a_callback_come_before_stalling) {
+    int32_t at, stalls;
+    gproj_system *s = gprojt_conflict();
+    stalls = gproj_system_solve(s, 50, NULL).iterations;
+    gproj_system_destroy(s);
+    GPROJT_CHECK(stalls > 1);
+    for (at = 1; at <= stalls; ++at) {
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&options, 0, sizeof options);
+        options.on_iteration = gprojt_make_peace, options.user = &at;
+        s = gprojt_conflict();
+        result = gproj_system_solve(s, 50, &options);
+        if (result.outcome != GPROJ_CONVERGED) printf("  after iteration %d of %d: %s\n", at, stalls, result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        gproj_system_destroy(s);
+    }
+}
+
+/* As many iterations as can be asked for. */
+GPROJT_TEST(int32_max_iterations) {
+    static const double start[1] = {5};
+    gproj_system *s = gprojt_conflict();
+    GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_STALLED);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(3, -4);
+    GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_CONVERGED);
+    gproj_system_destroy(s);
+    s = gprojt_system(NULL, 1, 1, start); /* a wish for ever */
+    gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
+    gprojt_add_linear(s, 0, 0, 1, -1, 0);
+    gproj_system_set_schedule(s, 0, gprojt_schedule(0.1, 1, INT32_MAX));
+    GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_CONVERGED);
+    gproj_system_destroy(s);
 }
 
 /* -- memory and workers -- */
@@ -696,13 +960,20 @@ int main(void) {
     GPROJT_RUN(not_positive_definite);
     GPROJT_RUN(steps_that_raise_the_merit_are_damped);
     GPROJT_RUN(steps_are_lengthened_near_singular_points);
-    GPROJT_RUN(wishes_shorten_wild_steps);
+    GPROJT_RUN(steps_are_not_lengthened_without_need);
+    GPROJT_RUN(wild_steps_are_shortened_to_the_smallest_merit);
+    GPROJT_RUN(a_larger_epsilon_where_no_length_is_good);
+    GPROJT_RUN(quartics_are_minimised);
     GPROJT_RUN(schedules);
     GPROJT_RUN(a_group_goes_and_comes_back);
     GPROJT_RUN(epsilon_given_and_followed);
     GPROJT_RUN(tolerance_follows_the_size_of_x);
     GPROJT_RUN(wishes_alone);
     GPROJT_RUN(words_for_every_place);
+    GPROJT_RUN(sentences);
+    GPROJT_RUN(changes_of_a_callback_are_judged);
+    GPROJT_RUN(changes_of_a_callback_come_before_stalling);
+    GPROJT_RUN(int32_max_iterations);
     GPROJT_RUN(no_allocation_after_the_first_iteration);
     GPROJT_RUN(same_bits_for_all_workers);
     return gprojt_report();

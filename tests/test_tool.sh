@@ -101,7 +101,7 @@ expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
 expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
-for later in --circular --conical --equilibrium --compressive --equal-areas --volume=2 --supports=boundary \
+for later in --conical --equilibrium --compressive --supports=boundary \
     --subdivide=1 --nearest --forces=a.csv --offset=1,a.obj --density=1; do
     expect 2 "there is no option $(echo "$later" | sed 's/=.*//')" grid.obj -o new.obj --planar $later
 done
@@ -136,7 +136,18 @@ expect 2 "two inputs" grid.obj big.obj -o new.obj --planar
 expect 2 "same path" grid.obj -o new.obj --planar --report ./new.obj
 expect 2 "same path" grid.obj -o new.obj --planar --report new.svg --picture new.svg
 expect 2 "would overwrite the input" grid.obj -o new.obj --planar --report grid.obj
-expect 2 "would overwrite the input" grid.obj -o new.obj --planar --reference big.obj --picture big.obj
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --reference big.obj --report big.obj
+cp grid.obj roof.svg # an input by another name: a picture would overwrite it
+expect 2 "would overwrite the input" roof.svg -o new.obj --planar --picture roof.svg
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --reference roof.svg --picture roof.svg
+rm roof.svg
+expect 2 "the picture 'big.obj' must end in .svg" grid.obj -o new.obj --planar --picture big.obj
+expect 2 "must end in .svg" grid.obj -o new.obj --planar --picture new
+expect 2 "must end in .svg" grid.obj -o new.obj --planar --picture .svg
+expect 2 "--report writes to a file" grid.obj -o new.obj --planar --report -
+expect 2 "--report writes to a file" grid.obj -o new.obj --planar --report=-
+expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1
+expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1 --fairness 0.1 --fix boundary
 expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
@@ -225,6 +236,7 @@ assert r['mesh']['edges'] == 144 and r['mesh']['boundary_loops'] == 1 and r['mes
 assert r['variables'] == 3 * 81 + 3 * 64 and r['rows'] == sum(g['rows'] for g in r['groups'])
 assert r['result']['outcome'] == 'converged' and r['result']['exit_code'] == 0
 assert len(r['iterations']) == r['result']['iterations'] and r['result']['residual'] <= 1e-12
+assert 1e-13 <= r['result']['tolerance'] <= 1e-12 and r['result']['residual'] <= r['result']['tolerance']
 assert [i['number'] for i in r['iterations']] == list(range(1, len(r['iterations']) + 1))
 assert close(r['iterations'][-1]['planarity_max'], r['measures']['planarity_max'], 1e-3)
 assert all(len(i['groups']) == len(r['groups']) for i in r['iterations'])
@@ -273,6 +285,9 @@ run --planar --iterations=20 -o after.obj -- grid.obj
 run grid.obj -o few.obj --planar --iterations 1 --report few.json
 [ $status -eq 1 ] && [ -s few.obj ] && grep -q '"exit_code": 1' few.json && pass ||
     fail "too few iterations exit with $status"
+run grid.obj -o loose.obj --planar --tolerance 0.25e-3 --report loose.json
+[ $status -eq 0 ] && grep -qE '"tolerance": (0.00025|2.5e-0?4),?$' loose.json && pass ||
+    fail "the report does not tell the tolerance that was asked for"
 run big.obj -o late.obj --planar --time-limit 1e-9 --report late.json
 [ $status -eq 1 ] && grep -q '"time out"' late.json && pass || fail "--time-limit: exits with $status"
 run grid.obj -o wish.obj --fairness 0.2

@@ -58,6 +58,11 @@ typedef struct tool_word { /* the value of --fix, --glide, --reference: a word o
     tool_weight weight;
 } tool_word;
 
+typedef struct tool_volume { /* an absolute one, or a factor of the input's */
+    bool given, factor;
+    double value;
+} tool_volume;
+
 typedef struct tool_move {
     int32_t vertex;
     double position[3], weight;
@@ -91,7 +96,9 @@ typedef struct tool {
     /* what the command line says */
     const char *input;
     tool_output output[OUTPUT_COUNT];
-    tool_weight planar, closeness, fairness, boundary_fairness, tangential, gauss;
+    tool_weight planar, circular, closeness, fairness, boundary_fairness, tangential, gauss, parallelograms,
+        equal_areas;
+    tool_volume volume;
     tool_word *fix, *glide; /* as many as the command line has words, at most */
     tool_move *move;
     int32_t fix_count, glide_count, move_count;
@@ -266,6 +273,20 @@ static bool set_wish(tool *t, void *place, const char *name, const char *value) 
         name, value);
 }
 
+/* A wish whose value may be left out: then it has weight 1. */
+static bool set_wish_or_one(tool *t, void *place, const char *name, const char *value) {
+    return set_wish(t, place, name, value ? value : "1");
+}
+
+static bool set_volume(tool *t, void *place, const char *name, const char *value) {
+    tool_volume *volume = (tool_volume *)place;
+    volume->given = true;
+    volume->factor = value[0] == 'x';
+    if (read_number(value + volume->factor, strlen(value + volume->factor), &volume->value)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a volume, or x and a factor of the input's volume (as in x1.2)", name,
+                value);
+}
+
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
     if (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) return true;
     return fail(t, EXIT_USAGE, "--%s %s: expected a number larger than 0", name, value);
@@ -383,6 +404,10 @@ static const tool_option options[] = {
 
     {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
      PLACE(planar)},
+    {0, "circular", "[=W]", false, "faces have a circumcircle (with --planar)", NULL, set_must, PLACE(circular)},
+    {0, "volume", "V", false,
+     "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's", NULL,
+     set_volume, PLACE(volume)},
     {0, "fix", "WHICH[=W]", true,
      "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
      NULL, add_fix, 0},
@@ -405,6 +430,10 @@ static const tool_option options[] = {
     {0, "tangential", "W", false, "smooth polylines, as seen along the surface's normals", NULL, set_wish,
      PLACE(tangential)},
     {0, "gauss", "W", false, "smooth Gauss image: face normals change evenly", NULL, set_wish, PLACE(gauss)},
+    {0, "parallelograms", "[=W]", false, "quads are like parallelograms (W: 1 if left out)", NULL, set_wish_or_one,
+     PLACE(parallelograms)},
+    {0, "equal-areas", "[=W]", false, "faces have equal areas (W: 1 if left out)", NULL, set_wish_or_one,
+     PLACE(equal_areas)},
 
     {0, "iterations", "N", false, "at most so many (12)", "how", set_iterations, PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
@@ -554,7 +583,7 @@ static bool has_ending(const char *path, const char *ending) {
 static bool anything_asked(const tool *t) {
     return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
-           t->gauss.given;
+           t->gauss.given || t->circular.given || t->volume.given || t->parallelograms.given || t->equal_areas.given;
 }
 
 static bool check_options(tool *t) {
@@ -949,6 +978,9 @@ static void add_energies(tool *t) {
     if (t->tangential.weight > 0)
         add_wish(t, &t->tangential, gproj_add_tangential_fairness(form, t->tangential.weight));
     if (t->gauss.weight > 0) add_wish(t, &t->gauss, gproj_add_gauss_fairness(form, t->gauss.weight));
+    if (t->parallelograms.weight > 0)
+        add_wish(t, &t->parallelograms, gproj_add_parallelograms(form, t->parallelograms.weight));
+    if (t->equal_areas.weight > 0) add_wish(t, &t->equal_areas, gproj_add_equal_areas(form, t->equal_areas.weight));
 }
 
 /* The groups stand in the form in the order of the table, whatever their order on the command line. */
@@ -957,6 +989,9 @@ static bool build_form(tool *t) {
     t->form = gproj_form_create(t->mesh, &t->host);
     if (!t->form) return fail_memory(t);
     if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
+    if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
+    if (t->volume.given)
+        gproj_add_volume(t->form, t->volume.factor ? t->volume.value * gproj_volume(t->mesh) : t->volume.value, 1);
     for (i = 0; i < t->fix_count; ++i)
         if (!add_fixed(t, &t->fix[i])) return false;
     for (i = 0; i < t->glide_count; ++i)
@@ -1337,6 +1372,8 @@ static void report_measures(json *j, const char *key, const gproj_measures *m) {
     json_number(j, "planarity_mean", m->planarity_mean);
     json_integer(j, "planarity_face", m->planarity_face);
     json_number(j, "diagonal_distance_max", m->diagonal_max);
+    json_number(j, "circularity_max", m->circularity_max);
+    json_number(j, "area_spread", m->area_spread);
     json_number(j, "deviation_max", m->deviation_max);
     json_number(j, "deviation_rms", m->deviation_rms);
     json_number(j, "displacement_mean", m->displacement_mean);

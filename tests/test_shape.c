@@ -1,0 +1,259 @@
+/* test_shape.c - >>form: circular faces, parallelograms, equal areas, volume; and their measures. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+enum {
+    TUBE = 5,
+    CUBE_SPHERE = 6,
+    TORUS = 4
+};
+
+/* The largest distance of a face's vertices from the circle through its first three, computed apart from the library. */
+static double gprojt_off_circle(const gproj_mesh *mesh, int32_t face) {
+    const double *p[64];
+    double a[3], b[3], n[3], c[3], t[3], u[3], nn, radius, worst = 0;
+    int32_t h = mesh->face_halfedge[face], k, i;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) p[k] = mesh->position + 3 * mesh->origin[h];
+    for (i = 0; i < 3; ++i) a[i] = p[0][i] - p[2][i], b[i] = p[1][i] - p[2][i];
+    gproji_cross3(a, b, n);
+    nn = gproji_dot3(n, n);
+    /* circumcentre of a triangle: c = p2 + ((|a|^2 b - |b|^2 a) x (a x b)) / (2 |a x b|^2) */
+    for (i = 0; i < 3; ++i) t[i] = gproji_dot3(a, a) * b[i] - gproji_dot3(b, b) * a[i];
+    gproji_cross3(t, n, u);
+    for (i = 0; i < 3; ++i) c[i] = p[2][i] + u[i] / (2 * nn);
+    radius = gproji_distance3(p[0], c);
+    for (k = 3; k < mesh->face_degree[face]; ++k) {
+        double d[3];
+        gproji_sub3(p[k], c, d);
+        worst = fmax(worst, fmax(fabs(gproji_length3(d) - radius), fabs(gproji_dot3(d, n)) / sqrt(nn)));
+    }
+    return worst;
+}
+
+GPROJT_TEST(circular_faces) {
+    static const int shapes[] = {1, 2, TORUS, TUBE};
+    int i;
+    for (i = 0; i < 4; ++i) {
+        int shape = shapes[i];
+        gproj_mesh *mesh = gprojt_noisy(shape, 6, 0.05, 11);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        double worst = 0;
+        int32_t f;
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK(gproj_add_circularity(form, 1) >= 0);
+        GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+        result = gproj_solve(form, 30, NULL);
+        for (f = 0; f < mesh->face_count; ++f) worst = fmax(worst, gprojt_off_circle(mesh, f));
+        if (result.outcome != GPROJ_CONVERGED || !(worst < 1e-10))
+            printf("    shape %d: worst %g; %s\n", shape, worst, result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && worst < 1e-10);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).circularity_max < 1e-9);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).collapsed_edges == 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+GPROJT_TEST(circular_real_meshes) {
+    static const char *const names[] = {"eyeye_circular.obj", "formfinding-circular.obj"};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        char path[512];
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        double worst = 0;
+        int32_t f;
+        snprintf(path, sizeof path, "%s/%s", gprojt_data_folder(), names[i]);
+        mesh = gproj_mesh_load(path, NULL, NULL);
+        if (!mesh) GPROJT_SKIP("the folder of real meshes is not there");
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_circularity(form, 1);
+        result = gproj_solve(form, 12, NULL);
+        for (f = 0; f < mesh->face_count; ++f) worst = fmax(worst, gprojt_off_circle(mesh, f));
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && worst / gproj_mesh_mean_edge_length(mesh) < 1e-9);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Known volumes: a box, a prism over the plane; and the derivatives against central differences. */
+GPROJT_TEST(volumes) {
+    static const double box[24] = {0, 0, 0, 2, 0, 0, 2, 3, 0, 0, 3, 0, 0, 0, 4, 2, 0, 4, 2, 3, 4, 0, 3, 4};
+    static const int32_t degree[6] = {4, 4, 4, 4, 4, 4};
+    static const int32_t corner[24] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+    gproj_mesh *closed = gproj_mesh_create(8, box, 6, degree, corner, NULL, NULL);
+    gproj_mesh *open = gproj_mesh_create(8, box, 1, degree, corner + 4, NULL, NULL), *mesh[2];
+    int i;
+    GPROJT_REQUIRE(closed && open);
+    GPROJT_NEAR(gproj_volume(closed), 24, 1e-12);
+    GPROJT_NEAR(gproj_volume(open), 24, 1e-12);
+    GPROJT_CHECK(gproj_volume(NULL) == 0);
+    mesh[0] = gprojt_noisy(CUBE_SPHERE, 3, 0.2, 5);
+    mesh[1] = gprojt_noisy(0, 4, 0.2, 6);
+    for (i = 0; i < 2; ++i) {
+        int32_t n = 3 * mesh[i]->vertex_count, k;
+        double *gradient = (double *)calloc((size_t)n, sizeof *gradient), *x = mesh[i]->position;
+        gproji_volume(mesh[i], x, 0.5, 2, gradient);
+        for (k = 0; k < n; ++k) {
+            double kept = x[k], up, down;
+            x[k] = kept + 1e-5;
+            up = gproji_volume(mesh[i], x, 0.5, 1, NULL);
+            x[k] = kept - 1e-5;
+            down = gproji_volume(mesh[i], x, 0.5, 1, NULL);
+            x[k] = kept;
+            GPROJT_NEAR(gradient[k], 2 * (up - down) / 2e-5, 1e-8);
+        }
+        free(gradient);
+        gproj_mesh_destroy(mesh[i]);
+    }
+    gproj_mesh_destroy(closed);
+    gproj_mesh_destroy(open);
+}
+
+GPROJT_TEST(volume_is_reached) {
+    static const int shapes[] = {TORUS, CUBE_SPHERE, 0};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shapes[i], 6, 0.02, 3);
+        double wanted;
+        gproj_form *form;
+        gproj_result result;
+        int32_t v;
+        for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] += 7; /* off the plane z = 0 */
+        wanted = 1.2 * gproj_volume(mesh);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK(gproj_add_volume(form, wanted, 1) >= 0);
+        result = gproj_solve(form, 20, NULL);
+        if (result.outcome != GPROJ_CONVERGED) printf("    shape %d: %s\n", shapes[i], result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(gproj_volume(mesh) / wanted, 1, 1e-12);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).planarity_max < 1e-12);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Wishes: what they measure becomes better, with planar faces all the same. */
+GPROJT_TEST(areas_become_more_equal) {
+    gproj_mesh *mesh = gprojt_noisy(0, 8, 0.15, 4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double before = gproj_measure(mesh, NULL, NULL).area_spread, after;
+    gproj_result result;
+    gproj_add_planarity(form, 1);
+    gproj_add_gliding_boundary(form, 1);
+    GPROJT_CHECK(gproj_add_equal_areas(form, 0.2) >= 0);
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+    result = gproj_solve(form, 20, NULL);
+    after = gproj_measure(mesh, NULL, NULL).area_spread;
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && after < 0.7 * before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+static double gprojt_parallelogram_error(const gproj_mesh *mesh) {
+    double sum = 0;
+    int32_t f, i;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
+        for (i = 0; i < 3; ++i) {
+            double e = mesh->position[3 * mesh->origin[a] + i] - mesh->position[3 * mesh->origin[b] + i] +
+                       mesh->position[3 * mesh->origin[c] + i] - mesh->position[3 * mesh->origin[d] + i];
+            sum += e * e;
+        }
+    }
+    return sqrt(sum / mesh->face_count);
+}
+
+GPROJT_TEST(quads_become_parallelograms) {
+    gproj_mesh *mesh = gprojt_noisy(0, 8, 0.1, 4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double before = gprojt_parallelogram_error(mesh);
+    gproj_result result;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_corners(form, 1);
+    GPROJT_CHECK(gproj_add_parallelograms(form, 0.5) >= 0);
+    result = gproj_solve(form, 20, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_parallelogram_error(mesh) < 0.8 * before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The area row's derivatives: what it says at x + d against the area there, to second order. */
+GPROJT_TEST(area_rows_are_tangent) {
+    gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 3, 0.1, 8);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *s = gproj_form_system(form);
+    int32_t group = gproj_add_equal_areas(form, 1), f, v;
+    double *x = gproj_system_values(s), centre[3], scale;
+    uint64_t state = 2;
+    gproj_form_units(form, centre, &scale);
+    gproj_system_check_gradients(s); /* refreshes the rows */
+    for (v = 0; v < 3 * mesh->vertex_count; ++v) x[v] += 1e-4 * (2 * gprojt_uniform(&state) - 1);
+    for (v = 0; v < 3 * mesh->vertex_count; ++v) mesh->position[v] = x[v] / scale + centre[v % 3];
+    for (f = 0; f < mesh->face_count; ++f) {
+        double area[3];
+        gproj_mesh_face_area_vector(mesh, f, area);
+        GPROJT_NEAR(gproj_system_row_value(s, group, f, NULL) + x[gproj_system_variable_count(s) - 1],
+                    gproji_length3(area) * scale * scale, 1e-7);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(refusals) {
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    GPROJT_CHECK(gproj_add_volume(form, NAN, 1) == -1 && gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(gproj_add_circularity(form, 1) == -1 && gproj_add_parallelograms(form, 1) == -1);
+    GPROJT_CHECK(gproj_add_equal_areas(form, 1) == -1 && gproj_add_volume(NULL, 1, 1) == -1);
+    GPROJT_CHECK(gproj_add_circularity(NULL, 1) == -1 && gproj_add_equal_areas(NULL, 1) == -1);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 2, 0.05, 1);
+    double *before = gprojt_keep(mesh);
+    long fail_at;
+    for (fail_at = 1;; ++fail_at) {
+        gprojt_failing failing;
+        gproj_host host;
+        gproj_form *form;
+        gproj_result result;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = fail_at;
+        host = gprojt_failing_host(&failing);
+        form = gproj_form_create(mesh, &host);
+        gproj_add_planarity(form, 1);
+        gproj_add_circularity(form, 1);
+        gproj_add_volume(form, 1.1 * gproj_volume(mesh), 1);
+        gproj_add_equal_areas(form, 0.1);
+        gproj_add_parallelograms(form, 0.1);
+        result = gproj_solve(form, 3, NULL);
+        gproj_form_destroy(form);
+        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
+        if (failing.calls < fail_at) break;
+        GPROJT_REQUIRE(result.outcome == GPROJ_FAILED);
+        GPROJT_REQUIRE(memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before) == 0);
+    }
+    GPROJT_CHECK(fail_at > 30);
+    free(before);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(circular_faces);
+    GPROJT_RUN(circular_real_meshes);
+    GPROJT_RUN(volumes);
+    GPROJT_RUN(volume_is_reached);
+    GPROJT_RUN(areas_become_more_equal);
+    GPROJT_RUN(quads_become_parallelograms);
+    GPROJT_RUN(area_rows_are_tangent);
+    GPROJT_RUN(refusals);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
