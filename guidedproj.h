@@ -4062,7 +4062,7 @@ struct gproj_system {
     int32_t group_count;
     size_t group_capacity;
 
-    bool changed; /* a row got other numbers since the last evaluation */
+    bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     int32_t compiled_variables; /* the size of the arrays below */
@@ -4324,6 +4324,7 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group, "there is no group %d", group);
     if (!gproji_schedule_is_valid(schedule)) return gproji_fail_schedule(s, s->group[group].name, schedule);
     s->group[group].schedule = schedule;
+    s->changed = true;
     return GPROJ_OK;
 }
 
@@ -5409,9 +5410,17 @@ GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-    if (gproji_set_weights(s, n) || s->changed) gproji_linearise(loop);
+    if (gproji_set_weights(s, n)) gproji_linearise(loop);
     s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
     loop->standing = gproji_take_standing(s);
+}
+
+/* What the callback has changed counts before anything is judged. Returns whether there was something. */
+GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
+    if (!loop->system->changed) return false;
+    gproji_set_weights(loop->system, loop->result.iterations);
+    gproji_linearise(loop);
+    return true;
 }
 
 /* The iterations; returns how they ended. */
@@ -5431,11 +5440,11 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (loop->options.on_iteration && !loop->options.on_iteration(loop->options.user, s, &loop->iteration))
             return GPROJ_CANCELLED;
+        if (gproji_see_changes(loop)) best = HUGE_VAL;
         waited = loop->standing.residual < 0.9 * best || gproji_wishes_are_on(s) ? 0 : waited + 1;
         best = gproji_fmin(best, loop->standing.residual);
         if (waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
     }
-    if (s->changed) gproji_linearise(loop);
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
