@@ -700,6 +700,12 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
    A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (collapsed_edges of
    gproj_measure). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
+/* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
+   in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
+GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
+                                    double weight);
+/* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. */
+GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
    positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
@@ -5415,6 +5421,15 @@ GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_
     loop->standing = gproji_take_standing(s);
 }
 
+/* The caller's turn; its time belongs to no phase. False: stop. */
+GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
+    bool go_on = true;
+    if (loop->options.on_iteration)
+        go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
+    loop->lap = gproji_now(loop->system);
+    return go_on;
+}
+
 /* What the callback has changed counts before anything is judged. Returns whether there was something. */
 GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     if (!loop->system->changed) return false;
@@ -5438,8 +5453,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         if (!gproji_iterate(loop)) return gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
         gproji_report_iteration(loop, loop->result.iterations + 1);
-        if (loop->options.on_iteration && !loop->options.on_iteration(loop->options.user, s, &loop->iteration))
-            return GPROJ_CANCELLED;
+        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) best = HUGE_VAL;
         waited = loop->standing.residual < 0.9 * best || gproji_wishes_are_on(s) ? 0 : waited + 1;
         best = gproji_fmin(best, loop->standing.residual);
@@ -9130,6 +9144,77 @@ GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_s
 
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group) {
     return gproj_system_group_info(form ? form->system : NULL, group);
+}
+
+/* -- lengths of edges -- */
+
+/* Refuses lists that are no edges of the mesh. */
+GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
+    int32_t i, have = form->mesh->edge_count;
+    if (count < 0 || (!edges && count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d edges of %d", name, count, have);
+        return false;
+    }
+    for (i = 0; edges && i < count; ++i) {
+        if (edges[i] >= 0 && edges[i] < have) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edges[i],
+                    "%s: there is no edge %d (the mesh has %d, counted from 0)", name, edges[i], have);
+        return false;
+    }
+    return true;
+}
+
+/* The terms of scale |v_i - v_j|^2 for the ends of an edge: 9 of them. */
+GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
+    int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[3 * k], i + k, i + k, scale);
+        gproji_set_term(&term[3 * k + 1], j + k, j + k, scale);
+        gproji_set_term(&term[3 * k + 2], i + k, j + k, -2 * scale);
+    }
+}
+
+/* The length of an edge of the original, in internal units. */
+GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t edge) {
+    const int32_t *origin = form->mesh->origin + 2 * (size_t)edge;
+    return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
+}
+
+GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
+                                    double weight) {
+    int32_t group, k;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "lengths", count, edges)) return -1;
+    group = gproji_new_group(form, "lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    for (k = 0; k < count && gproji_form_ready(form); ++k) {
+        int32_t edge = edges ? edges[k] : k;
+        double length = lengths ? lengths[k] * form->scale : gproji_original_length(form, edge);
+        gproj_term term[9];
+        if (!(length > 0) || !gproji_is_finite(length)) {
+            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                        "lengths: edge %d would have the length %g, which is not > 0", edge, length / form->scale);
+            return -1;
+        }
+        gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
+        gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    int32_t group, common, k;
+    double mean = 0;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "equal lengths", count, edges)) return -1;
+    for (k = 0; k < count; ++k) mean += gproji_original_length(form, edges ? edges[k] : k) / count;
+    common = gproj_system_add_variables(form->system, 1, 1, &mean);
+    group = gproji_new_group(form, "equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    for (k = 0; k < count && gproji_form_ready(form); ++k) {
+        int32_t edge = edges ? edges[k] : k;
+        gproj_term term[10];
+        gproji_set_length_terms(form->mesh, edge, 0.5, term);
+        gproji_set_term(&term[9], common, common, -0.5);
+        gproj_system_add_row(form->system, group, 10, term, 0, edge);
+    }
+    return gproji_form_ready(form) ? group : -1;
 }
 
 /* -- shapes of faces, areas, volume -- */

@@ -204,6 +204,76 @@ GPROJT_TEST(area_rows_are_tangent) {
     gproj_mesh_destroy(mesh);
 }
 
+static double gprojt_length(const gproj_mesh *mesh, int32_t edge) {
+    return gprojt_far(mesh->position + 3 * mesh->origin[2 * edge], mesh->position + 3 * mesh->origin[2 * edge + 1]);
+}
+
+/* Lengths that were changed by noise come back; edges 0 and 5 become what is asked for. */
+GPROJT_TEST(lengths) {
+    static const int32_t edges[] = {0, 5};
+    gproj_mesh *mesh = gprojt_noisy(1, 6, 0.02, 9);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double wanted[2], *kept = (double *)malloc((size_t)mesh->edge_count * sizeof *kept);
+    gproj_result result;
+    int32_t e;
+    GPROJT_REQUIRE(kept);
+    for (e = 0; e < mesh->edge_count; ++e) kept[e] = gprojt_length(mesh, e);
+    gprojt_shake(mesh, 0.01, 5);
+    GPROJT_CHECK(gproj_add_lengths(form, mesh->edge_count, NULL, NULL, 1) >= 0);
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+    result = gproj_solve(form, 20, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(gprojt_length(mesh, e), kept[e], 1e-12);
+    gproj_form_destroy(form);
+    form = gproj_form_create(mesh, NULL);
+    wanted[0] = 1.1 * kept[0];
+    wanted[1] = 0.9 * kept[5];
+    gproj_add_lengths(form, 2, edges, wanted, 1);
+    result = gproj_solve(form, 12, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    GPROJT_NEAR(gprojt_length(mesh, 0), wanted[0], 1e-12);
+    GPROJT_NEAR(gprojt_length(mesh, 5), wanted[1], 1e-12);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(kept);
+}
+
+GPROJT_TEST(equal_lengths) {
+    gproj_mesh *mesh = gprojt_noisy(0, 6, 0.1, 9);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double length;
+    gproj_result result;
+    int32_t e;
+    GPROJT_CHECK(gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1) >= 0);
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+    result = gproj_solve(form, 20, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    length = gprojt_length(mesh, 0);
+    GPROJT_CHECK(length > 0.01);
+    for (e = 1; e < mesh->edge_count; ++e) GPROJT_NEAR(gprojt_length(mesh, e), length, 1e-11);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(refusals_of_lengths) {
+    static const int32_t far[] = {0, 1000000};
+    static const double none[] = {0, 1};
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t group = i == 0   ? gproj_add_lengths(form, 2, far, NULL, 1)
+                        : i == 1 ? gproj_add_equal_lengths(form, -1, NULL, 1)
+                        : i == 2 ? gproj_add_lengths(form, 2, NULL, none, 1)
+                                 : gproj_add_equal_lengths(form, mesh->edge_count + 1, NULL, 1);
+        GPROJT_CHECK(group == -1);
+        GPROJT_CHECK(gproj_form_error(form)->code == (i == 0 ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT));
+        GPROJT_CHECK(i % 2 || gproj_form_error(form)->place == GPROJ_PLACE_EDGE);
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(refusals) {
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -233,6 +303,8 @@ GPROJT_TEST(every_allocation_fails_once) {
         gproj_add_volume(form, 1.1 * gproj_volume(mesh), 1);
         gproj_add_equal_areas(form, 0.1);
         gproj_add_parallelograms(form, 0.1);
+        gproj_add_lengths(form, 2, NULL, NULL, 1);
+        gproj_add_equal_lengths(form, 3, NULL, 1);
         result = gproj_solve(form, 3, NULL);
         gproj_form_destroy(form);
         GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
@@ -253,6 +325,9 @@ int main(void) {
     GPROJT_RUN(areas_become_more_equal);
     GPROJT_RUN(quads_become_parallelograms);
     GPROJT_RUN(area_rows_are_tangent);
+    GPROJT_RUN(lengths);
+    GPROJT_RUN(equal_lengths);
+    GPROJT_RUN(refusals_of_lengths);
     GPROJT_RUN(refusals);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
