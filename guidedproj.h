@@ -445,7 +445,7 @@ typedef struct gproj_solve_options {
 typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations;  /* steps taken */
-    int32_t damped;      /* of these, steps that were damped or shortened */
+    int32_t damped;      /* of these, steps that were damped, shortened or guarded */
     double residual;     /* largest |phi| of all constraint rows with weight > 0 */
     double tolerance;    /* what it was compared with */
     double step;         /* largest |dx| of the last step */
