@@ -79,7 +79,10 @@
        >>curve          polylines
        >>surface        reference surfaces
        >>measure        what a mesh is like
-       >>form           the catalogue of constraints and wishes
+       >>form           a mesh and its system
+       >>catalogue      the constraints and wishes
+       >>guard          faces must not turn over
+       >>solve          solving a form
 
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
@@ -8208,7 +8211,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
 }
 
 /* ============================================================================================================
-   >>form   A mesh, its system, and the catalogue of constraints and wishes. Uses all earlier sections.
+   >>form   A mesh and its system: life, units, and what all builders share. Uses all earlier sections.
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
@@ -8522,6 +8525,12 @@ GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex
 GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t vertex) {
     return gproji_select_boundary(form, vertex) && !gproj_form_is_corner(form, vertex);
 }
+
+/* ============================================================================================================
+   >>catalogue   The constraints and wishes of a form, one builder each. Uses all earlier sections.
+
+   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system;
+   those whose rows change with x have a refresh beside them. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
@@ -9392,13 +9401,15 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* -- the guard: a face must not lose its area -- */
+/* ============================================================================================================
+   >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
 
-/* On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
+   On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
    and two iterations longer, a face whose area along its normal falls below 0.4 of what it was gets a row that asks
    for that much, s (A(v)'n - 0.4 a0) = 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = 1 / sqrt(a0), and
    a step that would leave a face with less than 0.2 is found again with such a row. These rows act on the steps only:
-   they are no constraints, and the merit knows nothing of them. */
+   they are no constraints, and no part of residual and verdict. */
+
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_least = 0.2,
                     gproji_guard_area = 1e-4;
 enum {
@@ -9522,7 +9533,9 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
                            form->guard_area + 3 * (size_t)i);
 }
 
-/* -- solving -- */
+/* ============================================================================================================
+   >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses all earlier
+   sections. */
 
 /* x = the mesh's positions, and the normals of its faces as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
