@@ -76,6 +76,7 @@ for compiler in gcc clang; do
     have $compiler || continue
     for more in -DGPROJ_STATIC -DGPROJ_NO_SIMD -O3 '-mavx2 -mfma' -mavx512f; do
         case "$more $(uname -m)" in *x86_64) ;; -mavx*) continue ;; esac
+        case "$compiler $more" in 'clang -O3' | 'clang -mavx2 -mfma' | 'clang -DGPROJ_NO_SIMD') continue ;; esac
         job "$compiler -O2 $more" "$compiler -O2 $more $flags -std=c99 -I'$root' -c whole.c -o $compiler${more// /}.o"
     done
 done
