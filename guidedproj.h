@@ -9441,8 +9441,8 @@ GPROJI_INTERNAL void gproji_guard_face(gproj_form *form, const double *x, int32_
     int32_t group = form->guard->group, count, t, k;
     gproj_term *term = gproji_row_terms(form->system, group, index, &count);
     gproji_guard_normal(form, x, index, n);
-    for (t = 0; t < count;
-         t += 6) { /* one edge: the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
+    /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
+    for (t = 0; t < count; t += 6) {
         for (k = 0; k < 3; ++k) {
             term[t + 2 * k].a = 0.5 * n[(k + 2) % 3];
             term[t + 2 * k + 1].a = -0.5 * n[(k + 2) % 3];
@@ -9516,8 +9516,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     form->system->check_user = form;
 }
 
-/* Sets the guard for a solve in which wishes guide until iteration `guided` (0: none do, and it guards the first few).
-   */
+/* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
+   iterations. */
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
     gproj_schedule schedule;
     int32_t i;
@@ -9578,9 +9578,9 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
 GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
 
 /* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
-   most 5 times. Weaker or slower guidance moves the mesh less, but lets rounding of the input grow (0.5^n: ten times
-   more), and longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which
-   guidance ends, 0 without any. */
+   most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
+   longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
+   ends, 0 without any. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
     int32_t half = gproji_half(iterations), i;
@@ -9627,7 +9627,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
 
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     static const char shrinks[] =
-        "; nothing holds the mesh, so the fairness shrinks it: fix vertices or add a reference";
+        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
     gproj_result result;
     int32_t guided;
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))

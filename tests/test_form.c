@@ -1012,7 +1012,7 @@ GPROJT_TEST(wishes_fade_after_half) {
 }
 
 GPROJT_TEST(says_when_nothing_holds_the_mesh) {
-    static const char note[] = "nothing holds the mesh, so the fairness shrinks it";
+    static const char note[] = "nothing holds the mesh, so the wishes may shrink it";
     int i;
     for (i = 0; i < 7; ++i) {
         gproj_mesh *mesh = gprojt_noisy(i < 6 ? 6 : 0, 4, 0.02, 4);
