@@ -328,16 +328,23 @@ GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *choles
 
    Variables x, and rows
        phi(x) = sum_t a_t x_i(t) x_j(t) + sum_t b_t x_i(t) + c                                  (paper, eq. 1)
-   in groups. A group of kind GPROJ_CONSTRAINT must hold: phi = 0. A group of kind GPROJ_WISH guides: the sum of
-   its phi^2 should be small, and it fades so that the constraints can be met exactly. A group's weight
-   multiplies its rows, so it enters squared. One step from x solves                            (paper, eq. 3)
+   in groups. A group of kind GPROJ_CONSTRAINT must hold: phi = 0. A group of kind GPROJ_BOUND must hold, too, but
+   phi >= 0 is enough. A group of kind GPROJ_WISH guides: the sum of its phi^2 should be small, and it fades so that
+   the constraints can be met exactly. A group's weight multiplies its rows, so it enters squared. One step from x
+   solves                                                                                       (paper, eq. 3)
        (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi(x) g,    g = grad phi(x),
-   over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes. */
+   over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
+
+   The row of a bound counts by its violation, min(phi, 0), in residual and merit. It has a part in the sums where it is
+   violated; and where a step would violate it, by phi + g'dx, the step is found again with it, and without rows that
+   would only hold the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
+   iterations, and nothing where they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
 typedef enum gproj_kind {
-    GPROJ_CONSTRAINT,
-    GPROJ_WISH,
+    GPROJ_CONSTRAINT, /* phi = 0 must hold */
+    GPROJ_WISH,       /* phi = 0 is wished */
+    GPROJ_BOUND,      /* phi >= 0 must hold */
     GPROJ_KIND_FORCE_INT = 0x7fffffff
 } gproj_kind;
 
@@ -377,7 +384,8 @@ typedef struct gproj_group {
     void *refresh_user;
 } gproj_group;
 
-/* The state of a group at the current x, in the units of its rows, without weights. */
+/* The state of a group at the current x, in the units of its rows, without weights. phi stands for min(phi, 0) in a
+   bound: how far it is violated. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -418,13 +426,13 @@ typedef enum gproj_outcome {
 /* What one iteration did; given to the callback after it. */
 typedef struct gproj_iteration {
     int32_t number;   /* from 1 */
-    double residual;  /* largest |phi| of all constraint rows with weight > 0, after the step */
-    double merit;     /* sum of w^2 phi^2 over constraints and wishes, after the step */
+    double residual;  /* largest |phi| of all rows that must hold with weight > 0, after the step */
+    double merit;     /* sum of w^2 phi^2 over what must hold and wishes, after the step */
     double energy;    /* the wishes' part of it */
     double step;      /* largest |dx| */
     double epsilon;   /* the regularisation used */
     double length;    /* the part of the step that was taken: 1, or another where the merit asked for it */
-    int32_t attempts; /* factorisations: 1, or more where the step was damped or guarded */
+    int32_t attempts; /* factorisations: 1, or more where the step was damped, guarded or met bounds */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
 
@@ -448,11 +456,11 @@ typedef struct gproj_solve_options {
 typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations;  /* steps taken */
-    int32_t damped;      /* of these, steps that were damped, shortened or guarded */
-    double residual;     /* largest |phi| of all constraint rows with weight > 0 */
+    int32_t damped;      /* of these, steps that were damped, shortened, guarded or met bounds */
+    double residual;     /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;    /* what it was compared with */
     double step;         /* largest |dx| of the last step */
-    int32_t worst_group; /* where that residual is; -1 without constraints */
+    int32_t worst_group; /* where that residual is; -1 where nothing must hold */
     int32_t worst_element;
     double seconds[GPROJ_PHASE_COUNT];
     char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name */
@@ -1303,7 +1311,6 @@ GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, 
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
     return gproji_number_write_digits(value, 0, text);
 }
-
 
 /* ============================================================================================================
    >>memory   The host's allocator with accounts. Uses platform.
@@ -4017,7 +4024,8 @@ typedef struct gproji_row {
     double weight; /* times the group's; 0: the row is left out of everything */
     double phi;    /* the value at the last evaluation */
     int32_t element;
-    bool wide; /* compiled: kept out of the matrix */
+    bool wide;   /* compiled: kept out of the matrix */
+    bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
 } gproji_row;
 
 /* Where a term's variables stand among the row's locals. */
@@ -4034,7 +4042,8 @@ typedef struct gproji_group {
     gproj_refresh refresh;
     void *refresh_user;
     double weight; /* in the present iteration */
-    bool guard;    /* acts on the steps only: no part of merit, residual and verdict */
+    bool guard;    /* a bound that acts on the steps only: no part of merit, residual and verdict */
+    double slack;  /* of the guard: a step may violate its rows by so much */
 
     int32_t row_count;
     gproji_row *row;
@@ -4049,8 +4058,10 @@ typedef struct gproji_group {
     size_t term_local_count, local_capacity, gradient_count, slot_count, pair_count;
 } gproji_group;
 
-/* Looks at x after a step that may be taken. True: it has switched rows on that the step must be found again with. */
-typedef bool (*gproji_check_step)(void *user, gproj_system *system);
+/* A bound's row along a step: w^2 min(0, phi + t h + t^2 q)^2 is its part of the merit. */
+typedef struct gproji_hinge {
+    double w2, phi, h, q;
+} gproji_hinge;
 
 struct gproj_system {
     gproji_heap own;
@@ -4061,8 +4072,6 @@ struct gproj_system {
     int32_t variable_count;
     int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
     int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
-    gproji_check_step check_step; /* NULL: none */
-    void *check_user;
     double *x;
     int32_t *block; /* of each variable, the first variable of its block */
     size_t x_capacity, block_capacity;
@@ -4090,6 +4099,8 @@ struct gproj_system {
     double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
     double *wide_vector;   /* wide_count */
     size_t wide_taken;     /* wide_count when the three were taken */
+    gproji_hinge *hinge;   /* the bounds' rows that a step may violate */
+    size_t hinge_taken;    /* as many as all bounds have rows */
 };
 
 /* -- life and building -- */
@@ -4140,11 +4151,13 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
+    gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
     s->node = s->node_first = s->node_stride = s->position = NULL;
     s->node_entry = NULL;
     s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
     s->wide_response = s->wide_matrix = s->wide_vector = NULL;
-    s->wide_taken = 0;
+    s->hinge = NULL;
+    s->wide_taken = s->hinge_taken = 0;
     s->compiled = false;
 }
 
@@ -4299,6 +4312,11 @@ GPROJI_INTERNAL bool gproji_system_has_group(const gproj_system *s, int32_t grou
     return s && group >= 0 && group < s->group_count;
 }
 
+/* What counts of phi: of a bound its violation, else all. What is no number stays none. */
+GPROJI_INLINE double gproji_counted(const gproji_group *g, double phi) {
+    return g->kind == GPROJ_BOUND && phi >= 0 ? 0 : phi;
+}
+
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_t group) {
     gproj_group_info info;
     const gproji_group *g;
@@ -4314,7 +4332,7 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_
     info.schedule = g->schedule;
     info.rows = g->row_count;
     for (r = 0; r < g->row_count; ++r) {
-        double phi = fabs(g->row[r].phi);
+        double phi = fabs(gproji_counted(g, g->row[r].phi));
         if (!(phi <= DBL_MAX)) phi = HUGE_VAL;
         sum += phi * phi;
         if (info.worst_row >= 0 && !(phi > info.max)) continue;
@@ -4775,6 +4793,14 @@ GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     return s->wide_response && s->wide_matrix && s->wide_vector;
 }
 
+GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].kind == GPROJ_BOUND) s->hinge_taken += (size_t)s->group[i].row_count;
+    s->hinge = (gproji_hinge *)gproji_take(&s->own, s->hinge_taken, sizeof *s->hinge);
+    return s->hinge != NULL;
+}
+
 /* All steps; `scratch` has room for a row. */
 GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratch) {
     const int32_t *order;
@@ -4783,7 +4809,8 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratc
     s->wide_count = 0;
     for (i = 0; i < s->group_count; ++i)
         if (!gproji_compile_locals(s, &s->group[i], scratch)) return GPROJ_ERROR_MEMORY;
-    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s)) return GPROJ_ERROR_MEMORY;
+    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
+        return GPROJ_ERROR_MEMORY;
     gproji_compile_nodes(s);
     code = gproji_compile_graph(s);
     if (code) return code;
@@ -4828,7 +4855,8 @@ typedef struct gproji_evaluation {
     int32_t chunks;
 } gproji_evaluation;
 
-/* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. */
+/* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
+   violated, or where they did in the last step (gproji_switch_bounds lets them go again). */
 GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
     const gproji_evaluation *e = (const gproji_evaluation *)data;
     gproji_group *g = e->group;
@@ -4840,6 +4868,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
         int64_t t;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
+        if (!(row->weight > 0)) row->active = false;
         if (!(row->weight > 0)) continue;
         for (t = row->term; t < row[1].term; ++t) {
             const gproj_term *term = &g->term[t];
@@ -4854,6 +4883,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             }
         }
         row->phi = phi;
+        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
     }
 }
 
@@ -4896,7 +4926,7 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = row->local; l < row[1].local; ++l) out[g->local_variable[l]] += scale * g->local_gradient[l];
 }
 
-/* gradient = sum w^2 phi grad phi over narrow rows: half the gradient of their part of the merit. */
+/* gradient = sum w^2 phi grad phi over narrow rows that act: half the gradient of their part of the merit. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
     memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
@@ -4904,7 +4934,7 @@ GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            if (!row->wide) gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->gradient);
+            if (!row->wide && row->active) gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->gradient);
         }
     }
 }
@@ -4938,7 +4968,7 @@ GPROJI_INTERNAL void gproji_assemble_row(const gproj_system *s, const gproji_gro
     }
 }
 
-/* The sum of w^2 g g' over narrow rows, and eps^2 on the diagonal, in the factor's storage. */
+/* The sum of w^2 g g' over narrow rows that act, and eps^2 on the diagonal, in the factor's storage. */
 GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
     double *entries = gproji_cholesky_entries(s->cholesky);
     int32_t i, r, v;
@@ -4946,7 +4976,7 @@ GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r)
-            if (!g->row[r].wide && g->row[r].weight > 0)
+            if (!g->row[r].wide && g->row[r].active)
                 gproji_assemble_row(s, g, &g->row[r], gproji_weight2(g, &g->row[r]), entries);
     }
     for (v = 0; v < s->variable_count; ++v) {
@@ -4956,7 +4986,7 @@ GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
     }
 }
 
-/* out = A v, A = sum w^2 g g' + eps^2 I over narrow rows. */
+/* out = A v, A = sum w^2 g g' + eps^2 I over narrow rows that act. */
 GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, const double *v, double *out) {
     int32_t i, r;
     for (i = 0; i < s->variable_count; ++i) out[i] = epsilon * epsilon * v[i];
@@ -4964,7 +4994,8 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            if (!row->wide) gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, v), out);
+            if (!row->wide && row->active)
+                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, v), out);
         }
     }
 }
@@ -4977,7 +5008,7 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
    an approximation dx, with r = -gradient - A dx and c = A^-1 r, the correction is
        c - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
 
-/* Calls `visit` for the wide rows with a weight in a fixed order; returns how many there are. */
+/* Calls `visit` for the wide rows that act in a fixed order; returns how many there are. */
 typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
 
 GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide visit) {
@@ -4986,7 +5017,7 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r)
-            if (g->row[r].wide && g->row[r].weight > 0) visit(s, g, &g->row[r], index++);
+            if (g->row[r].wide && g->row[r].active) visit(s, g, &g->row[r], index++);
     }
     return index;
 }
@@ -5106,17 +5137,21 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx) (with bounds, a
+   piecewise one with a continuous slope). A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
    in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
    goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
    needed. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
+/* A step may violate bounds by so much of the largest residual: they act on the next one then. */
+static const double gproji_bound_slack = 0.01;
 enum {
-    GPROJI_ATTEMPTS = 8,    /* factorisations of one iteration */
-    GPROJI_PATIENCE = 5,    /* iterations without progress before the loop stops */
-    GPROJI_REFINEMENTS = 3, /* rounds at most for systems with wide rows */
+    GPROJI_ATTEMPTS = 8,     /* steps with different eps in one iteration */
+    GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
+    GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
+    GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
     GPROJI_LINE_SAMPLES = 40
 };
 
@@ -5124,8 +5159,8 @@ enum {
 typedef struct gproji_standing {
     double merit;    /* sum w^2 phi^2 */
     double energy;   /* the wishes' part of it */
-    double residual; /* largest |phi| of constraints with weight > 0 */
-    int32_t group;   /* where that is; -1 without constraints */
+    double residual; /* largest |phi| of what must hold, with weight > 0 */
+    int32_t group;   /* where that is; -1 where nothing must */
     int32_t row;
 } gproji_standing;
 
@@ -5209,6 +5244,9 @@ GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
     return false;
 }
 
+/* Of a group that counts: must it hold? */
+GPROJI_INTERNAL bool gproji_must_hold(const gproji_group *g) { return gproji_group_counts(g) && g->kind != GPROJ_WISH; }
+
 GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     gproji_standing standing;
     int32_t i, r;
@@ -5219,10 +5257,10 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
         double sum = 0;
         if (!gproji_group_counts(g)) continue;
         for (r = 0; r < g->row_count; ++r) {
-            double phi = fabs(g->row[r].phi);
+            double phi = fabs(gproji_counted(g, g->row[r].phi));
             if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
             sum += gproji_weight2(g, &g->row[r]) * phi * phi;
-            if (g->kind != GPROJ_CONSTRAINT || (standing.group >= 0 && phi <= standing.residual)) continue;
+            if (g->kind == GPROJ_WISH || (standing.group >= 0 && phi <= standing.residual)) continue;
             standing.residual = phi;
             standing.group = i;
             standing.row = r;
@@ -5285,50 +5323,90 @@ GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
     if (s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
 }
 
-/* The coefficients of M(t) along dx, for x = saved + dx and rows linearised at `saved`:
-   phi(saved + t dx) = phi + t h + t^2 q with h = grad phi'dx, q = phi(saved + dx) - phi - h. */
-GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, double c[5]) {
+/* The merit along a step: c[0] + c[1] t + ... + c[4] t^4 + sum w^2 min(0, phi + t h + t^2 q)^2 over the hinges. */
+typedef struct gproji_course {
+    double c[5];
+    int64_t count;
+    const gproji_hinge *hinge;
+} gproji_course;
+
+/* w^2 (phi + t h + t^2 q)^2 */
+GPROJI_INTERNAL void gproji_add_quartic(const gproji_hinge *row, double c[5]) {
+    double w2 = row->w2, phi = row->phi, h = row->h, q = row->q;
+    c[0] += w2 * phi * phi;
+    c[1] += w2 * 2 * phi * h;
+    c[2] += w2 * (h * h + 2 * phi * q);
+    c[3] += w2 * 2 * h * q;
+    c[4] += w2 * q * q;
+}
+
+/* M(t) along dx, for x = saved + dx and rows linearised at `saved`: phi(saved + t dx) = phi + t h + t^2 q with
+   h = grad phi'dx, q = phi(saved + dx) - phi - h. Of the bounds' rows those that a t <= 2 may violate. */
+GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
-    memset(c, 0, 5 * sizeof *c);
+    memset(m, 0, sizeof *m);
+    m->hinge = s->hinge;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            double w2 = gproji_weight2(g, row), h, q;
-            if (!(w2 > 0)) continue;
-            h = gproji_row_times(g, row, s->step);
-            q = gproji_row_value(g, r, s->x, NULL) - row->phi - h;
-            c[0] += w2 * row->phi * row->phi;
-            c[1] += w2 * 2 * row->phi * h;
-            c[2] += w2 * (h * h + 2 * row->phi * q);
-            c[3] += w2 * 2 * h * q;
-            c[4] += w2 * q * q;
+            gproji_hinge along;
+            along.w2 = gproji_weight2(g, row);
+            if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
+            along.phi = row->phi;
+            along.h = gproji_row_times(g, row, s->step);
+            along.q = gproji_row_value(g, r, s->x, NULL) - along.phi - along.h;
+            if (g->kind != GPROJ_BOUND) {
+                gproji_add_quartic(&along, m->c);
+            } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
+                s->hinge[m->count++] = along;
+            }
         }
     }
 }
 
-GPROJI_INTERNAL double gproji_quartic(const double c[5], double t) {
-    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * c[4])));
+GPROJI_INTERNAL double gproji_merit_at(const gproji_course *m, double t) {
+    const double *c = m->c;
+    double sum = c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * c[4])));
+    int64_t i;
+    for (i = 0; i < m->count; ++i) {
+        const gproji_hinge *row = &m->hinge[i];
+        double phi = row->phi + t * (row->h + t * row->q);
+        if (!(phi >= 0)) sum += row->w2 * phi * phi;
+    }
+    return sum;
 }
 
-GPROJI_INTERNAL double gproji_quartic_slope(const double c[5], double t) {
-    return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * 4 * c[4]));
+GPROJI_INTERNAL double gproji_merit_slope(const gproji_course *m, double t) {
+    const double *c = m->c;
+    double sum = c[1] + t * (2 * c[2] + t * (3 * c[3] + t * 4 * c[4]));
+    int64_t i;
+    for (i = 0; i < m->count; ++i) {
+        const gproji_hinge *row = &m->hinge[i];
+        double phi = row->phi + t * (row->h + t * row->q);
+        if (!(phi >= 0)) sum += row->w2 * 2 * phi * (row->h + 2 * t * row->q);
+    }
+    return sum;
 }
 
-/* The t in [low, high] with the smallest value: the best of evenly spaced samples, then bisection for the root of the
+/* The t in [low, high] with the smallest merit: the best of evenly spaced samples, then bisection for the root of the
    slope beside it. (Comparing values would find t to half the digits only.) */
-GPROJI_INTERNAL double gproji_minimise_quartic(const double c[5], double low, double high) {
-    double spacing = (high - low) / (double)GPROJI_LINE_SAMPLES, best = low;
+GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low, double high) {
+    double spacing = (high - low) / (double)GPROJI_LINE_SAMPLES, best = low, least = gproji_merit_at(m, low);
     int32_t i;
-    for (i = 1; i <= GPROJI_LINE_SAMPLES; ++i)
-        if (gproji_quartic(c, low + i * spacing) < gproji_quartic(c, best)) best = low + i * spacing;
+    for (i = 1; i <= GPROJI_LINE_SAMPLES; ++i) {
+        double merit = gproji_merit_at(m, low + i * spacing);
+        if (!(merit < least)) continue;
+        best = low + i * spacing;
+        least = merit;
+    }
     low = gproji_fmax(low, best - spacing);
     high = gproji_fmin(high, best + spacing);
-    if (gproji_quartic_slope(c, low) >= 0) return low;
-    if (gproji_quartic_slope(c, high) <= 0) return high;
+    if (gproji_merit_slope(m, low) >= 0) return low;
+    if (gproji_merit_slope(m, high) <= 0) return high;
     for (i = 0; i < 60; ++i) {
         double middle = low + (high - low) / 2;
-        if (gproji_quartic_slope(c, middle) < 0) {
+        if (gproji_merit_slope(m, middle) < 0) {
             low = middle;
         } else {
             high = middle;
@@ -5338,38 +5416,78 @@ GPROJI_INTERNAL double gproji_minimise_quartic(const double c[5], double low, do
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
-GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const double c[5]) {
-    double full = gproji_quartic(c, 1), t;
+GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const gproji_course *m) {
+    double none = gproji_merit_at(m, 0), full = gproji_merit_at(m, 1), t;
     if (!(full <= DBL_MAX)) return 0;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
-    if (full > c[0]) {
-        t = gproji_minimise_quartic(c, 0.05, 1);
-        return gproji_quartic(c, t) < c[0] ? t : 0;
+    if (full > none) {
+        t = gproji_minimise_merit(m, 0.05, 1);
+        return gproji_merit_at(m, t) < none ? t : 0;
     }
     if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_quartic(c, 0.1, 2);
+    t = gproji_minimise_merit(m, 0.1, 2);
     return t >= 1.3 ? t : 1;
+}
+
+/* Lets the bounds' rows act where they are violated at the present x, and nowhere else. */
+GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) g->row[r].active = !(g->row[r].phi >= 0);
+    }
+}
+
+/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`; where it acts
+   already, as long as it does not hold the step back. The guard's rows are looked at where the full step leads, and
+   remain. */
+GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
+    const gproji_row *row = &g->row[r];
+    if (!(row->weight > 0)) return false;
+    if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
+    return row->phi + gproji_row_times(g, row, s->step) < (row->active ? 0 : -slack);
+}
+
+/* Switches rows of bounds on and off by the step that was found; true: it must be found again. */
+GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop) {
+    const gproj_system *s = loop->system;
+    double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
+    bool changed = false;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        if (g->kind != GPROJ_BOUND || !(g->weight > 0)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            bool active = gproji_should_act(s, g, r, slack);
+            changed = changed || active != g->row[r].active;
+            g->row[r].active = active;
+        }
+    }
+    return changed;
+}
+
+/* Finds the full step with this eps, again where it meets bounds, and goes there. False: there is none. */
+GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
+    int32_t rounds = GPROJI_BOUND_ROUNDS;
+    do {
+        if (!gproji_find_step(loop, epsilon)) return false;
+        loop->iteration.step = gproji_take_step(loop->system, 1);
+        if (!(loop->iteration.step <= DBL_MAX)) return false;
+    } while (rounds-- > 0 && gproji_switch_bounds(loop));
+    return true;
 }
 
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    double c[5];
+    gproji_course merit;
     loop->iteration.epsilon = epsilon;
-    if (!gproji_find_step(loop, epsilon)) return false;
-    loop->iteration.step = gproji_take_step(s, 1);
-    if (loop->iteration.step <= DBL_MAX && s->check_step && s->check_step(s->check_user, s)) {
-        gproji_step_back(s);
-        gproji_evaluate(s);
-        if (!gproji_find_step(loop, epsilon)) return false;
-        loop->iteration.step = gproji_take_step(s, 1);
-    }
-    if (!(loop->iteration.step <= DBL_MAX)) {
+    if (!gproji_find_bounded_step(loop, epsilon)) {
         gproji_step_back(s);
         return false;
     }
-    gproji_merit_along(s, c);
-    loop->iteration.length = gproji_step_length(loop, c);
+    gproji_merit_along(s, &merit);
+    loop->iteration.length = gproji_step_length(loop, &merit);
     loop->iteration.step = gproji_take_step(s, loop->iteration.length);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
@@ -5379,14 +5497,17 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
 GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double epsilon = loop->options.epsilon;
+    int32_t attempt;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_epsilon_min), gproji_epsilon_max);
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
-    for (; loop->iteration.attempts < GPROJI_ATTEMPTS; epsilon *= 10) {
-        if (!gproji_try_step(loop, epsilon)) continue;
-        gproji_linearise(loop);
-        return true;
+    for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
+        if (gproji_try_step(loop, epsilon)) {
+            gproji_linearise(loop);
+            return true;
+        }
+        gproji_start_bounds(s);
     }
     return false;
 }
@@ -5449,6 +5570,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
     s->late = 0;
     gproji_set_weights(s, 1);
     gproji_linearise(loop);
+    gproji_start_bounds(s);
     while (loop->result.iterations < iterations) {
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
@@ -5465,16 +5587,14 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
-/* The other constraint group with the largest residual above the tolerance; -1: none. */
+/* The other group that must hold with the largest residual above the tolerance; -1: none. */
 GPROJI_INTERNAL int32_t gproji_second_group(const gproji_loop *loop) {
     const gproj_system *s = loop->system;
     double largest = loop->tolerance;
     int32_t g, second = -1;
     for (g = 0; g < s->group_count; ++g) {
         double max = gproj_system_group_info(s, g).max;
-        if (g == loop->standing.group || s->group[g].kind != GPROJ_CONSTRAINT || !(s->group[g].weight > 0) ||
-            max <= largest)
-            continue;
+        if (g == loop->standing.group || !gproji_must_hold(&s->group[g]) || max <= largest) continue;
         largest = max;
         second = g;
     }
@@ -7838,7 +7958,6 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
     return hit;
 }
 
-
 /* ============================================================================================================
    >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
 
@@ -9405,12 +9524,11 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
    >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
-   and two iterations longer, a face whose area along its normal falls below 0.4 of what it was gets a row that asks
-   for that much, s (A(v)'n - 0.4 a0) = 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = 1 / sqrt(a0), and
-   a step that would leave a face with less than 0.2 is found again with such a row. These rows act on the steps only:
-   they are no constraints, and no part of residual and verdict. */
+   and two iterations longer, a face's area along its normal is bounded: it shall keep 0.4 of what it was,
+   s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = sqrt(a0), and a step that would
+   leave less than 0.2 is found again. These bounds act on the steps only: they are no part of residual and verdict. */
 
-static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_least = 0.2,
+static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_slack = 0.2,
                     gproji_guard_area = 1e-4;
 enum {
     GPROJI_GUARD_DEGREE = 64,
@@ -9425,55 +9543,24 @@ GPROJI_INTERNAL void gproji_guard_normal(const gproj_form *form, const double *x
     gproji_normalise3(out, none);
 }
 
-/* The area of the face along its normal, over what it was. Faces that had none are let go. */
-GPROJI_INTERNAL double gproji_guard_ratio(const gproj_form *form, int32_t index) {
-    const double *x = gproj_system_values(form->system);
-    double area[3], normal[3], before = gproji_length3(form->guard_area + 3 * (size_t)index);
-    if (!(before > gproji_guard_area)) return HUGE_VAL;
-    gproji_area_vector(form->mesh, x, form->guard->vertex[index], area);
-    gproji_guard_normal(form, x, index, normal);
-    return gproji_dot3(area, normal) / before;
-}
-
-/* Switches the row of a face on, with its normal at x. */
-GPROJI_INTERNAL void gproji_guard_face(gproj_form *form, const double *x, int32_t index) {
-    double n[3], area = gproji_length3(form->guard_area + 3 * (size_t)index);
-    int32_t group = form->guard->group, count, t, k;
-    gproj_term *term = gproji_row_terms(form->system, group, index, &count);
-    gproji_guard_normal(form, x, index, n);
-    /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
-    for (t = 0; t < count; t += 6) {
-        for (k = 0; k < 3; ++k) {
-            term[t + 2 * k].a = 0.5 * n[(k + 2) % 3];
-            term[t + 2 * k + 1].a = -0.5 * n[(k + 2) % 3];
+/* The rows with the normals at x. Faces that had no area are let go. */
+GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int32_t group) {
+    const gproj_form *form = (const gproj_form *)user;
+    int32_t i, count, t, k;
+    for (i = 0; i < form->guard->count; ++i) {
+        double n[3], area = gproji_length3(form->guard_area + 3 * (size_t)i);
+        gproj_term *term = gproji_row_terms(system, group, i, &count);
+        system->group[group].row[i].weight = area > gproji_guard_area ? sqrt(area) : 0;
+        if (!(area > gproji_guard_area)) continue;
+        gproji_guard_normal(form, system->x, i, n);
+        /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
+        for (t = 0; t < count; t += 6) {
+            for (k = 0; k < 3; ++k) {
+                term[t + 2 * k].a = 0.5 * n[(k + 2) % 3] / area;
+                term[t + 2 * k + 1].a = -term[t + 2 * k].a;
+            }
         }
     }
-    form->system->group[group].row[index].constant = -gproji_guard_wanted * area;
-    form->system->group[group].row[index].weight = 1 / sqrt(area);
-}
-
-GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int32_t group) {
-    gproj_form *form = (gproj_form *)user;
-    int32_t i;
-    for (i = 0; i < form->guard->count; ++i) {
-        system->group[group].row[i].weight = 0;
-        if (gproji_guard_ratio(form, i) < gproji_guard_wanted) gproji_guard_face(form, system->x, i);
-    }
-}
-
-/* After a step: does a face lose too much of its area that is not guarded yet? Its row takes the normal before the
-   step. */
-GPROJI_INTERNAL bool gproji_check_guard(void *user, gproj_system *system) {
-    gproj_form *form = (gproj_form *)user;
-    const gproji_group *group = &system->group[form->guard->group];
-    bool found = false;
-    int32_t i;
-    for (i = 0; group->weight > 0 && i < form->guard->count; ++i) {
-        if (group->row[i].weight > 0 || gproji_guard_ratio(form, i) >= gproji_guard_least) continue;
-        gproji_guard_face(form, system->saved, i);
-        found = true;
-    }
-    return found;
 }
 
 /* The row of a face: for each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
@@ -9488,8 +9575,7 @@ GPROJI_INTERNAL void gproji_add_guard_row(gproj_form *form, int32_t face) {
             gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
         }
     }
-    gproj_system_set_row_weight(form->system, form->guard->group,
-                                gproj_system_add_row(form->system, form->guard->group, count, term, 0, face), 0);
+    gproj_system_add_row(form->system, form->guard->group, count, term, -gproji_guard_wanted, face);
 }
 
 /* The guard's group and rows, once. */
@@ -9503,17 +9589,16 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
         gproji_fail_memory(&form->error);
         return;
     }
-    form->guard->group = gproji_new_group(form, "guard", GPROJ_WISH, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, NULL);
+    form->guard->group = gproji_new_group(form, "guard", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, NULL);
     if (form->guard->group < 0) return;
     form->system->group[form->guard->group].guard = true;
+    form->system->group[form->guard->group].slack = gproji_guard_slack;
     form->system->group[form->guard->group].refresh_user = form;
     for (f = 0, count = 0; f < form->mesh->face_count; ++f) {
         if (form->mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         form->guard->vertex[count++] = f;
         gproji_add_guard_row(form, f);
     }
-    form->system->check_step = gproji_check_guard;
-    form->system->check_user = form;
 }
 
 /* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
@@ -9610,16 +9695,22 @@ GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *
     return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
 }
 
+/* Would a bound's row be violated by a mesh that has shrunk to a point? (At the origin: bounds of lengths and areas do
+   not depend on where it is.) */
+GPROJI_INTERNAL bool gproji_bound_holds(const gproji_row *row) { return row->constant < 0; }
+
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     int32_t g, r, count;
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
         if (form->system->group[g].guard) continue;
-        if (form->system->group[g].global && info.schedule.weight > 0) return true; /* such as a volume */
         for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
             const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
-            if (gproji_row_holds(form, term, count)) return true;
+            bool bound = info.kind == GPROJ_BOUND, volume = form->system->group[g].global;
+            if (bound ? gproji_bound_holds(&form->system->group[g].row[r])
+                      : volume || gproji_row_holds(form, term, count))
+                return true;
         }
     }
     return false;

@@ -517,6 +517,28 @@ GPROJT_TEST(a_larger_epsilon_where_no_length_is_good) {
     gproj_system_destroy(s);
 }
 
+static gproji_course gprojt_course(const double c[5]) {
+    gproji_course course;
+    memset(&course, 0, sizeof course);
+    memcpy(course.c, c, sizeof course.c);
+    return course;
+}
+
+static double gprojt_minimise(const double c[5], double low, double high) {
+    gproji_course course = gprojt_course(c);
+    return gproji_minimise_merit(&course, low, high);
+}
+
+static double gprojt_merit(const double c[5], double t) {
+    gproji_course course = gprojt_course(c);
+    return gproji_merit_at(&course, t);
+}
+
+static double gprojt_merit_slope(const double c[5], double t) {
+    gproji_course course = gprojt_course(c);
+    return gproji_merit_slope(&course, t);
+}
+
 /* The minimum along a line: no sample is lower, and the slope vanishes there to rounding. */
 GPROJT_TEST(quartics_are_minimised) {
     static const double wells[5] = {1.0 / 3, 0.05, 0.7071067811865476, 1.2345678901234567, 1.9999};
@@ -526,9 +548,9 @@ GPROJT_TEST(quartics_are_minimised) {
         double a = wells[i], parabola[5] = {0, 0, 1, 0, 0}, well[5] = {0, 0, 0, 0, 1};
         parabola[0] = a * a, parabola[1] = -2 * a;
         well[0] = a * a * a * a, well[2] = -2 * a * a;
-        GPROJT_NEAR(gproji_minimise_quartic(parabola, 0.05, 2), a, 4e-16);
-        GPROJT_NEAR(gproji_minimise_quartic(well, 0.05, 2), a, 4e-15);
-        GPROJT_NEAR(gproji_minimise_quartic(parabola, 0.05, 1), fmin(a, 1), 4e-16);
+        GPROJT_NEAR(gprojt_minimise(parabola, 0.05, 2), a, 4e-16);
+        GPROJT_NEAR(gprojt_minimise(well, 0.05, 2), a, 4e-15);
+        GPROJT_NEAR(gprojt_minimise(parabola, 0.05, 1), fmin(a, 1), 4e-16);
     }
     for (i = 0; i < 500; ++i) { /* sums of squares of quadratics, as merits are */
         double c[5] = {0, 0, 0, 0, 0}, low = i % 2 ? 0.05 : 0.1, high = i % 2 ? 1 : 2, t, least = HUGE_VAL;
@@ -537,11 +559,11 @@ GPROJT_TEST(quartics_are_minimised) {
                    q = 4 * gprojt_uniform(&seed) - 2;
             c[0] += p * p, c[1] += 2 * p * h, c[2] += h * h + 2 * p * q, c[3] += 2 * h * q, c[4] += q * q;
         }
-        t = gproji_minimise_quartic(c, low, high);
+        t = gprojt_minimise(c, low, high);
         GPROJT_CHECK(t >= low && t <= high);
-        for (k = 0; k <= 4000; ++k) least = fmin(least, gproji_quartic(c, low + k * (high - low) / 4000));
-        GPROJT_CHECK(gproji_quartic(c, t) <= least + 1e-14);
-        if (t > low && t < high) GPROJT_NEAR(gproji_quartic_slope(c, t), 0, 1e-13);
+        for (k = 0; k <= 4000; ++k) least = fmin(least, gprojt_merit(c, low + k * (high - low) / 4000));
+        GPROJT_CHECK(gprojt_merit(c, t) <= least + 1e-14);
+        if (t > low && t < high) GPROJT_NEAR(gprojt_merit_slope(c, t), 0, 1e-13);
     }
 }
 
