@@ -55,6 +55,7 @@
        >>api-error      codes, places, sentences
        >>api-number     numbers as text, whatever the locale
        >>api-cholesky   sparse Cholesky factorisation, usable by itself
+       >>api-least-squares  linear least squares with bounds, usable by itself
        >>api-system     quadratic equations and guided projection, without meshes
        >>api-mesh       half-edge meshes, OBJ and OFF
        >>api-reference  curves and surfaces with closest points
@@ -71,6 +72,7 @@
        >>ordering       approximate minimum degree
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
+       >>least-squares  linear least squares with bounds
        >>system         rows, groups, the matrix of the normal equations
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
@@ -322,6 +324,55 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 
 /* The permutation in use (n entries, owned by the object): see gproj_cholesky_options.permutation. */
 GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *cholesky);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-least-squares   Sparse linear least squares with bounds, usable by itself.
+
+       minimise  1/2 |A x - b|^2 + 1/2 damping^2 |x|^2   subject to  lower <= x <= upper
+
+   For example the forces of a mesh that stands by compression alone: one variable x_e >= 0 for each edge, three rows
+   for each vertex without support. A may have dependent columns; where the solution is then not unique, one that is
+   in the middle of the possible ones, or near the start, is found. */
+typedef struct gproj_least_squares {
+    int32_t rows, columns;
+    const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
+    const int32_t *row;   /* of each entry, in any order; entries of the same place are summed */
+    const double *value;  /* of each entry; |value| <= 1e50 */
+    const double *b;      /* rows; |b| <= 1e50 */
+    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: no bound for this variable */
+    const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
+    double damping;       /* >= 0, in the units of the entries of A; makes the solution unique */
+} gproj_least_squares;
+
+typedef enum gproj_least_squares_outcome {
+    GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
+    GPROJ_LEAST_SQUARES_LIMIT,  /* the allowed factorisations or the digits ran out; x is the best point met */
+    GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
+    GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
+} gproj_least_squares_outcome;
+
+typedef struct gproj_least_squares_result {
+    gproj_least_squares_outcome outcome;
+    int32_t factorisations;
+    int32_t at_bounds; /* variables that are equal to a bound */
+    double residual;   /* |A x - b|, Euclidean */
+    /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2 x
+       is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
+       divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
+       is nearest to 0. */
+    double kkt;
+    gproj_memory memory; /* without that of the factorisation: see factor_bytes, work_bytes */
+    size_t factor_bytes; /* see gproj_cholesky_info */
+    size_t work_bytes;
+} gproj_least_squares_result;
+
+/* Solves the problem. x, `columns` numbers, finite: where to start; at the end the solution. A start of zeros is
+   good; a start that is nearly right, with the bounds it should have, makes it faster. `host`, `result` and `error`
+   may be NULL. Usual are 5 to 20 factorisations of a matrix with the pattern of A'A; there are never more than 80. So
+   a row of A must not have very many entries. Other than GPROJ_OK are only errors: GPROJ_ERROR_ARGUMENT, _INDEX,
+   _NUMBER, _SIZE for what is wrong with the problem, GPROJ_ERROR_MEMORY. */
+GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
+                                               gproj_least_squares_result *result, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-system   Systems of quadratic equations and their guided projection.
@@ -3989,6 +4040,731 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
         largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     }
     return largest;
+}
+
+/* ============================================================================================================
+   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, ordering (pools), cholesky.
+
+   An interior-point method finds which variables are at their bounds; then Newton steps on the others, with exchanges
+   of the few that were mistaken, make it exact. All matrices are
+       A'A + damping^2 I + D + a diagonal of the method,
+   so one pattern is analysed once. D is 1e-12 times the diagonal, and only in the matrix, never in the gradient: each
+   step is a step of the proximal point method (Rockafellar 1976), which solves the undamped problem, also where A'A is
+   singular; dependent columns stay near where they come from instead of being driven to a corner.
+
+   The interior-point method is Mehrotra's (1992) with the correctors of Gondzio (1996) and equal steps for x and the
+   multipliers. Each finite bound is a pair of a slack s > 0 and a multiplier z > 0, sought with s z = 0. For the
+   displacement of x
+       (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
+   + for lower and - for upper bounds, g the gradient, t the target of the step. Exchanges are those of block principal
+   pivoting (Portugal, Judice, Vicente 1994), used only as long as each round halves the number of mistakes; when it
+   does not, the interior-point method goes on and its next guess is better. So the method cannot cycle, and a limit of
+   factorisations ends it in any case. */
+enum {
+    GPROJI_SQUARES_LIMIT = 80, /* factorisations */
+    GPROJI_SQUARES_ROUNDS = 8, /* of exchanges, one factorisation each */
+    GPROJI_SQUARES_CORRECTORS = 3
+};
+
+/* Bounds and numbers beyond it are none. Its powers and products stay finite. */
+#define GPROJI_SQUARES_HUGE 1e50
+
+enum {
+    GPROJI_VARIABLE_FREE,
+    GPROJI_VARIABLE_LOWER, /* held at its lower bound */
+    GPROJI_VARIABLE_UPPER,
+    GPROJI_VARIABLE_FIXED /* its bounds are equal */
+};
+
+/* A direction of the interior-point method. */
+typedef struct gproji_direction {
+    double *x;      /* columns: dx */
+    double *target; /* pairs: t */
+    double *dual;   /* pairs: dz */
+    double reach;   /* the longest step that keeps slacks and multipliers >= 0, cut at 10 */
+} gproji_direction;
+
+typedef struct gproji_squares {
+    const gproj_least_squares *problem;
+    gproji_heap heap;
+    gproji_pool pool;
+    gproj_cholesky *cholesky;
+    gproj_error *error;
+    gproj_code code; /* other than GPROJ_OK ends everything */
+    int32_t factorisations;
+    int32_t columns;
+    double damping;   /* squared */
+    double proximity; /* D = proximity * diagonal */
+
+    int64_t *row_start; /* rows + 1: A by rows */
+    int32_t *row_column;
+    double *row_value;
+    int64_t *start; /* columns + 1: lower triangle of A'A, the diagonal first */
+    int32_t *row;
+    double *product; /* A'A */
+    double *matrix;  /* what is factored */
+
+    /* columns: */
+    double *lower, *upper;
+    double *diagonal; /* of A'A + damping^2 I; the largest where it is 0 */
+    double *barrier;  /* what the method adds to the diagonal */
+    double *gradient; /* at the last point of gproji_squares_gradient */
+    double *x;        /* the interior point */
+    double *trial, *step, *best;
+    unsigned char *state;
+    /* rows: */
+    double *misfit;    /* A x - b */
+    double *magnitude; /* |A||x| + |b| */
+
+    double noise; /* rounding errors of the last gradient */
+    double scale; /* of kkt */
+    double best_kkt;
+
+    int32_t pairs; /* finite bounds of variables that are not fixed */
+    int32_t *variable;
+    double *sign, *slack, *dual;
+    gproji_direction direction, other;
+} gproji_squares;
+
+/* -- the problem -- */
+
+GPROJI_INTERNAL bool gproji_squares_finite(double x) { return gproji_is_finite(x) && fabs(x) <= GPROJI_SQUARES_HUGE; }
+
+GPROJI_INTERNAL gproj_code gproji_squares_check_entries(const gproj_least_squares *p, gproj_error *error) {
+    int32_t j;
+    int64_t e;
+    if (p->start[0] != 0)
+        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0, "least squares: start[0] is not 0");
+    for (j = 0; j < p->columns; ++j) {
+        if (p->start[j + 1] < p->start[j])
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
+                               "least squares: column %d ends before it starts", j);
+        if (p->start[j + 1] > p->start[j] && (!p->row || !p->value))
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                               "least squares: the rows or the values of the entries are missing");
+        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+            if (p->row[e] < 0 || p->row[e] >= p->rows)
+                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
+                                   "least squares: column %d has an entry in row %d of %d rows", j, p->row[e], p->rows);
+            if (!gproji_squares_finite(p->value[e]))
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_COLUMN, j,
+                                   "least squares: a value of column %d is not a number or beyond 1e50", j);
+        }
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
+    int32_t i;
+    if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
+    if (p->rows < 0 || p->columns < 0 || p->columns == INT32_MAX || p->rows == INT32_MAX)
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
+                           p->rows, p->columns);
+    if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: an array is missing");
+    if (!gproji_squares_finite(p->damping) || p->damping < 0)
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "least squares: the damping is negative or not a number");
+    for (i = 0; i < p->rows; ++i)
+        if (!gproji_squares_finite(p->b[i]))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, i,
+                               "least squares: b is not a number or beyond 1e50 in row %d", i);
+    for (i = 0; i < p->columns; ++i)
+        if (!gproji_squares_finite(x[i]))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, i,
+                               "least squares: the start of variable %d is not a number or beyond 1e50", i);
+    return p->columns > 0 ? gproji_squares_check_entries(p, error) : GPROJ_OK;
+}
+
+/* A bound as a number that is never infinite: `none`, -HUGE or HUGE, where there is no bound. False for NaN and for a
+   bound on the wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
+GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
+    uint64_t bits;
+    *out = none;
+    if (!bound) return true;
+    memcpy(&bits, &bound[j], sizeof bits);
+    if (!gproji_is_finite(bound[j])) return (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0);
+    if (fabs(bound[j]) <= GPROJI_SQUARES_HUGE) *out = bound[j];
+    return *out == bound[j] || (bound[j] < 0) == (none < 0);
+}
+
+GPROJI_INTERNAL void gproji_squares_set_bounds(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    int32_t j;
+    s->pairs = 0;
+    for (j = 0; j < s->columns && s->code == GPROJ_OK; ++j) {
+        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_HUGE, &s->lower[j]);
+        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_HUGE, &s->upper[j]) && good;
+        if (!good || s->lower[j] > s->upper[j])
+            s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                                  "least squares: variable %d has no number between its bounds", j);
+        s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
+        if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
+        if (s->lower[j] > -GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
+        if (s->upper[j] < GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
+    }
+}
+
+GPROJI_INTERNAL double gproji_squares_clip(const gproji_squares *s, int32_t j, double x) {
+    return gproji_fmin(gproji_fmax(x, s->lower[j]), s->upper[j]);
+}
+
+/* -- the matrix -- */
+
+/* A by rows. */
+GPROJI_INTERNAL void gproji_squares_transpose(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    int32_t i, j;
+    int64_t e;
+    for (e = 0; e < p->start[s->columns]; ++e) s->row_start[p->row[e] + 1]++;
+    for (i = 0; i < p->rows; ++i) s->row_start[i + 1] += s->row_start[i];
+    for (j = 0; j < s->columns; ++j)
+        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+            int64_t to = s->row_start[p->row[e]]++;
+            s->row_column[to] = j, s->row_value[to] = p->value[e];
+        }
+    for (i = p->rows; i > 0; --i) s->row_start[i] = s->row_start[i - 1];
+    s->row_start[0] = 0;
+}
+
+/* Column j of the lower triangle of A'A from entry `at` on; without `product` only its pattern is counted. mark:
+   columns entries, each less than any `at` from now on. Returns where the column ends. */
+GPROJI_INTERNAL int64_t gproji_squares_column(gproji_squares *s, int32_t j, int64_t at, int64_t *mark) {
+    const gproj_least_squares *p = s->problem;
+    int64_t begin = at, e, f;
+    mark[j] = at++;
+    if (s->product) s->row[begin] = j, s->product[begin] = 0;
+    for (e = p->start[j]; e < p->start[j + 1]; ++e)
+        for (f = s->row_start[p->row[e]]; f < s->row_start[p->row[e] + 1]; ++f) {
+            int32_t i = s->row_column[f];
+            if (i < j) continue;
+            if (mark[i] < begin) {
+                mark[i] = at++;
+                if (s->product) s->row[mark[i]] = i, s->product[mark[i]] = 0;
+            }
+            if (s->product) s->product[mark[i]] += p->value[e] * s->row_value[f];
+        }
+    return at;
+}
+
+GPROJI_INTERNAL void gproji_squares_columns(gproji_squares *s, int64_t *mark) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) mark[j] = -1;
+    s->start[0] = 0;
+    for (j = 0; j < s->columns; ++j) s->start[j + 1] = gproji_squares_column(s, j, s->start[j], mark);
+}
+
+GPROJI_INTERNAL void gproji_squares_set_diagonal(gproji_squares *s) {
+    double largest = 0;
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) {
+        s->diagonal[j] = s->product[s->start[j]] + s->damping;
+        largest = gproji_fmax(largest, s->diagonal[j]);
+    }
+    if (!(largest > DBL_MIN)) largest = 1;
+    for (j = 0; j < s->columns; ++j)
+        if (!(s->diagonal[j] > 1e-60 * largest)) s->diagonal[j] = largest;
+}
+
+/* A'A and the analysis of its pattern. */
+GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
+    int64_t *mark = (int64_t *)gproji_take(&s->heap, (size_t)s->columns, sizeof(int64_t)), entries;
+    bool good = mark != NULL;
+    if (good) {
+        gproji_squares_transpose(s);
+        gproji_squares_columns(s, mark);
+        entries = s->start[s->columns];
+        s->row = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
+        s->matrix = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+        s->product = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+        good = s->row && s->matrix && s->product;
+        if (good) gproji_squares_columns(s, mark);
+        gproji_give(&s->heap, mark, (size_t)s->columns, sizeof(int64_t));
+    }
+    if (!good) {
+        s->code = gproji_fail_memory(s->error);
+        return;
+    }
+    gproji_squares_set_diagonal(s);
+    s->code = gproj_cholesky_analyse(s->cholesky, s->columns, s->start, s->row, NULL);
+    if (s->code != GPROJ_OK && s->error) *s->error = *gproj_cholesky_error(s->cholesky);
+}
+
+/* The matrix of the free variables, with the barrier on its diagonal; the others become rows of the identity. */
+GPROJI_INTERNAL void gproji_squares_fill(gproji_squares *s) {
+    int32_t j;
+    int64_t e;
+    for (j = 0; j < s->columns; ++j) {
+        bool held = s->state[j] != GPROJI_VARIABLE_FREE;
+        e = s->start[j];
+        s->matrix[e] =
+            held ? s->diagonal[j] : s->product[e] + s->damping + s->proximity * s->diagonal[j] + s->barrier[j];
+        while (++e < s->start[j + 1])
+            s->matrix[e] = held || s->state[s->row[e]] != GPROJI_VARIABLE_FREE ? 0 : s->product[e];
+    }
+}
+
+/* Factors the matrix. A matrix that is singular to rounding gets more on its diagonal. False: no factor, because of an
+   error or of the limit. */
+GPROJI_INTERNAL bool gproji_squares_factor(gproji_squares *s) {
+    while (s->factorisations < GPROJI_SQUARES_LIMIT && s->proximity < 1e-3) {
+        gproj_factor_outcome outcome;
+        gproji_squares_fill(s);
+        s->factorisations++;
+        outcome = gproj_cholesky_factor(s->cholesky, s->matrix);
+        if (outcome == GPROJ_FACTORED) return true;
+        if (outcome == GPROJ_FACTOR_FAILED) {
+            if (s->error) *s->error = *gproj_cholesky_error(s->cholesky);
+            s->code = gproj_cholesky_error(s->cholesky)->code;
+            return false;
+        }
+        s->proximity *= 100;
+    }
+    return false;
+}
+
+/* -- gradients -- */
+
+/* misfit = A x - b, magnitude = |A||x| + |b| */
+GPROJI_INTERNAL void gproji_squares_misfit(gproji_squares *s, const double *x) {
+    const gproj_least_squares *p = s->problem;
+    int32_t i, j;
+    int64_t e;
+    for (i = 0; i < p->rows; ++i) s->misfit[i] = -p->b[i], s->magnitude[i] = fabs(p->b[i]);
+    for (j = 0; j < s->columns; ++j)
+        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+            double term = p->value[e] * x[j];
+            s->misfit[p->row[e]] += term;
+            s->magnitude[p->row[e]] += fabs(term);
+        }
+}
+
+/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values. */
+GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *x) {
+    const gproj_least_squares *p = s->problem;
+    double largest = 0;
+    int32_t j;
+    int64_t e;
+    gproji_squares_misfit(s, x);
+    for (j = 0; j < s->columns; ++j) {
+        double sum = s->damping * x[j], size = fabs(sum);
+        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+            sum += p->value[e] * s->misfit[p->row[e]];
+            size += fabs(p->value[e]) * s->magnitude[p->row[e]];
+        }
+        s->gradient[j] = sum;
+        largest = gproji_fmax(largest, size);
+    }
+    s->noise = 16 * DBL_EPSILON * largest;
+    return largest;
+}
+
+/* What the gradient at variable j lacks to that of a solution, x being within the bounds. */
+GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t j, double x) {
+    double g = s->gradient[j];
+    if (x <= s->lower[j] && g >= 0) return 0;
+    if (x >= s->upper[j] && g <= 0) return 0;
+    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : fabs(g);
+}
+
+/* Judges trial, which is within the bounds, and keeps it if it is the best so far. True: it is a solution. */
+GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
+    double largest = 0, kkt;
+    int32_t j;
+    gproji_squares_gradient(s, s->trial);
+    for (j = 0; j < s->columns; ++j) largest = gproji_fmax(largest, gproji_squares_violation(s, j, s->trial[j]));
+    kkt = largest / s->scale;
+    if (gproji_is_finite(kkt) && kkt < s->best_kkt) {
+        memcpy(s->best, s->trial, (size_t)s->columns * sizeof(double));
+        s->best_kkt = kkt;
+    }
+    return largest <= s->noise;
+}
+
+/* -- Newton steps and exchanges -- */
+
+/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there. */
+GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
+    double largest = 0;
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) {
+        s->step[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
+        largest = gproji_fmax(largest, fabs(s->step[j]));
+    }
+    gproj_cholesky_solve(s->cholesky, 1, s->step, s->step);
+    return largest;
+}
+
+/* Moves the free variables of trial to the minimum, by Newton steps with one factor; more than one because of the
+   proximity in the matrix, and of rounding. Leaves the gradient there. */
+GPROJI_INTERNAL void gproji_squares_minimise(gproji_squares *s) {
+    double before = HUGE_VAL, now;
+    int32_t round, j;
+    for (round = 0; round < 6; ++round) {
+        gproji_squares_gradient(s, s->trial);
+        now = gproji_squares_newton(s);
+        if (now <= 0.1 * s->noise || (round > 1 && now > 0.5 * before)) return;
+        before = now;
+        for (j = 0; j < s->columns; ++j) s->trial[j] += s->step[j];
+    }
+    gproji_squares_gradient(s, s->trial);
+}
+
+/* Holds the free variables of trial that have left their bounds, frees those held against the gradient, and returns
+   their number. */
+GPROJI_INTERNAL int32_t gproji_squares_exchange(gproji_squares *s) {
+    int32_t count = 0, j;
+    for (j = 0; j < s->columns; ++j) {
+        unsigned char old = s->state[j];
+        double g = s->gradient[j];
+        if (old == GPROJI_VARIABLE_FREE && s->trial[j] < s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+        if (old == GPROJI_VARIABLE_FREE && s->trial[j] > s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+        if (old == GPROJI_VARIABLE_LOWER && g < -s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
+        if (old == GPROJI_VARIABLE_UPPER && g > s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
+        count += old != s->state[j];
+        s->trial[j] = gproji_squares_clip(s, j, s->trial[j]);
+    }
+    return count;
+}
+
+/* From trial and the states: minimises, exchanges, and goes on while there are half as many exchanges as before. True:
+   best is a solution. */
+GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
+    int32_t round, before = INT32_MAX, count, j;
+    for (j = 0; j < s->columns; ++j) s->barrier[j] = 0;
+    for (round = 0; round < rounds; ++round) {
+        if (!gproji_squares_factor(s)) return false;
+        gproji_squares_minimise(s);
+        count = gproji_squares_exchange(s);
+        if (gproji_squares_judge(s)) return true;
+        if (count == 0 || count > before / 2) return false;
+        before = count;
+    }
+    return false;
+}
+
+/* -- the interior-point method -- */
+
+/* How many variables are free again. */
+GPROJI_INTERNAL int32_t gproji_squares_free_all(gproji_squares *s) {
+    int32_t j, count = 0;
+    for (j = 0; j < s->columns; ++j) {
+        if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
+        s->state[j] = GPROJI_VARIABLE_FREE;
+        ++count;
+    }
+    return count;
+}
+
+GPROJI_INTERNAL double gproji_squares_slack(const gproji_squares *s, int32_t pair) {
+    int32_t j = s->variable[pair];
+    return s->sign[pair] > 0 ? s->x[j] - s->lower[j] : s->upper[j] - s->x[j];
+}
+
+/* Moves x by the shift away from its bounds: all variables alike, so that a state of equal forces stays one, but no
+   further than a quarter of the way between two bounds. */
+GPROJI_INTERNAL void gproji_squares_move_inside(gproji_squares *s, double shift) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) {
+        bool below = s->lower[j] > -GPROJI_SQUARES_HUGE, above = s->upper[j] < GPROJI_SQUARES_HUGE;
+        double margin = shift / sqrt(s->diagonal[j]);
+        if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
+        if (below && above) {
+            margin = gproji_fmin(margin, 0.25 * (s->upper[j] - s->lower[j]));
+            s->x[j] = gproji_fmax(gproji_fmin(s->x[j], s->upper[j] - margin), s->lower[j] + margin);
+        } else if (below) {
+            s->x[j] = gproji_fmax(s->x[j], s->lower[j] - 0.7 * margin) + margin;
+        } else if (above) {
+            s->x[j] = gproji_fmin(s->x[j], s->upper[j] + 0.7 * margin) - margin;
+        }
+    }
+}
+
+/* x within the bounds, near the solution without bounds of a problem with much damping. Slacks and multipliers are
+   chosen in units in which the columns of A have length 1. */
+GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
+    double violation = 0, size = 0, force = 0, shift;
+    int32_t j, c;
+    for (j = 0; j < s->columns; ++j) s->barrier[j] = 1e-3 * s->diagonal[j];
+    if (!gproji_squares_factor(s)) return false;
+    gproji_squares_gradient(s, s->x);
+    for (j = 0; j < s->columns; ++j)
+        if (s->state[j] == GPROJI_VARIABLE_FREE)
+            force = gproji_fmax(force, fabs(s->gradient[j]) / sqrt(s->diagonal[j]));
+    gproji_squares_newton(s);
+    for (j = 0; j < s->columns; ++j) s->x[j] += s->step[j];
+    for (c = 0; c < s->pairs; ++c) {
+        double slack = gproji_squares_slack(s, c) * sqrt(s->diagonal[s->variable[c]]);
+        violation = gproji_fmax(violation, -slack);
+        size = gproji_fmax(size, gproji_fmin(fabs(slack), 1e3 * force));
+    }
+    shift = gproji_fmax(1.5 * violation + 1e-3 * size, 1e-3 * force);
+    if (!(shift > 0) || !gproji_is_finite(shift)) return false;
+    gproji_squares_move_inside(s, shift);
+    for (c = 0; c < s->pairs; ++c) {
+        s->slack[c] = gproji_squares_slack(s, c);
+        s->dual[c] = force * sqrt(s->diagonal[s->variable[c]]);
+        if (!(s->slack[c] > 0)) return false; /* bounds that are neighbours as numbers */
+    }
+    return true;
+}
+
+/* barrier = sum z/s */
+GPROJI_INTERNAL void gproji_squares_set_barrier(gproji_squares *s) {
+    int32_t j, c;
+    for (j = 0; j < s->columns; ++j) s->barrier[j] = 0;
+    for (c = 0; c < s->pairs; ++c) s->barrier[s->variable[c]] += s->dual[c] / s->slack[c];
+}
+
+/* gradient = g - sum +-z: what the multipliers do not hold. Returns its largest entry relative to scale. */
+GPROJI_INTERNAL double gproji_squares_imbalance(gproji_squares *s) {
+    double largest = 0;
+    int32_t j, c;
+    gproji_squares_gradient(s, s->x);
+    for (c = 0; c < s->pairs; ++c) s->gradient[s->variable[c]] -= s->sign[c] * s->dual[c];
+    for (j = 0; j < s->columns; ++j)
+        if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, fabs(s->gradient[j]));
+    return largest / s->scale;
+}
+
+/* The mean of (s + a ds)(z + a dz). */
+GPROJI_INTERNAL double gproji_squares_mean(const gproji_squares *s, const gproji_direction *d, double a) {
+    double sum = 0;
+    int32_t c;
+    for (c = 0; c < s->pairs; ++c) {
+        double ds = a > 0 ? a * s->sign[c] * d->x[s->variable[c]] : 0, dz = a > 0 ? a * d->dual[c] : 0;
+        sum += (s->slack[c] + ds) * (s->dual[c] + dz);
+    }
+    return sum / s->pairs;
+}
+
+/* The direction towards d->target, with the factor and the imbalance in `gradient`. */
+GPROJI_INTERNAL void gproji_squares_direct(gproji_squares *s, gproji_direction *d) {
+    int32_t j, c;
+    for (j = 0; j < s->columns; ++j) d->x[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
+    for (c = 0; c < s->pairs; ++c) d->x[s->variable[c]] += s->sign[c] * d->target[c] / s->slack[c];
+    gproj_cholesky_solve(s->cholesky, 1, d->x, d->x);
+    d->reach = 10;
+    for (c = 0; c < s->pairs; ++c) {
+        double ds = s->sign[c] * d->x[s->variable[c]];
+        d->dual[c] = (d->target[c] - s->dual[c] * ds) / s->slack[c];
+        if (-ds * d->reach > s->slack[c]) d->reach = s->slack[c] / -ds;
+        if (-d->dual[c] * d->reach > s->dual[c]) d->reach = s->dual[c] / -d->dual[c];
+    }
+}
+
+/* Mehrotra's predictor and corrector. Returns the product s z that the corrector aims at. */
+GPROJI_INTERNAL double gproji_squares_predict(gproji_squares *s) {
+    gproji_direction *d = &s->direction;
+    double mean = gproji_squares_mean(s, d, 0), ratio, aim;
+    int32_t c;
+    for (c = 0; c < s->pairs; ++c) d->target[c] = -s->slack[c] * s->dual[c];
+    gproji_squares_direct(s, d);
+    ratio = gproji_squares_mean(s, d, gproji_fmin(d->reach, 1)) / mean;
+    aim = ratio * ratio * ratio * mean;
+    for (c = 0; c < s->pairs; ++c) d->target[c] += aim - s->sign[c] * d->x[s->variable[c]] * d->dual[c];
+    gproji_squares_direct(s, d);
+    return aim;
+}
+
+/* Gondzio's correctors: targets for the products that a longer step would leave too far from the aim. Each costs a
+   solve, and saves factorisations. */
+GPROJI_INTERNAL void gproji_squares_correct(gproji_squares *s, double aim) {
+    int32_t round, c;
+    for (round = 0; round < GPROJI_SQUARES_CORRECTORS && s->direction.reach < 1.005; ++round) {
+        gproji_direction *d = &s->direction, *other = &s->other, swap;
+        double a = gproji_fmin(1, d->reach + 0.1);
+        for (c = 0; c < s->pairs; ++c) {
+            double ds = s->sign[c] * d->x[s->variable[c]];
+            double product = (s->slack[c] + a * ds) * (s->dual[c] + a * d->dual[c]), change = 0;
+            if (product < 0.1 * aim) change = 0.1 * aim - product;
+            if (product > 10 * aim) change = gproji_fmax(10 * aim - product, -10 * aim);
+            other->target[c] = d->target[c] + change;
+        }
+        gproji_squares_direct(s, other);
+        if (!(other->reach >= d->reach + 0.01)) return;
+        swap = *d, *d = *other, *other = swap;
+    }
+}
+
+/* One step. False: there is no step that is a number, or it is too short to count. */
+GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
+    gproji_direction *d = &s->direction;
+    double a;
+    int32_t j, c;
+    gproji_squares_set_barrier(s);
+    if (!gproji_squares_factor(s)) return false;
+    gproji_squares_correct(s, gproji_squares_predict(s));
+    a = gproji_fmin(1, 0.995 * d->reach);
+    for (j = 0; j < s->columns; ++j)
+        if (!gproji_is_finite(d->x[j])) return false;
+    for (c = 0; c < s->pairs; ++c)
+        if (!gproji_is_finite(d->dual[c])) return false;
+    for (j = 0; j < s->columns; ++j) s->x[j] += a * d->x[j];
+    for (c = 0; c < s->pairs; ++c) {
+        s->slack[c] += a * s->sign[c] * d->x[s->variable[c]];
+        s->dual[c] += a * d->dual[c];
+    }
+    return a > 1e-6;
+}
+
+/* The share of bounds of which it is not clear whether they are reached. */
+GPROJI_INTERNAL double gproji_squares_doubt(const gproji_squares *s) {
+    int32_t c, count = 0;
+    for (c = 0; c < s->pairs; ++c) {
+        double slack = s->slack[c] * s->diagonal[s->variable[c]];
+        count += slack > 1e-2 * s->dual[c] && slack < 1e2 * s->dual[c];
+    }
+    return (double)count / s->pairs;
+}
+
+/* trial and states as the interior point suggests; it stays as it is. */
+GPROJI_INTERNAL void gproji_squares_guess(gproji_squares *s) {
+    int32_t c, j;
+    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, s->x[j]);
+    for (c = 0; c < s->pairs; ++c) {
+        j = s->variable[c];
+        if (s->slack[c] * s->diagonal[j] > s->dual[c]) continue;
+        s->state[j] = s->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
+        s->trial[j] = s->sign[c] > 0 ? s->lower[j] : s->upper[j];
+    }
+}
+
+/* From s->x: the interior-point method, with a polish whenever it seems to know the bounds. */
+GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
+    double tolerance = 1e-5, doubt = 0.01, first = 0;
+    bool moves = true;
+    if (!gproji_squares_interior(s)) return false;
+    while (s->code == GPROJ_OK && s->factorisations < GPROJI_SQUARES_LIMIT) {
+        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(s, &s->direction, 0);
+        bool last = !moves || gap <= 1e-22 * first;
+        if (first <= 0) first = gap;
+        if (last || (imbalance < tolerance && gap < tolerance * first && gproji_squares_doubt(s) <= doubt)) {
+            gproji_squares_guess(s);
+            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return true;
+            gproji_squares_free_all(s);
+            if (last) return false;
+            tolerance *= 1e-2, doubt *= 0.1;
+            gproji_squares_imbalance(s);
+        }
+        moves = gproji_squares_advance(s);
+    }
+    return false;
+}
+
+/* -- the solution -- */
+
+GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
+    double *space, **part[18];
+    int32_t k, count = 0;
+    s->row_start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
+    s->row_column = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
+    s->row_value = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+    s->start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
+    s->variable = (int32_t *)gproji_pool_take(&s->pool, 2 * n, sizeof(int32_t));
+    s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
+    space = (double *)gproji_pool_take(&s->pool, 11 * n + 14 * n + 2 * m, sizeof(double));
+    if (!s->row_start || !s->row_column || !s->row_value || !s->start || !s->variable || !s->state || !space)
+        return false;
+    part[count++] = &s->lower, part[count++] = &s->upper, part[count++] = &s->diagonal, part[count++] = &s->barrier;
+    part[count++] = &s->gradient, part[count++] = &s->x, part[count++] = &s->trial, part[count++] = &s->step;
+    part[count++] = &s->best, part[count++] = &s->direction.x, part[count++] = &s->other.x;
+    for (k = 0; k < count; ++k, at += n) *part[k] = space + at;
+    part[0] = &s->sign, part[1] = &s->slack, part[2] = &s->dual, part[3] = &s->direction.target;
+    part[4] = &s->direction.dual, part[5] = &s->other.target, part[6] = &s->other.dual;
+    for (k = 0; k < 7; ++k, at += 2 * n) *part[k] = space + at;
+    s->misfit = space + at, s->magnitude = space + at + m;
+    return true;
+}
+
+/* scale, and the start as the first candidate. True: it is a solution. */
+GPROJI_INTERNAL bool gproji_squares_begin(gproji_squares *s, const double *x) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
+    s->scale = gproji_squares_gradient(s, s->trial);
+    if (!(s->scale > 0)) s->scale = 1;
+    for (j = 0; j < s->columns; ++j) s->trial[j] = s->x[j] = s->best[j] = gproji_squares_clip(s, j, x[j]);
+    return gproji_squares_judge(s);
+}
+
+/* The start may know which bounds hold. */
+GPROJI_INTERNAL bool gproji_squares_try_start(gproji_squares *s) {
+    int32_t j;
+    if (s->best_kkt > 1e-3) return false;
+    for (j = 0; j < s->columns; ++j) {
+        double x = s->trial[j];
+        if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, x) > 0) continue;
+        if (x <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+        if (x >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+    }
+    return gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS);
+}
+
+/* From the start, in the order of cost: the start itself, its neighbours, the minimum without bounds, the method. */
+GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
+    if (gproji_squares_begin(s, x) || gproji_squares_try_start(s)) return;
+    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
+    memcpy(s->trial, s->x, (size_t)s->columns * sizeof(double));
+    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || s->pairs == 0) return;
+    gproji_squares_free_all(s);
+    gproji_squares_iterate(s);
+}
+
+GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_squares_result *result) {
+    double sum = 0;
+    int32_t i, j;
+    gproj_cholesky_info info = gproj_cholesky_get_info(s->cholesky);
+    gproji_squares_misfit(s, s->best);
+    for (i = 0; i < s->problem->rows; ++i) sum += s->misfit[i] * s->misfit[i];
+    for (j = 0; j < s->columns; ++j) result->at_bounds += s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
+    result->outcome = s->best_kkt <= 1e-9 ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
+    result->factorisations = s->factorisations;
+    result->residual = sqrt(sum);
+    result->kkt = s->best_kkt;
+    result->memory = s->heap.account;
+    result->factor_bytes = info.factor_bytes;
+    result->work_bytes = info.work_bytes;
+}
+
+GPROJI_INTERNAL void gproji_squares_run(gproji_squares *s, const gproj_host *host, double *x,
+                                        gproj_least_squares_result *result) {
+    s->cholesky = gproj_cholesky_create(host);
+    if (!s->cholesky || !gproji_squares_take(s)) {
+        s->code = gproji_fail_memory(s->error);
+        return;
+    }
+    gproji_squares_set_bounds(s);
+    if (s->code == GPROJ_OK && s->columns > 0) gproji_squares_assemble(s);
+    if (s->code == GPROJ_OK) gproji_squares_solve(s, x);
+    if (s->code != GPROJ_OK) return;
+    gproji_squares_report(s, result);
+    if (s->columns > 0) memcpy(x, s->best, (size_t)s->columns * sizeof(double));
+}
+
+GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
+                                               gproj_least_squares_result *result, gproj_error *error) {
+    gproj_least_squares_result unused;
+    gproji_squares s;
+    if (!result) result = &unused;
+    memset(result, 0, sizeof *result);
+    result->outcome = GPROJ_LEAST_SQUARES_FAILED;
+    gproji_error_clear(error);
+    memset(&s, 0, sizeof s);
+    s.code = gproji_squares_check(problem, x, error);
+    if (s.code != GPROJ_OK) return s.code;
+    s.problem = problem, s.error = error;
+    s.columns = problem->columns;
+    s.damping = problem->damping * problem->damping;
+    s.proximity = 1e-12;
+    s.best_kkt = HUGE_VAL;
+    s.heap = gproji_heap_of(host);
+    gproji_pool_start(&s.pool, &s.heap);
+    gproji_squares_run(&s, host, x, result);
+    gproj_cholesky_destroy(s.cholesky);
+    gproji_pool_give_all(&s.pool);
+    return s.code;
 }
 
 /* ============================================================================================================
