@@ -61,6 +61,7 @@
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-form       form-finding: a mesh, what must hold, what is wished
+       >>api-statics    forces in the edges of a form
      the implementation: each section uses only earlier ones
        >>platform       compiler differences
        >>number         decimal text to binary and back
@@ -83,6 +84,7 @@
        >>measure        what a mesh is like
        >>form           a mesh and its system
        >>catalogue      the constraints and wishes
+       >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
        >>solve          solving a form
 
@@ -820,6 +822,78 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
    gproj_measure. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
+
+   Every edge v_i v_j has a force density w_ij, a variable: it pushes v_i by w_ij (v_i - v_j) and v_j by the opposite, so
+   w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
+       sum_j w_ij (v_i - v_j) + f_i = 0                     (paper 3.1; with loads that point down, along -z)
+   f_i is the load on the vertex. Units are the caller's: lengths as in the mesh, loads in any unit of force, and forces
+   come out in that one. Inside, both are normalised, so units do not change the shape. Edges between two pinned
+   supports have no force: it would be undetermined. */
+
+/* Loads follow the shape: they are linearised anew in each iteration. */
+typedef struct gproj_loads {
+    double density;             /* weight per length of every edge (rho A); half of it loads each end */
+    const double *edge_density; /* edge_count numbers instead; NULL: `density` for all */
+    double area_load;           /* down, per area of each face: an equal part on each of its corners */
+    double snow;                /* down, per area of each face's projection to the ground */
+    const double *point_load;   /* 3 * vertex_count: a force on each vertex; NULL: none */
+} gproj_loads;
+
+/* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
+   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; whether it stays where it
+   is, is another matter: see gproj_add_fixed and gproj_add_gliding_boundary. */
+typedef struct gproj_supports {
+    int32_t count;
+    const int32_t *vertex;
+    const uint8_t *slides;
+} gproj_supports;
+
+/* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the forces
+   start from the solution of gproj_find_forces; where the shape carries next to nothing, from uniform forces that bend it
+   first. Later solves go on from the forces they find. */
+GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
+                                        double weight);
+/* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
+   and NULL are all). These and the next two need gproj_add_equilibrium before. */
+GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+/* The stress of these edges is bounded: min <= w l / A <= max, l the length, A = sections[k] > 0 (paper 3.1); NULL
+   sections: A = 1, bounds of the force. min = -INFINITY or max = INFINITY: no bound on that side. */
+GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
+                                          double min, double max, double weight);
+/* A wish: opposite edges of each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
+GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
+
+/* The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
+/* Sets them as the start of the next solve; NULL: the next solve finds its own start. */
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
+/* The loads on the mesh as it is now, 3 * vertex_count numbers. */
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
+/* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), zero along axes without support. */
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
+
+/* How self-supporting is the mesh as it is? The forces that balance its loads best: densities (edge_count numbers, may
+   be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active gproj_add_compression and
+   gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): what is left in each vertex, over the mean
+   load. Changes nothing. */
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
+
+typedef struct gproj_forces {
+    double residual; /* largest |sum_j w_ij (v_i - v_j) + f_i| over vertices without support, over the largest |f_i| */
+    int32_t residual_vertex;
+    double min_density, max_density;
+    double min_force, max_force; /* w l: > 0 compression */
+    double load_path;            /* sum of |w| l^2 */
+    double total_load;           /* sum of the loads' downward parts */
+    double max_reaction;
+} gproj_forces;
+
+/* The mesh as it is, with the forces of the last solve. */
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 
 #ifdef __cplusplus
 }
@@ -9130,7 +9204,24 @@ typedef struct gproji_part {
     double target;     /* the volume, internal units */
     double *gradient;  /* of the volume: 3 numbers a vertex of the mesh */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
+    double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
+    double bound[2];   /* of stresses: least, greatest */
 } gproji_part;
+
+/* What the section statics keeps for a form. */
+typedef struct gproji_statics {
+    gproj_loads loads;  /* its arrays are copies */
+    uint8_t *axes;      /* of each vertex: the axes along which it is in equilibrium; 0: pinned */
+    int32_t *force;     /* of each edge, the variable of its force; -1: none */
+    int32_t *first_row; /* of each vertex, in the group of equilibrium */
+    int64_t *load_start;
+    int32_t *load_vertex;
+    double load_scale; /* loads inside = loads in internal lengths * load_scale */
+    double lost;       /* the part of the load that the first forces could not balance */
+    int32_t group;     /* of equilibrium */
+    int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
+    bool started;      /* the forces have values */
+} gproji_statics;
 
 struct gproj_form {
     gproji_heap own;
@@ -9145,10 +9236,11 @@ struct gproj_form {
     double *area;     /* work: the vectorial area of each face */
     int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
     int32_t ring_size;
-    int32_t closeness;  /* the group of the default guidance; -1: none yet */
-    int32_t planarity;  /* the group of the planar faces; -1: none */
-    gproji_part *guard; /* the faces that are kept from turning over; NULL: none yet */
-    double *guard_area; /* of each of them, its vectorial area when the solve began: 3 numbers */
+    int32_t closeness;       /* the group of the default guidance; -1: none yet */
+    int32_t planarity;       /* the group of the planar faces; -1: none */
+    gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
+    double *guard_area;      /* of each of them, its vectorial area when the solve began: 3 numbers */
+    gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
 };
 
@@ -9161,12 +9253,29 @@ GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
     gproji_give(&form->own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
     gproji_give(&form->own, part->gradient, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
     gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
+    gproji_give(&form->own, part->factor, (size_t)part->capacity, sizeof *part->factor);
     gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
     gproji_give(&form->own, part, 1, sizeof *part);
 }
 
+GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
+    gproji_statics *s = form->statics;
+    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
+    /* the arrays that are not const; their owner is this form */
+    gproji_give(&form->own, (void *)s->loads.edge_density, edges, sizeof *s->loads.edge_density);
+    gproji_give(&form->own, (void *)s->loads.point_load, 3 * vertices, sizeof *s->loads.point_load);
+    gproji_give(&form->own, s->load_vertex, s->load_start ? (size_t)s->load_start[vertices] : 0,
+                sizeof *s->load_vertex);
+    gproji_give(&form->own, s->axes, vertices, sizeof *s->axes);
+    gproji_give(&form->own, s->force, edges, sizeof *s->force);
+    gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
+    gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
+    gproji_give(&form->own, s, 1, sizeof *s);
+}
+
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     if (!form) return;
+    if (form->statics) gproji_statics_give(form);
     if (form->guard)
         gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
     while (form->part) {
@@ -10297,6 +10406,977 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 }
 
 /* ============================================================================================================
+   >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses all earlier sections.
+
+   Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method for form finding
+   and computation of general networks (1974).
+
+   Edge e has the variable force[e] = w_e load_scale / scale, and the rows of its ends are in internal lengths and loads
+   times load_scale, chosen at the start so that these variables have mean square 1. The weight on a vertex depends on
+   the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], as linear terms at the end of its z row whose
+   coefficients the refresh fills in. */
+
+enum {
+    GPROJI_AXES = 7 /* x, y and z */
+};
+
+/* Initial forces are drawn a little to this one, so that among equally good ones those of a dome of half its radius are
+   found; a shape that leaves more than `lost` of its load unbalanced starts from uniform forces. */
+static const double gproji_force_damping = 0.03, gproji_force_lost = 0.95;
+
+/* The factors from the caller's loads to other units. */
+typedef struct gproji_load_units {
+    double force, per_length, per_area;
+} gproji_load_units;
+
+GPROJI_INTERNAL gproji_load_units gproji_internal_loads(const gproj_form *form) {
+    gproji_load_units units;
+    units.force = form->statics->load_scale;
+    units.per_length = units.force / form->scale;
+    units.per_area = units.per_length / form->scale;
+    return units;
+}
+
+GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
+    return loads->edge_density ? loads->edge_density[edge] : loads->density;
+}
+
+/* The weight on a face is h'a, a its vectorial area and h a direction that depends on a only: area_load a / |a|, and
+   snow (0, 0, 1) with the sign of a. Returns it. */
+GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
+                                        double h[3]) {
+    static const double up[3] = {0, 0, 1};
+    double area[3], direction[3];
+    int32_t k;
+    gproji_area_vector(mesh, x, face, area);
+    gproji_copy3(area, direction);
+    gproji_normalise3(direction, up);
+    for (k = 0; k < 3; ++k) h[k] = loads->area_load * direction[k];
+    h[2] += area[2] < 0 ? -loads->snow : loads->snow;
+    return gproji_dot3(h, area);
+}
+
+/* The load on each vertex at positions x, 3 numbers each. */
+GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, gproji_load_units units,
+                                     const double *x, double *out) {
+    int32_t v, e, f, c, k;
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (k = 0; k < 3; ++k)
+            out[3 * (size_t)v + (size_t)k] =
+                loads->point_load ? units.force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *a = x + 3 * (size_t)mesh->origin[2 * e], *b = x + 3 * (size_t)mesh->origin[2 * e + 1];
+        double half = 0.5 * units.per_length * gproji_density(loads, e) * gproji_distance3(a, b);
+        out[3 * (size_t)mesh->origin[2 * e] + 2] -= half;
+        out[3 * (size_t)mesh->origin[2 * e + 1] + 2] -= half;
+    }
+    if (loads->area_load == 0 && loads->snow == 0) return;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double h[3], part = units.per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
+        int32_t corner = mesh->face_halfedge[f];
+        for (c = 0; c < mesh->face_degree[f]; ++c, corner = mesh->next[corner])
+            out[3 * (size_t)mesh->origin[corner] + 2] -= part;
+    }
+}
+
+/* -- the rows of equilibrium -- */
+
+/* Has the vertex an equation along z whose weight can change? */
+GPROJI_INLINE bool gproji_has_weight(const gproji_statics *s, int32_t vertex) { return (s->axes[vertex] & 4) != 0; }
+
+/* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: how far its rows go. */
+GPROJI_INTERNAL int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
+    int32_t row = s->first_row[vertex], c;
+    for (c = 0; c < axis; ++c) row += s->axes[vertex] >> c & 1;
+    return row;
+}
+
+/* The coefficients of the weight on `vertex` in its z row, for vertex `other`: += s d. */
+GPROJI_INTERNAL void gproji_add_weight_terms(const gproj_form *form, int32_t vertex, int32_t other, double s,
+                                             const double d[3]) {
+    const gproji_statics *statics = form->statics;
+    int64_t at = statics->load_start[vertex];
+    int32_t count, k;
+    gproj_term *term = gproji_row_terms(form->system, statics->group, gproji_axis_row(statics, vertex, 2), &count);
+    term += count - 3 * (statics->load_start[vertex + 1] - at);
+    while (statics->load_vertex[at] != other) ++at;
+    term += 3 * (at - statics->load_start[vertex]);
+    for (k = 0; k < 3; ++k) term[k].a += s * d[k];
+}
+
+/* The weight of an edge, w'(a - b) / 2 on each end with w along the edge: linear, without a constant. */
+GPROJI_INTERNAL void gproji_linearise_edge_load(const gproj_form *form, const double *x, double per_length,
+                                                int32_t edge) {
+    static const double none[3] = {0, 0, 0};
+    const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
+    double d[3], half = 0.5 * per_length * gproji_density(&form->statics->loads, edge);
+    int32_t k;
+    if (half == 0) return;
+    gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], d);
+    gproji_normalise3(d, none);
+    for (k = 0; k < 2; ++k) {
+        if (!gproji_has_weight(form->statics, end[k])) continue;
+        gproji_add_weight_terms(form, end[k], end[0], -half, d);
+        gproji_add_weight_terms(form, end[k], end[1], half, d);
+    }
+}
+
+/* The same for a face: its weight is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j, so
+   linearised it is its gradient times x minus its value. */
+GPROJI_INTERNAL void gproji_linearise_face_load(const gproj_form *form, const double *x, double per_area,
+                                                int32_t face) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *statics = form->statics;
+    int32_t degree = mesh->face_degree[face], hi = mesh->face_halfedge[face], hj = hi, i, j;
+    double h[3], scale = per_area / degree;
+    double part = scale * gproji_face_load(mesh, &statics->loads, x, face, h);
+    for (j = 0; j < degree; ++j, hj = mesh->next[hj]) {
+        double across[3], gradient[3];
+        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[hj]], x + 3 * (size_t)mesh->origin[mesh->prev[hj]], across);
+        gproji_cross3(across, h, gradient);
+        for (i = 0; i < degree; ++i, hi = mesh->next[hi])
+            if (gproji_has_weight(statics, mesh->origin[hi]))
+                gproji_add_weight_terms(form, mesh->origin[hi], mesh->origin[hj], -0.5 * scale, gradient);
+        if (gproji_has_weight(statics, mesh->origin[hj]))
+            form->system->group[statics->group].row[gproji_axis_row(statics, mesh->origin[hj], 2)].constant += part;
+    }
+}
+
+/* The loads at the present x. */
+GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
+    gproj_form *form = (gproj_form *)user;
+    gproji_statics *statics = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(system);
+    gproji_load_units units = gproji_internal_loads(form);
+    int32_t v, c, row = 0, e, f;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        for (c = 0; c < 3; ++c) {
+            int32_t count, t;
+            gproj_term *term;
+            if (!(statics->axes[v] >> c & 1)) continue;
+            term = gproji_row_terms(system, group, row, &count);
+            for (t = 0; c == 2 && t < 3 * (statics->load_start[v + 1] - statics->load_start[v]); ++t)
+                term[count - 1 - t].a = 0;
+            gproj_system_set_row(
+                system, group, row++, NULL,
+                statics->loads.point_load ? units.force * statics->loads.point_load[3 * (size_t)v + (size_t)c] : 0);
+        }
+    }
+    for (e = 0; e < mesh->edge_count; ++e) gproji_linearise_edge_load(form, x, units.per_length, e);
+    if (statics->loads.area_load == 0 && statics->loads.snow == 0) return;
+    for (f = 0; f < mesh->face_count; ++f) gproji_linearise_face_load(form, x, units.per_area, f);
+}
+
+/* The rows of one vertex: y_e (x_i - x_j) summed over its edges with a force, and room for the weight's terms. */
+GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, gproj_term *term) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *statics = form->statics;
+    int32_t c, k;
+    int64_t l;
+    for (c = 0; c < 3; ++c) {
+        int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+        if (!(statics->axes[vertex] >> c & 1)) continue;
+        do {
+            int32_t force = statics->force[h / 2];
+            if (force >= 0) {
+                gproji_set_term(&term[count++], force, 3 * vertex + c, 1);
+                gproji_set_term(&term[count++], force, 3 * mesh->origin[mesh->twin[h]] + c, -1);
+            }
+            h = mesh->next[mesh->twin[h]];
+        } while (h != start);
+        for (l = statics->load_start[vertex]; c == 2 && l < statics->load_start[vertex + 1]; ++l)
+            for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * statics->load_vertex[l] + k, -1, 0);
+        gproj_system_add_row(form->system, statics->group, count, term, 0, vertex);
+    }
+}
+
+/* Notes `other` among the vertices that the weight on `vertex` depends on, once. */
+GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex, int32_t other, int32_t *mark,
+                                        int64_t *count) {
+    if (mark[other] == vertex) return;
+    mark[other] = vertex;
+    if (statics->load_vertex) statics->load_vertex[*count] = other;
+    ++*count;
+}
+
+/* The vertices that the weight on each vertex depends on; without load_vertex only counts. `mark`: work, one number a
+   vertex. */
+GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) {
+    const gproj_mesh *mesh = form->mesh;
+    gproji_statics *statics = form->statics;
+    bool areas = statics->loads.area_load != 0 || statics->loads.snow != 0;
+    bool lengths = statics->loads.density != 0 || statics->loads.edge_density;
+    int64_t count = 0;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) mark[v] = -1;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start, around;
+        statics->load_start[v] = count;
+        if (!gproji_has_weight(statics, v) || start < 0 || !(areas || lengths)) continue;
+        gproji_note_weight(statics, v, v, mark, &count);
+        do {
+            gproji_note_weight(statics, v, mesh->origin[mesh->twin[h]], mark, &count);
+            for (around = mesh->next[h]; areas && mesh->face[h] >= 0 && around != h; around = mesh->next[around])
+                gproji_note_weight(statics, v, mesh->origin[around], mark, &count);
+            h = mesh->next[mesh->twin[h]];
+        } while (h != start);
+    }
+    statics->load_start[mesh->vertex_count] = count;
+}
+
+/* -- making the statics of a form -- */
+
+GPROJI_INTERNAL double *gproji_copy_numbers(gproj_form *form, const double *numbers, size_t count) {
+    double *copy = (double *)gproji_take(&form->own, count, sizeof *copy);
+    if (copy && count) memcpy(copy, numbers, count * sizeof *copy);
+    return copy;
+}
+
+/* Refuses loads that are no numbers. */
+GPROJI_INTERNAL bool gproji_loads_are_valid(gproj_form *form, const gproj_loads *loads) {
+    int32_t e, v;
+    bool finite = loads && gproji_is_finite(loads->density) && gproji_is_finite(loads->area_load) &&
+                  gproji_is_finite(loads->snow);
+    if (!finite) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "equilibrium: there are no loads, or density, area load or snow is not a finite number");
+        return false;
+    }
+    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) {
+        if (gproji_is_finite(loads->edge_density[e])) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                    "equilibrium: the density of edge %d is not a finite number", e);
+        return false;
+    }
+    for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v) {
+        if (gproji_is_finite(loads->point_load[v])) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
+                    "equilibrium: the load on vertex %d is not a finite number", v / 3);
+        return false;
+    }
+    return true;
+}
+
+/* Takes the arrays; what is missing is seen by the caller. */
+GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *loads) {
+    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
+    gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->own, 1, sizeof *s);
+    form->statics = s;
+    if (!s) return false;
+    s->group = s->guidance = -1;
+    s->load_scale = 1;
+    s->loads = *loads;
+    s->loads.edge_density = loads->edge_density ? gproji_copy_numbers(form, loads->edge_density, edges) : NULL;
+    s->loads.point_load = loads->point_load ? gproji_copy_numbers(form, loads->point_load, 3 * vertices) : NULL;
+    s->axes = (uint8_t *)gproji_take(&form->own, vertices, sizeof *s->axes);
+    s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
+    s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
+    s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
+    return (s->loads.edge_density || !loads->edge_density) && (s->loads.point_load || !loads->point_load) && s->axes &&
+           s->force && s->first_row && s->load_start;
+}
+
+/* Which vertices are in equilibrium along which axes, which edges have a force. */
+GPROJI_INTERNAL void gproji_set_supports(gproj_form *form, const gproj_supports *supports) {
+    const gproj_mesh *mesh = form->mesh;
+    gproji_statics *s = form->statics;
+    int32_t v, e, k, first, carrying = 0;
+    for (v = 0; v < mesh->vertex_count; ++v) s->axes[v] = mesh->vertex_halfedge[v] < 0 ? 0 : GPROJI_AXES;
+    for (k = 0; k < supports->count; ++k)
+        s->axes[supports->vertex[k]] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
+    for (v = 0, k = 0; v < mesh->vertex_count; ++v) {
+        s->first_row[v] = k;
+        k = gproji_axis_row(s, v, 3);
+    }
+    for (e = 0; e < mesh->edge_count; ++e) {
+        s->force[e] = s->axes[mesh->origin[2 * e]] || s->axes[mesh->origin[2 * e + 1]] ? carrying++ : -1;
+    }
+    first = gproj_system_add_variables(form->system, carrying, 1, NULL);
+    for (e = 0; e < mesh->edge_count; ++e)
+        if (s->force[e] >= 0) s->force[e] += first;
+}
+
+/* The lists of weights; `mark`: work, one number a vertex. */
+GPROJI_INTERNAL bool gproji_take_weights(gproj_form *form, int32_t *mark) {
+    gproji_statics *s = form->statics;
+    gproji_list_weights(form, mark);
+    s->load_vertex =
+        (int32_t *)gproji_take(&form->own, (size_t)s->load_start[form->mesh->vertex_count], sizeof *s->load_vertex);
+    if (!s->load_vertex) return false;
+    gproji_list_weights(form, mark);
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
+    gproji_statics *s = form->statics;
+    int64_t most = 0, v;
+    size_t count;
+    gproj_term *term;
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
+    count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
+    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
+    if (!term) {
+        gproji_fail_memory(&form->error);
+        return;
+    }
+    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
+        if (s->axes[v]) gproji_add_vertex_equilibrium(form, (int32_t)v, term);
+    gproji_give(&form->own, term, count, sizeof *term);
+}
+
+GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
+                                        double weight) {
+    int32_t *mark;
+    if (!gproji_form_ready(form)) return -1;
+    if (form->statics) {
+        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "the form has its equilibrium already: set its schedule, or make a new form");
+        return -1;
+    }
+    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
+        return -1;
+    }
+    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex) ||
+        !gproji_loads_are_valid(form, loads))
+        return -1;
+    mark = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->vertex_count, sizeof *mark);
+    if (mark && gproji_take_statics(form, loads)) {
+        gproji_set_supports(form, supports);
+        if (!gproji_take_weights(form, mark)) gproji_fail_memory(&form->error);
+    } else {
+        gproji_fail_memory(&form->error);
+    }
+    gproji_give(&form->own, mark, (size_t)form->mesh->vertex_count, sizeof *mark);
+    if (!gproji_form_ready(form)) return -1;
+    form->statics->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
+                                            gproji_refresh_equilibrium, NULL);
+    if (form->statics->group < 0) return -1;
+    form->system->group[form->statics->group].refresh_user = form;
+    gproji_add_equilibrium_rows(form);
+    return gproji_form_ready(form) ? form->statics->group : -1;
+}
+
+/* -- bounds and fairness of forces -- */
+
+/* Refuses what needs equilibrium and has none. */
+GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
+    if (!gproji_form_ready(form)) return false;
+    if (!form->statics)
+        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "%s: there are no forces yet: call gproj_add_equilibrium before", name);
+    return form->statics != NULL;
+}
+
+static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
+
+/* sign w >= 0. */
+GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
+                                        const int32_t *edges, double weight) {
+    int32_t group, k;
+    if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
+    group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    for (k = 0; k < count && gproji_form_ready(form); ++k) {
+        int32_t edge = edges ? edges[k] : k;
+        gproj_term term;
+        gproji_set_term(&term, form->statics->force[edge], -1, sign);
+        if (term.i >= 0) gproj_system_add_row(form->system, group, 1, &term, 0, edge);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    return gproji_add_sign(form, gproji_compression_name, 1, count, edges, weight);
+}
+
+GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    return gproji_add_sign(form, gproji_tension_name, -1, count, edges, weight);
+}
+
+/* The terms s y l of the force in an edge: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
+GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge, gproj_term *term) {
+    const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[k], form->statics->force[edge], 3 * end[0] + k, 0);
+        gproji_set_term(&term[3 + k], form->statics->force[edge], 3 * end[1] + k, 0);
+    }
+}
+
+GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t edge, double s, gproj_term *term) {
+    static const double none[3] = {0, 0, 0};
+    const double *x = gproj_system_values(form->system);
+    const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
+    double u[3];
+    int32_t k;
+    gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], u);
+    gproji_normalise3(u, none);
+    for (k = 0; k < 3; ++k) {
+        term[k].a = s * u[k];
+        term[3 + k].a = -s * u[k];
+    }
+}
+
+/* Rows of forces: y l - load_scale A min >= 0 where part->factor is A, and load_scale A max - y l >= 0 where it is -A;
+   part->bound holds min and max. */
+GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    double load_scale = part->form->statics->load_scale;
+    int32_t r, count;
+    for (r = 0; r < part->count; ++r) {
+        gproj_term *term = gproji_row_terms(system, group, r, &count);
+        bool above = part->factor[r] < 0;
+        gproji_refresh_force_terms(part->form, part->vertex[r], above ? -1 : 1, term);
+        gproj_system_set_row(system, group, r, NULL, -load_scale * part->factor[r] * part->bound[above]);
+    }
+}
+
+GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, const int32_t *edges,
+                                            const double *sections, double min, double max) {
+    int32_t k;
+    if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
+    if (!(min <= max)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "stress bounds: the least, %g, is not below the greatest, %g", min, max);
+        return false;
+    }
+    for (k = 0; sections && k < count; ++k) {
+        if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
+                    "stress bounds: edge %d would have the cross-section %g, which is not > 0", edges ? edges[k] : k,
+                    sections[k]);
+        return false;
+    }
+    return true;
+}
+
+GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
+                                          double min, double max, double weight) {
+    gproji_part *part;
+    gproj_term term[6];
+    int32_t k, side;
+    if (!gproji_has_statics(form, "stress bounds") || !gproji_stress_is_valid(form, count, edges, sections, min, max))
+        return -1;
+    part = gproji_new_part(form, 2 * count);
+    if (!part) return -1;
+    part->count = 0;
+    part->bound[0] = min;
+    part->bound[1] = max;
+    part->factor = (double *)gproji_take(&form->own, (size_t)part->capacity, sizeof *part->factor);
+    if (!part->factor) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    part->group =
+        gproji_new_group(form, "stress bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, gproji_refresh_stress, part);
+    for (side = 0; side < 2; ++side) {
+        for (k = 0; k < count && gproji_form_ready(form); ++k) {
+            int32_t edge = edges ? edges[k] : k;
+            if (form->statics->force[edge] < 0 || !gproji_is_finite(part->bound[side])) continue;
+            part->vertex[part->count] = edge;
+            part->factor[part->count++] = (side ? -1 : 1) * (sections ? sections[k] : 1);
+            gproji_set_force_terms(form, edge, term);
+            gproj_system_add_row(form->system, part->group, 6, term, 0, edge);
+        }
+    }
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* Rows y_e l_e - y_f l_f = 0; part->vertex holds the pairs e, f. */
+GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    int32_t r, count;
+    for (r = 0; r < part->count / 2; ++r) {
+        gproj_term *term = gproji_row_terms(system, group, r, &count);
+        gproji_refresh_force_terms(part->form, part->vertex[2 * r], 1, term);
+        gproji_refresh_force_terms(part->form, part->vertex[2 * r + 1], -1, term + 6);
+    }
+}
+
+GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
+    const gproj_mesh *mesh;
+    gproji_part *part;
+    gproj_term term[12];
+    int32_t f, k;
+    if (!gproji_has_statics(form, "force fairness")) return -1;
+    mesh = form->mesh;
+    part = gproji_new_part(form, 4 * mesh->face_count);
+    if (!part) return -1;
+    part->count = 0;
+    part->group = gproji_new_group(form, "force fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
+                                   gproji_refresh_force_fairness, part);
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; mesh->face_degree[f] == 4 && k < 2; ++k, h = mesh->next[h]) {
+            int32_t e = h / 2, opposite = mesh->next[mesh->next[h]] / 2;
+            if (form->statics->force[e] < 0 || form->statics->force[opposite] < 0) continue;
+            part->vertex[part->count++] = e;
+            part->vertex[part->count++] = opposite;
+            gproji_set_force_terms(form, e, term);
+            gproji_set_force_terms(form, opposite, term + 6);
+            gproj_system_add_row(form->system, part->group, 12, term, 0, f);
+        }
+    }
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* -- the forces that balance a given shape best -- */
+
+/* May the force of an edge be negative or positive? Bounds with weight 0 do not count. */
+GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
+    int32_t e, g, r;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        lower[e] = -HUGE_VAL;
+        upper[e] = HUGE_VAL;
+    }
+    for (g = 0; g < form->system->group_count; ++g) {
+        const gproji_group *group = &form->system->group[g];
+        double *limit = strcmp(group->name, gproji_compression_name) == 0 ? lower
+                        : strcmp(group->name, gproji_tension_name) == 0   ? upper
+                                                                          : NULL;
+        if (!limit || group->kind != GPROJ_BOUND || !(group->schedule.weight > 0)) continue;
+        for (r = 0; r < group->row_count; ++r)
+            if (group->row[r].weight > 0) limit[group->row[r].element] = 0;
+    }
+}
+
+/* The least-squares problem of equilibrium at positions x: a column for each edge, rows as in the group; and its
+   solution. */
+typedef struct gproji_balance {
+    gproj_least_squares problem;
+    int32_t row_count;
+    int64_t *start;
+    int32_t *row;
+    double *value, *load, *b, *lower, *upper, *force;
+    size_t edges, vertices;
+} gproji_balance;
+
+GPROJI_INTERNAL void gproji_give_balance(gproj_form *form, gproji_balance *p) {
+    gproji_give(&form->own, p->start, p->edges + 1, sizeof *p->start);
+    gproji_give(&form->own, p->row, 6 * p->edges, sizeof *p->row);
+    gproji_give(&form->own, p->value, 6 * p->edges, sizeof *p->value);
+    gproji_give(&form->own, p->load, 3 * p->vertices, sizeof *p->load);
+    gproji_give(&form->own, p->b, 3 * p->vertices, sizeof *p->b);
+    gproji_give(&form->own, p->lower, p->edges, sizeof *p->lower);
+    gproji_give(&form->own, p->upper, p->edges, sizeof *p->upper);
+    gproji_give(&form->own, p->force, p->edges, sizeof *p->force);
+}
+
+GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
+    memset(p, 0, sizeof *p);
+    p->edges = (size_t)form->mesh->edge_count;
+    p->vertices = (size_t)form->mesh->vertex_count;
+    p->start = (int64_t *)gproji_take(&form->own, p->edges + 1, sizeof *p->start);
+    p->row = (int32_t *)gproji_take(&form->own, 6 * p->edges, sizeof *p->row);
+    p->value = (double *)gproji_take(&form->own, 6 * p->edges, sizeof *p->value);
+    p->load = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->load);
+    p->b = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->b);
+    p->lower = (double *)gproji_take(&form->own, p->edges, sizeof *p->lower);
+    p->upper = (double *)gproji_take(&form->own, p->edges, sizeof *p->upper);
+    p->force = (double *)gproji_take_zeroed(&form->own, p->edges, sizeof *p->force);
+    if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
+    gproji_give_balance(form, p);
+    gproji_fail_memory(&form->error);
+    return false;
+}
+
+/* The entries of the matrix: (x_i - x_j) in the rows of i, the opposite in those of j, for edges with a force. */
+GPROJI_INTERNAL void gproji_fill_balance(const gproj_form *form, const double *x, gproji_balance *p) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *s = form->statics;
+    int64_t count = 0;
+    int32_t e, side, c;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        p->start[e] = count;
+        for (side = 0; s->force[e] >= 0 && side < 2; ++side) {
+            int32_t i = mesh->origin[2 * e + side], j = mesh->origin[2 * e + 1 - side];
+            for (c = 0; c < 3; ++c) {
+                if (!(s->axes[i] >> c & 1)) continue;
+                p->row[count] = gproji_axis_row(s, i, c);
+                p->value[count++] = x[3 * (size_t)i + (size_t)c] - x[3 * (size_t)j + (size_t)c];
+            }
+        }
+    }
+    p->start[mesh->edge_count] = count;
+    p->row_count = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
+}
+
+/* b = -load, in the rows of the group. */
+GPROJI_INTERNAL void gproji_fill_loads(const gproj_form *form, gproji_balance *p) {
+    int32_t v, c;
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        for (c = 0; c < 3; ++c)
+            if (form->statics->axes[v] >> c & 1)
+                p->b[gproji_axis_row(form->statics, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
+}
+
+/* The mean load on the vertices that are not pinned. */
+GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *load) {
+    double sum = 0;
+    int32_t v, count = 0;
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        if (!form->statics->axes[v]) continue;
+        sum += gproji_length3(load + 3 * (size_t)v);
+        ++count;
+    }
+    return count ? sum / count : 0;
+}
+
+/* p->force: the best forces y for the loads p->load at x, drawn by `damping` to `mean`. False after an error. */
+GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
+                                          gproji_balance *p) {
+    gproj_least_squares_result result;
+    gproj_error error;
+    int32_t e;
+    int64_t t;
+    gproji_error_clear(&error);
+    gproji_fill_balance(form, x, p);
+    gproji_fill_loads(form, p);
+    gproji_force_limits(form, p->lower, p->upper);
+    for (e = 0; e < form->mesh->edge_count; ++e) { /* y = mean + z: the same problem for z, with 0 in the middle */
+        p->lower[e] -= mean;
+        p->upper[e] -= mean;
+        for (t = p->start[e]; t < p->start[e + 1]; ++t) p->b[p->row[t]] -= mean * p->value[t];
+    }
+    memset(&p->problem, 0, sizeof p->problem);
+    p->problem.rows = p->row_count;
+    p->problem.columns = form->mesh->edge_count;
+    p->problem.start = p->start;
+    p->problem.row = p->row;
+    p->problem.value = p->value;
+    p->problem.b = p->b;
+    p->problem.lower = p->lower;
+    p->problem.upper = p->upper;
+    p->problem.damping = damping;
+    if (gproj_solve_least_squares(&p->problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
+        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+        return false;
+    }
+    for (e = 0; e < form->mesh->edge_count; ++e) p->force[e] = form->statics->force[e] >= 0 ? p->force[e] + mean : 0;
+    return true;
+}
+
+/* out = load + the forces' sum in each vertex at x (NULL: no forces), nothing along the axes of supports. */
+GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
+                                       double *out) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t v, e, c;
+    for (c = 0; c < 3 * mesh->vertex_count; ++c) out[c] = load[c];
+    for (e = 0; force && e < mesh->edge_count; ++e) {
+        size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
+        for (c = 0; c < 3; ++c) {
+            out[i + (size_t)c] += force[e] * (x[i + (size_t)c] - x[j + (size_t)c]);
+            out[j + (size_t)c] -= force[e] * (x[i + (size_t)c] - x[j + (size_t)c]);
+        }
+    }
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (c = 0; c < 3; ++c)
+            if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
+}
+
+GPROJI_INTERNAL double gproji_norm(const double *a, int32_t count) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < count; ++i) sum += a[i] * a[i];
+    return sqrt(sum);
+}
+
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
+    static const gproji_load_units units = {1, 1, 1};
+    gproji_balance p;
+    const double *x;
+    double mean;
+    int32_t v, e;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
+        !gproji_take_balance(form, &p))
+        return gproj_form_error(form)->code;
+    x = form->mesh->position;
+    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p.load);
+    mean = gproji_mean_load(form, p.load);
+    if (gproji_solve_balance(form, x, 0, 0, &p)) {
+        gproji_unbalanced(form, x, p.force, p.load, p.load);
+        for (v = 0; residuals && v < form->mesh->vertex_count; ++v)
+            residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) / mean : 0;
+        for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e];
+    }
+    gproji_give_balance(form, &p);
+    return gproj_form_error(form)->code;
+}
+
+/* -- the start of a solve -- */
+
+/* The largest distance of a vertex from the supports, in edges; 1 where there are none. `queue`, `distance`: work, one
+   number a vertex each. */
+GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *queue, int32_t *distance) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t v, head, tail = 0, radius = 1;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        distance[v] = form->statics->axes[v] == GPROJI_AXES ? -1 : 0;
+        if (distance[v] == 0) queue[tail++] = v;
+    }
+    for (head = 0; head < tail; ++head) {
+        int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
+        if (h < 0) continue;
+        do {
+            int32_t other = mesh->origin[mesh->twin[h]];
+            if (distance[other] < 0) {
+                distance[other] = distance[queue[head]] + 1;
+                radius = gproji_max(radius, distance[other]);
+                queue[tail++] = other;
+            }
+            h = mesh->next[mesh->twin[h]];
+        } while (h != start);
+    }
+    return radius;
+}
+
+/* Are most of the edges for tension only? */
+GPROJI_INTERNAL bool gproji_hangs(const gproj_form *form, const double *upper) {
+    int32_t e, hanging = 0, carrying = 0;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        carrying += form->statics->force[e] >= 0;
+        hanging += form->statics->force[e] >= 0 && upper[e] <= 0;
+    }
+    return 2 * hanging > carrying;
+}
+
+/* Every force becomes `force`, or the nearest one that is allowed. */
+GPROJI_INTERNAL void gproji_set_uniform(const gproj_form *form, double force, gproji_balance *p) {
+    int32_t e;
+    gproji_force_limits(form, p->lower, p->upper);
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        p->force[e] = form->statics->force[e] >= 0 ? gproji_fmin(gproji_fmax(force, p->lower[e]), p->upper[e]) : 0;
+}
+
+/* Takes the forces p->force as variables, scaled to mean square 1, and the loads with them. */
+GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *p) {
+    gproji_statics *s = form->statics;
+    double *x = gproj_system_values(form->system), sum = 0;
+    int32_t e, carrying = 0;
+    for (e = 0; e < form->mesh->edge_count; ++e) carrying += s->force[e] >= 0;
+    sum = gproji_norm(p->force, form->mesh->edge_count) / sqrt(gproji_fmax(1, carrying));
+    if (!(sum > 0)) sum = 1;
+    s->load_scale /= sum;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / sum;
+}
+
+/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
+   uniform. `work`: 2 numbers a vertex. */
+GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, int32_t *work) {
+    gproji_statics *s = form->statics;
+    const double *x = gproj_system_values(form->system);
+    double load, all, typical = 0.5 * gproji_support_radius(form, work, work + form->mesh->vertex_count);
+    int32_t count = 3 * form->mesh->vertex_count;
+    s->load_scale = 1;
+    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    load = gproji_mean_load(form, p->load);
+    if (load > 0) s->load_scale = 1 / load;
+    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    gproji_force_limits(form, p->lower, p->upper);
+    if (gproji_hangs(form, p->upper)) typical = -typical;
+    if (!gproji_solve_balance(form, x, gproji_force_damping, typical, p)) return false;
+    gproji_unbalanced(form, x, NULL, p->load, p->b);
+    all = gproji_norm(p->b, count);
+    gproji_unbalanced(form, x, p->force, p->load, p->b);
+    s->lost = all > 0 ? gproji_norm(p->b, count) / all : 0;
+    if (s->lost > gproji_force_lost) gproji_set_uniform(form, 2 * typical, p);
+    gproji_take_forces(form, p);
+    return s->lost > gproji_force_lost;
+}
+
+/* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise. */
+GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
+    gproji_statics *s = form->statics;
+    gproj_schedule schedule = {0, 0.3, 5};
+    const double *x;
+    int32_t e, row = 0;
+    gproj_term term;
+    if (s->guidance < 0 && !wanted) return;
+    if (s->guidance < 0) {
+        s->guidance = gproji_new_group(form, "force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE, 0, NULL, NULL);
+        for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
+            gproji_set_term(&term, s->force[e], -1, 1);
+            if (term.i >= 0) gproj_system_add_row(form->system, s->guidance, 1, &term, 0, e);
+        }
+    }
+    schedule.weight = wanted ? 1 : 0;
+    gproj_system_set_schedule(form->system, s->guidance, schedule);
+    x = gproj_system_values(form->system);
+    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
+        if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
+}
+
+/* What comes before a solve: forces, if there are none yet, and their guidance. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
+    gproji_statics *s = form->statics;
+    size_t vertices = (size_t)form->mesh->vertex_count;
+    gproji_balance p;
+    int32_t *work;
+    bool uniform = false;
+    if (!s || !(form->system->group[s->group].schedule.weight > 0)) return;
+    if (!s->started) {
+        work = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *work);
+        if (!work) {
+            gproji_fail_memory(&form->error);
+            return;
+        }
+        if (gproji_take_balance(form, &p)) {
+            uniform = gproji_start_forces(form, &p, work);
+            gproji_give_balance(form, &p);
+        }
+        gproji_give(&form->own, work, 2 * vertices, sizeof *work);
+        s->started = gproji_form_ready(form);
+    }
+    gproji_set_force_guidance(form, uniform);
+}
+
+/* -- forces for the caller -- */
+
+/* Densities in the caller's units. */
+GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
+    const gproji_statics *s = form->statics;
+    if (!s || !s->started || s->force[edge] < 0) return 0;
+    return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
+}
+
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities) {
+    int32_t e;
+    if (!form || !densities) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    for (e = 0; e < form->mesh->edge_count; ++e) densities[e] = gproji_force_density(form, e);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
+    double *x, rms = 0;
+    int32_t e, carrying = 0;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
+    form->statics->started = false;
+    if (!densities) return GPROJ_OK;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        if (form->statics->force[e] < 0) continue;
+        rms += densities[e] * densities[e];
+        ++carrying;
+        if (gproji_is_finite(densities[e])) continue;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                           "set forces: the density of edge %d is not a finite number", e);
+    }
+    rms = rms > 0 ? sqrt(rms / carrying) : 1;
+    x = gproj_system_values(form->system);
+    form->statics->load_scale = form->scale / rms;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / rms;
+    form->statics->started = true;
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
+    static const gproji_load_units units = {1, 1, 1};
+    if (!form || !form->statics || !loads) return GPROJ_ERROR_ARGUMENT;
+    gproji_loads_at(form->mesh, &form->statics->loads, units, form->mesh->position, loads);
+    return GPROJ_OK;
+}
+
+/* out += the forces' sum in each vertex, at the mesh's positions. */
+GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t e, c;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *a = mesh->position + 3 * (size_t)mesh->origin[2 * e],
+                     *b = mesh->position + 3 * (size_t)mesh->origin[2 * e + 1];
+        double w = gproji_force_density(form, e);
+        for (c = 0; c < 3; ++c) {
+            out[3 * (size_t)mesh->origin[2 * e] + (size_t)c] += w * (a[c] - b[c]);
+            out[3 * (size_t)mesh->origin[2 * e + 1] + (size_t)c] -= w * (a[c] - b[c]);
+        }
+    }
+}
+
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions) {
+    int32_t v, c;
+    gproj_code code = gproj_get_loads(form, reactions);
+    if (code) return code;
+    gproji_add_force_sums(form, reactions);
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        bool idle = form->mesh->vertex_halfedge[v] < 0;
+        for (c = 0; c < 3; ++c) {
+            double *r = &reactions[3 * (size_t)v + (size_t)c];
+            *r = idle || form->statics->axes[v] >> c & 1 ? 0 : -*r;
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* The measures that belong to edges. */
+GPROJI_INTERNAL void gproji_measure_members(const gproj_form *form, gproj_forces *m) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t e;
+    bool first = true;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double w = gproji_force_density(form, e), length, force;
+        if (form->statics->force[e] < 0) continue;
+        length = gproji_distance3(mesh->position + 3 * (size_t)mesh->origin[2 * e],
+                                  mesh->position + 3 * (size_t)mesh->origin[2 * e + 1]);
+        force = w * length;
+        m->load_path += fabs(force) * length;
+        m->min_density = first ? w : gproji_fmin(m->min_density, w);
+        m->max_density = first ? w : gproji_fmax(m->max_density, w);
+        m->min_force = first ? force : gproji_fmin(m->min_force, force);
+        m->max_force = first ? force : gproji_fmax(m->max_force, force);
+        first = false;
+    }
+}
+
+/* The measures that belong to vertices; `sum`: 3 numbers a vertex, loads on entry, destroyed. */
+GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, gproj_forces *m) {
+    const gproj_mesh *mesh = form->mesh;
+    double largest = 0;
+    int32_t v, c;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
+        m->total_load -= sum[3 * (size_t)v + 2];
+    }
+    gproji_add_force_sums(form, sum);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double left[3], given[3];
+        if (mesh->vertex_halfedge[v] < 0) continue;
+        for (c = 0; c < 3; ++c) {
+            bool balanced = form->statics->axes[v] >> c & 1;
+            left[c] = balanced ? sum[3 * (size_t)v + (size_t)c] : 0;
+            given[c] = balanced ? 0 : sum[3 * (size_t)v + (size_t)c];
+        }
+        m->max_reaction = gproji_fmax(m->max_reaction, gproji_length3(given));
+        if (!(gproji_length3(left) > m->residual) && m->residual_vertex >= 0) continue;
+        m->residual = gproji_length3(left);
+        m->residual_vertex = v;
+    }
+    if (largest > 0) m->residual /= largest;
+}
+
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
+    gproj_forces m;
+    double *sum;
+    memset(&m, 0, sizeof m);
+    m.residual_vertex = -1;
+    if (!form || !gproji_has_statics(form, "measure forces")) return m;
+    sum = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
+    if (!sum) {
+        gproji_fail_memory(&form->error);
+        return m;
+    }
+    gproj_get_loads(form, sum);
+    gproji_measure_members(form, &m);
+    gproji_measure_nodes(form, sum, &m);
+    gproji_give(&form->own, sum, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
+    return m;
+}
+
+/* ============================================================================================================
    >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
@@ -10428,8 +11508,9 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t g;
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
-        if (g != form->closeness && !form->system->group[g].guard && info.kind == GPROJ_WISH &&
-            info.schedule.weight > 0 && info.rows > 0)
+        bool guidance = g == form->closeness || (form->statics && g == form->statics->guidance);
+        if (!guidance && !form->system->group[g].guard && info.kind == GPROJ_WISH && info.schedule.weight > 0 &&
+            info.rows > 0)
             return true;
     }
     return false;
@@ -10501,6 +11582,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
         return gproji_failed_result(gproj_form_error(form));
     gproji_load_positions(form);
     gproji_restart_gliding(form);
+    gproji_begin_forces(form);
+    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
