@@ -5439,8 +5439,7 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
 }
 
 /* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`; where it acts
-   already, as long as it does not hold the step back. The guard's rows are looked at where the full step leads, and
-   remain. */
+   already, as long as it does not hold the step back. The guard looks where the full step leads, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
     const gproji_row *row = &g->row[r];
     if (!(row->weight > 0)) return false;
@@ -5448,15 +5447,16 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     return row->phi + gproji_row_times(g, row, s->step) < (row->active ? 0 : -slack);
 }
 
-/* Switches rows of bounds on and off by the step that was found; true: it must be found again. */
-GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop) {
+/* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
+   in the first round only. */
+GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
     bool changed = false;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        if (g->kind != GPROJ_BOUND || !(g->weight > 0)) continue;
+        if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             bool active = gproji_should_act(s, g, r, slack);
             changed = changed || active != g->row[r].active;
@@ -5468,12 +5468,12 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop) {
 
 /* Finds the full step with this eps, again where it meets bounds, and goes there. False: there is none. */
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
-    int32_t rounds = GPROJI_BOUND_ROUNDS;
+    int32_t round = 0;
     do {
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(loop->system, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
-    } while (rounds-- > 0 && gproji_switch_bounds(loop));
+    } while (round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round++));
     return true;
 }
 

@@ -1272,11 +1272,15 @@ static void report_mesh(json *j, const gproj_mesh *mesh) {
     json_close(j, '}');
 }
 
+static const char *kind_name(gproj_kind kind) {
+    return kind == GPROJ_CONSTRAINT ? "constraint" : kind == GPROJ_BOUND ? "bound" : "wish";
+}
+
 static void report_group(json *j, const gproj_group_info *group) {
     json_open(j, NULL, '{');
     j->row = true;
     json_string(j, "name", group->name);
-    json_string(j, "kind", group->kind == GPROJ_CONSTRAINT ? "constraint" : "wish");
+    json_string(j, "kind", kind_name(group->kind));
     json_number(j, "weight", group->schedule.weight);
     json_number(j, "decay", group->schedule.decay > 0 ? group->schedule.decay : 1);
     if (group->schedule.last > 0 && group->schedule.last < INT32_MAX)
