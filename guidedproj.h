@@ -687,6 +687,7 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
    >>api-measure   What a mesh is like. */
 typedef struct gproj_measures {
     double mean_edge, min_edge, max_edge;
+    double length;                             /* of all edges */
     double area, min_face_area, max_face_area; /* lengths of vectorial areas */
     /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the
        mesh. */
@@ -768,13 +769,36 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight);
-/* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. */
+/* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
+   edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
    positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
    iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
+/* The sum of the face areas |a_k| (vectorial areas) is `area`, in the mesh's units squared. One global row, linearised
+   anew in each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
+GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight);
+/* length_price * (length of all edges) + area_price * (area of all faces) = cost. Prices per unit of the mesh's lengths
+   and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
+GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight);
+
+/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower bound,
+   a max of 0 or INFINITY no upper one.
+
+   Lengths of these edges (as for gproj_add_lengths):
+       (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
+GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
+                                          double weight);
+/* Areas |a_k| of these faces (faces NULL: the first `count` ones), linearised anew in each iteration:
+       (|a_k| - min) / (2 sqrt(min)) >= 0,    (max - |a_k|) / (2 sqrt(max)) >= 0. */
+GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
+                                        double weight);
+/* The area of all faces, and the cost: see gproj_add_total_area and gproj_add_cost. */
+GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight);
+GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
+                                        double max, double weight);
 
 /* -- what is wished -- */
 
@@ -803,6 +827,12 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
 /* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
+/* Weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says; elements
+   NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off, 1 on
+   again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a reference
+   has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
+GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
+                                               const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
 
 /* Is the boundary vertex a corner: only one face there, or the boundary turns by more than 45 degrees. */
@@ -1436,6 +1466,7 @@ GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, 
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
     return gproji_number_write_digits(value, 0, text);
 }
+
 
 /* ============================================================================================================
    >>memory   The host's allocator with accounts. Uses platform.
@@ -4871,7 +4902,9 @@ typedef struct gproji_row {
     int64_t slot;  /* compiled: its slots; none for a wide row */
     int64_t pair;  /* compiled: its blocks: for each slot b all slots a >= b */
     double constant;
-    double weight; /* times the group's; 0: the row is left out of everything */
+    double weight; /* own * factor, times the group's; 0: the row is left out of everything */
+    double own;    /* what the row itself asks for */
+    double factor; /* the weight of its element */
     double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
@@ -5256,7 +5289,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     }
     row = &g->row[g->row_count];
     row->constant = constant;
-    row->weight = 1;
+    row->weight = row->own = row->factor = 1;
     row->element = element;
     if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memset(row + 1, 0, sizeof row[1]);
@@ -5299,7 +5332,8 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
                            "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
                            weight, row, group);
-    s->group[group].row[row].weight = weight;
+    s->group[group].row[row].own = weight;
+    s->group[group].row[row].weight = weight * s->group[group].row[row].factor;
     s->changed = true;
     return GPROJ_OK;
 }
@@ -5743,6 +5777,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
     s->changed = false;
     for (i = 0; i < s->group_count; ++i) {
         gproji_evaluation e;
+        if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
         e.group = &s->group[i];
         e.x = s->x;
         e.chunks = e.group->row_count / GPROJI_ROWS_PER_TASK + 1;
@@ -6289,8 +6324,7 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
 }
 
 /* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`; where it acts
-   already, as long as it does not hold the step back. The guard's rows are looked at where the full step leads, and
-   remain. */
+   already, as long as it does not hold the step back. The guard looks where the full step leads, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
     const gproji_row *row = &g->row[r];
     if (!(row->weight > 0)) return false;
@@ -6298,15 +6332,16 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     return row->phi + gproji_row_times(g, row, s->step) < (row->active ? 0 : -slack);
 }
 
-/* Switches rows of bounds on and off by the step that was found; true: it must be found again. */
-GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop) {
+/* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
+   in the first round only. */
+GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
     bool changed = false;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        if (g->kind != GPROJ_BOUND || !(g->weight > 0)) continue;
+        if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             bool active = gproji_should_act(s, g, r, slack);
             changed = changed || active != g->row[r].active;
@@ -6318,12 +6353,12 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop) {
 
 /* Finds the full step with this eps, again where it meets bounds, and goes there. False: there is none. */
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
-    int32_t rounds = GPROJI_BOUND_ROUNDS;
+    int32_t round = 0;
     do {
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(loop->system, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
-    } while (rounds-- > 0 && gproji_switch_bounds(loop));
+    } while (round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round++));
     return true;
 }
 
@@ -8808,6 +8843,7 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
     return hit;
 }
 
+
 /* ============================================================================================================
    >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
 
@@ -9009,6 +9045,7 @@ GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures
         double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
         if (e == 0 || length < m->min_edge) m->min_edge = length;
         if (length > m->max_edge) m->max_edge = length;
+        m->length += length;
         m->collapsed_edges += length <= 1e-6 * m->mean_edge;
         m->folded_edges += gproji_is_folded(mesh, e);
     }
@@ -9202,7 +9239,10 @@ typedef struct gproji_part {
     gproj_curve **own_curve;
     int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
     double target;     /* the volume, internal units */
-    double *gradient;  /* of the volume: 3 numbers a vertex of the mesh */
+    double *gradient;  /* of the volume or cost: 3 numbers a vertex of the mesh */
+    double bound[2];   /* at least and at most, internal units; 0 and infinite: none */
+    double price[2];   /* of lengths and areas in internal units */
+    double unit;       /* of the cost: by how much it changes per mean edge length of the mesh's size */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
     double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
     double bound[2];   /* of stresses: least, greatest */
@@ -9746,7 +9786,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
             part->segment[i] = gproji_walk(curve, part->segment[i], p);
-        } else if (system->group[group].row[3 * i + 2].weight > 0) {
+        } else if (system->group[group].row[3 * i + 2].own > 0) {
             continue;
         }
         after = gproji_along(curve, part->segment[i], p, true) > 0;
@@ -10159,6 +10199,64 @@ GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t
     return gproj_system_group_info(form ? form->system : NULL, group);
 }
 
+/* How many elements of this kind the mesh has; 0 for what is no part of a mesh. */
+GPROJI_INTERNAL int32_t gproji_element_count(const gproj_mesh *mesh, gproj_place place) {
+    switch (place) {
+    case GPROJ_PLACE_VERTEX: return mesh->vertex_count;
+    case GPROJ_PLACE_EDGE: return mesh->edge_count;
+    case GPROJ_PLACE_FACE: return mesh->face_count;
+    default: return 0;
+    }
+}
+
+/* Refuses lists of elements and weights that do not fit the group. */
+GPROJI_INTERNAL bool gproji_element_weights_are_valid(gproj_form *form, int32_t group, int32_t count,
+                                                      const int32_t *elements, const double *weights) {
+    gproj_group_info info = gproj_system_group_info(form->system, group);
+    int32_t have = gproji_element_count(form->mesh, info.place), k;
+    if (!gproji_system_has_group(form->system, group) || count < 0 || (count > 0 && !weights) ||
+        (!elements && count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                    "element weights: %d of %d elements of group %d, or there is no such group, or no weights", count,
+                    have, group);
+        return false;
+    }
+    for (k = 0; k < count; ++k) {
+        int32_t element = elements ? elements[k] : k;
+        if (element >= 0 && element < have && weights[k] >= 0 && weights[k] <= 1e50) continue;
+        gproji_fail(&form->error, element < 0 || element >= have ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT, info.place,
+                    element, "element weights: group '%s' has no %s %d, or its weight %g is not in 0..1e50", info.name,
+                    gproji_place_word(info.place), element, weights[k]);
+        return false;
+    }
+    return true;
+}
+
+GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
+                                               const double *weights) {
+    int32_t have, k;
+    double *of; /* of each element the new weight; -1: as it was */
+    gproji_group *g;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    if (!gproji_element_weights_are_valid(form, group, count, elements, weights)) return form->error.code;
+    g = &form->system->group[group];
+    have = gproji_element_count(form->mesh, g->place);
+    of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
+    if (!of) return gproji_fail_memory(&form->error);
+    for (k = 0; k < have; ++k) of[k] = -1;
+    for (k = 0; k < count; ++k) of[elements ? elements[k] : k] = weights[k];
+    for (k = 0; k < g->row_count; ++k) {
+        gproji_row *row = &g->row[k];
+        if (row->element < 0 || row->element >= have || of[row->element] < 0) continue;
+        row->factor = of[row->element];
+        row->weight = row->own * row->factor;
+    }
+    gproji_give(&form->own, of, (size_t)have, sizeof *of);
+    form->system->changed = true;
+    return GPROJ_OK;
+}
+
 /* -- lengths of edges -- */
 
 /* Refuses lists that are no edges of the mesh. */
@@ -10301,37 +10399,59 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The row |a(v)| + grad |a|'(v' - v) - A = 0 of each face: d|a| / dv_i = (v_(i+1) - v_(i-1)) x a / (2 |a|). */
-GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
-    static const double none[3] = {0, 0, 0};
-    gproj_form *form = ((const gproji_part *)user)->form;
+/* The gradient of a face's area by the vertex where half-edge h of it starts: (v_(i+1) - v_(i-1)) x a / (2 |a|). */
+GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const double normal[3], double out[3]) {
     const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system);
-    int32_t f, k, c, count;
+    const double *x = gproj_system_values(form->system);
+    double across[3];
+    int32_t k;
+    gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
+    gproji_cross3(across, normal, out);
+    for (k = 0; k < 3; ++k) out[k] /= 2;
+}
+
+/* scale (|a(v)| + grad |a|'(v' - v)) of a face at form->area: 3 coefficients a corner; returns the constant. */
+GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
+    static const double none[3] = {0, 0, 0};
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    int32_t h = mesh->face_halfedge[face], k, c;
+    double normal[3], slope[3], constant;
+    gproji_copy3(form->area + 3 * (size_t)face, normal);
+    constant = scale * gproji_length3(normal);
+    gproji_normalise3(normal, none);
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+        const double *v = x + 3 * (size_t)mesh->origin[h];
+        gproji_area_slope(form, h, normal, slope);
+        for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[c];
+        constant -= scale * gproji_dot3(slope, v);
+    }
+    return constant;
+}
+
+/* The terms of gproji_linearise_area, for variables that are there; returns how many. */
+GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t face, gproj_term *term) {
+    int32_t h = mesh->face_halfedge[face], k, c;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        for (c = 0; c < 3; ++c) gproji_set_term(&term[3 * k + c], 3 * mesh->origin[h] + c, -1, 0);
+    return 3 * mesh->face_degree[face];
+}
+
+/* The row |a(v)| - A = 0 of each face. */
+GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
+    gproj_form *form = ((const gproji_part *)user)->form;
+    int32_t f, count;
     gproji_update_areas(form);
-    for (f = 0; f < mesh->face_count; ++f) {
+    for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term *term = gproji_row_terms(system, group, f, &count);
-        int32_t h = mesh->face_halfedge[f];
-        double normal[3], across[3], slope[3], constant;
-        gproji_copy3(form->area + 3 * (size_t)f, normal);
-        constant = gproji_length3(normal);
-        gproji_normalise3(normal, none);
-        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            const double *v = x + 3 * (size_t)mesh->origin[h];
-            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]],
-                        across);
-            gproji_cross3(across, normal, slope);
-            for (c = 0; c < 3; ++c) term[3 * k + c].a = slope[c] / 2;
-            constant -= gproji_dot3(slope, v) / 2;
-        }
-        gproj_system_set_row(system, group, f, NULL, constant);
+        gproj_system_set_row(system, group, f, NULL, gproji_linearise_area(form, f, 1, term));
     }
 }
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
     gproj_term *term = part ? gproji_take_terms(form) : NULL;
-    int32_t common, f, k, c, h;
+    int32_t common, f, count;
     double area = 0;
     if (!term) return -1;
     gproji_update_areas(form);
@@ -10341,12 +10461,9 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     part->group =
         gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
-        int32_t degree = form->mesh->face_degree[f];
-        h = form->mesh->face_halfedge[f];
-        for (k = 0; k < degree; ++k, h = form->mesh->next[h])
-            for (c = 0; c < 3; ++c) gproji_set_term(&term[3 * k + c], 3 * form->mesh->origin[h] + c, -1, 0);
-        gproji_set_term(&term[3 * degree], common, -1, -1);
-        gproj_system_add_row(form->system, part->group, 3 * degree + 1, term, 0, f);
+        count = gproji_set_area_terms(form->mesh, f, term);
+        gproji_set_term(&term[count], common, -1, -1);
+        gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
@@ -10403,6 +10520,259 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
     gproj_system_add_row(form->system, part->group, (int32_t)count, term, 0, 0);
     gproji_give(&form->own, term, count, sizeof *term);
     return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* -- bounds, total area, cost -- */
+
+/* bound = the caller's at least and at most, times `scale`, 0 and infinite where there is none; refuses those that make
+   no sense. */
+GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
+                                        double bound[2]) {
+    if (max >= 0 && !(max > 0)) max = HUGE_VAL;
+    if (!(min >= 0) || !(max >= min) || !gproji_is_finite(min)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "%s: at least %g and at most %g: bounds need 0 <= min <= max", name, min, max);
+        return false;
+    }
+    bound[0] = min * scale;
+    bound[1] = gproji_is_finite(max) ? max * scale : HUGE_VAL;
+    return true;
+}
+
+/* Is there a bound: side 0 at least, side 1 at most? */
+GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
+    return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
+}
+
+GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
+                                          double weight) {
+    static const char name[] = "length bounds";
+    double bound[2];
+    int32_t group, k, side;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
+    if (!gproji_take_bounds(form, name, min, max, form->scale, bound)) return -1;
+    group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    for (k = 0; k < count; ++k) {
+        int32_t edge = edges ? edges[k] : k;
+        for (side = 0; side < 2; ++side) {
+            gproj_term term[9];
+            double sign = side == 0 ? 1 : -1, length = bound[side];
+            if (!gproji_has_bound(bound, side)) continue;
+            gproji_set_length_terms(form->mesh, edge, sign * 0.5 / length, term);
+            gproj_system_add_row(form->system, group, 9, term, -sign * length / 2, edge);
+        }
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* Refuses lists that are no faces of the mesh. */
+GPROJI_INTERNAL bool gproji_faces_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *faces) {
+    int32_t i, have = form->mesh->face_count;
+    if (count < 0 || (!faces && count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d faces of %d", name, count, have);
+        return false;
+    }
+    for (i = 0; faces && i < count; ++i) {
+        if (faces[i] >= 0 && faces[i] < have) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, faces[i],
+                    "%s: there is no face %d (the mesh has %d, counted from 0)", name, faces[i], have);
+        return false;
+    }
+    return true;
+}
+
+/* The rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) of each face. */
+GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    int32_t i, side, count, row = 0;
+    gproji_update_areas(part->form);
+    for (i = 0; i < part->count; ++i) {
+        for (side = 0; side < 2; ++side) {
+            double sign = side == 0 ? 1 : -1, area = part->bound[side], scale, constant;
+            if (!gproji_has_bound(part->bound, side)) continue;
+            scale = sign / (2 * sqrt(area));
+            constant =
+                gproji_linearise_area(part->form, part->vertex[i], scale, gproji_row_terms(system, group, row, &count));
+            gproj_system_set_row(system, group, row++, NULL, constant - scale * area);
+        }
+    }
+}
+
+GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
+                                        double weight) {
+    static const char name[] = "area bounds";
+    gproji_part *part;
+    gproj_term *term;
+    int32_t k, side;
+    if (!gproji_form_ready(form) || !gproji_faces_are_valid(form, name, count, faces)) return -1;
+    part = gproji_new_part(form, count);
+    if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
+    term = gproji_take_terms(form);
+    if (!term) return -1;
+    part->group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_FACE, weight, gproji_refresh_area_bounds, part);
+    for (k = 0; k < count; ++k) {
+        part->vertex[k] = faces ? faces[k] : k;
+        for (side = 0; side < 2; ++side) {
+            int32_t terms = gproji_set_area_terms(form->mesh, part->vertex[k], term);
+            if (gproji_has_bound(part->bound, side))
+                gproj_system_add_row(form->system, part->group, terms, term, 0, part->vertex[k]);
+        }
+    }
+    gproji_give_terms(form, term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* gradient += price * grad |v_i - v_j| over all edges; returns the sum of the lengths. */
+GPROJI_INTERNAL double gproji_add_length_gradient(const gproj_form *form, double price, double *gradient) {
+    static const double none[3] = {0, 0, 0};
+    const int32_t *origin = form->mesh->origin;
+    const double *x = gproj_system_values(form->system);
+    double sum = 0;
+    int32_t e;
+    for (e = 0; e < form->mesh->edge_count; ++e, origin += 2) {
+        double d[3];
+        gproji_sub3(x + 3 * (size_t)origin[0], x + 3 * (size_t)origin[1], d);
+        sum += gproji_length3(d);
+        gproji_normalise3(d, none);
+        gproji_add_scaled3(price, d, gradient + 3 * (size_t)origin[0]);
+        gproji_add_scaled3(-price, d, gradient + 3 * (size_t)origin[1]);
+    }
+    return sum;
+}
+
+/* gradient += price * grad |a_k| over all faces at form->area; returns the sum of the areas. */
+GPROJI_INTERNAL double gproji_add_area_gradient(const gproj_form *form, double price, double *gradient) {
+    static const double none[3] = {0, 0, 0};
+    const gproj_mesh *mesh = form->mesh;
+    double sum = 0;
+    int32_t f, k;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        double normal[3];
+        gproji_copy3(form->area + 3 * (size_t)f, normal);
+        sum += gproji_length3(normal);
+        gproji_normalise3(normal, none);
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            double slope[3];
+            gproji_area_slope(form, h, normal, slope);
+            gproji_add_scaled3(price, slope, gradient + 3 * (size_t)mesh->origin[h]);
+        }
+    }
+    return sum;
+}
+
+/* The cost and its gradient at the system's x. */
+GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
+    double length, area;
+    gproji_update_areas(form);
+    memset(part->gradient, 0, 3 * (size_t)form->mesh->vertex_count * sizeof *part->gradient);
+    length = part->price[0] * gproji_add_length_gradient(form, part->price[0], part->gradient);
+    area = gproji_add_area_gradient(form, part->price[1], part->gradient);
+    if (size) *size = (length + 2 * part->price[1] * area) / gproji_fmax(sqrt(area), 1e-6);
+    return length + part->price[1] * area;
+}
+
+/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit; the terms are those of all vertices in order.
+   A prescribed cost has the first one only. */
+GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    const double *x = gproj_system_values(system);
+    double ahead = gproji_cost(part->form, part, NULL);
+    int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
+    for (t = 0; t < count; ++t) ahead -= part->gradient[t] * x[t];
+    for (side = 0; side < 2; ++side) {
+        double scale = (side == 0 ? 1 : -1) / part->unit;
+        gproj_term *term;
+        if (!gproji_has_bound(part->bound, side)) continue;
+        term = gproji_row_terms(system, group, row, &count);
+        for (t = 0; t < count; ++t) term[t].a = scale * part->gradient[t];
+        gproj_system_set_row(system, group, row++, NULL, scale * (ahead - part->bound[side]));
+    }
+}
+
+/* The global rows of a cost whose part has its bounds and prices. `term`: room for all vertices. */
+GPROJI_INTERNAL int32_t gproji_add_cost_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
+                                             double weight, gproj_term *term) {
+    int32_t count = 3 * form->mesh->vertex_count, side, t;
+    gproj_group group;
+    gproji_cost(form, part, &part->unit);
+    part->unit = gproji_fmax(part->unit, 1e-12);
+    memset(&group, 0, sizeof group);
+    group.name = name;
+    group.kind = kind;
+    group.global = true;
+    group.schedule.weight = weight;
+    group.refresh = gproji_refresh_cost;
+    group.refresh_user = part;
+    part->group = gproj_system_add_group(form->system, &group);
+    for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
+    for (side = 0; side < 2; ++side)
+        if (gproji_has_bound(part->bound, side)) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* The prices of lengths and areas as the caller gives them. */
+GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, const double price[2],
+                                         double min, double max, double weight) {
+    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    size_t count;
+    gproj_term *term;
+    int32_t group;
+    if (!part) return -1;
+    if (!(price[0] >= 0) || !(price[1] >= 0) || !(price[0] + price[1] > 0) || !gproji_is_finite(price[0] + price[1])) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "%s: the prices %g and %g must be >= 0 and not both 0", name, price[0], price[1]);
+        return -1;
+    }
+    if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
+    count = 3 * (size_t)form->mesh->vertex_count;
+    part->price[0] = price[0] / form->scale;
+    part->price[1] = price[1] / form->scale / form->scale;
+    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
+    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
+    if (!term) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    group = gproji_add_cost_rows(form, part, name, kind, weight, term);
+    gproji_give(&form->own, term, count, sizeof *term);
+    return group;
+}
+
+/* What is prescribed is > 0: so "0 means no bound" does not apply to it. */
+GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, const double price[2],
+                                                    double value, double weight) {
+    if (!gproji_form_ready(form)) return -1;
+    if (!(value > 0) || !gproji_is_finite(value)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", name, value);
+        return -1;
+    }
+    return gproji_add_total(form, name, GPROJ_CONSTRAINT, price, value, HUGE_VAL, weight);
+}
+
+GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
+    static const double price[2] = {0, 1};
+    return gproji_add_prescribed_total(form, "total area", price, area, weight);
+}
+
+GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
+    static const double price[2] = {0, 1};
+    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, price, min, max, weight);
+}
+
+GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
+    double price[2];
+    price[0] = length_price;
+    price[1] = area_price;
+    return gproji_add_prescribed_total(form, "cost", price, cost, weight);
+}
+
+GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
+                                        double max, double weight) {
+    double price[2];
+    price[0] = length_price;
+    price[1] = area_price;
+    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, price, min, max, weight);
 }
 
 /* ============================================================================================================
@@ -11565,6 +11935,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
         for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
             const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
             bool bound = info.kind == GPROJ_BOUND, volume = form->system->group[g].global;
+            if (!(form->system->group[g].row[r].weight > 0)) continue;
             if (bound ? gproji_bound_holds(&form->system->group[g].row[r])
                       : volume || gproji_row_holds(form, term, count))
                 return true;

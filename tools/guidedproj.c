@@ -41,7 +41,7 @@ enum {
     EXIT_MEMORY = 4
 };
 enum {
-    MOST_OPTIONS = 40,
+    MOST_OPTIONS = 64,
     MOST_ITERATIONS = 100000,
     MOST_THREADS = 256
 };
@@ -62,6 +62,11 @@ typedef struct tool_volume { /* an absolute one, or a factor of the input's */
     bool given, factor;
     double value;
 } tool_volume;
+
+typedef struct tool_range { /* at least and at most; 0: no bound */
+    bool given;
+    double min, max, weight;
+} tool_range;
 
 typedef struct tool_move {
     int32_t vertex;
@@ -98,7 +103,10 @@ typedef struct tool {
     tool_output output[OUTPUT_COUNT];
     tool_weight planar, circular, closeness, fairness, boundary_fairness, tangential, gauss, parallelograms,
         equal_areas;
-    tool_volume volume;
+    tool_weight equal_lengths;
+    tool_range edge_length, face_area;
+    tool_volume volume, total_area, cost;
+    double length_price, area_price;
     tool_word *fix, *glide; /* as many as the command line has words, at most */
     tool_move *move;
     int32_t fix_count, glide_count, move_count;
@@ -278,13 +286,54 @@ static bool set_wish_or_one(tool *t, void *place, const char *name, const char *
     return set_wish(t, place, name, value ? value : "1");
 }
 
-static bool set_volume(tool *t, void *place, const char *name, const char *value) {
-    tool_volume *volume = (tool_volume *)place;
+/* V, or xF. */
+static bool read_volume(const char *text, tool_volume *volume) {
     volume->given = true;
-    volume->factor = value[0] == 'x';
-    if (read_number(value + volume->factor, strlen(value + volume->factor), &volume->value)) return true;
+    volume->factor = text[0] == 'x';
+    return read_number(text + volume->factor, strlen(text + volume->factor), &volume->value);
+}
+
+static bool set_volume(tool *t, void *place, const char *name, const char *value) {
+    if (read_volume(value, (tool_volume *)place)) return true;
     return fail(t, EXIT_USAGE, "--%s %s: expected a volume, or x and a factor of the input's volume (as in x1.2)", name,
                 value);
+}
+
+static bool set_total_area(tool *t, void *place, const char *name, const char *value) {
+    tool_volume *area = (tool_volume *)place;
+    if (read_volume(value, area) && area->value > 0) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected an area above 0, or x and a factor of the input's area (as in x1.2)",
+                name, value);
+}
+
+/* MIN,MAX[=W], one of the two may be left out. */
+static bool set_range(tool *t, void *place, const char *name, const char *value) {
+    tool_range *range = (tool_range *)place;
+    tool_word word = split_word(value, 1);
+    const char *comma = (const char *)memchr(word.text, ',', word.length);
+    size_t first = comma ? (size_t)(comma - word.text) : 0, rest = comma ? word.length - first - 1 : 0;
+    bool good = comma && first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0;
+    range->given = true, range->min = range->max = 0;
+    if (first > 0) good = good && read_number(word.text, first, &range->min) && range->min >= 0;
+    if (rest > 0) good = good && read_number(comma + 1, rest, &range->max) && range->max > 0;
+    if (rest > 0) good = good && range->min <= range->max;
+    range->weight = word.weight.weight;
+    if (good) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX", name, value);
+}
+
+/* LENGTHPRICE,AREAPRICE,MAX or ...,xF */
+static bool set_cost(tool *t, void *place, const char *name, const char *value) {
+    const char *first = strchr(value, ','), *second = first ? strchr(first + 1, ',') : NULL;
+    tool_volume *cost = (tool_volume *)place;
+    if (second && read_number(value, (size_t)(first - value), &t->length_price) &&
+        read_number(first + 1, (size_t)(second - first - 1), &t->area_price) && read_volume(second + 1, cost) &&
+        t->length_price >= 0 && t->area_price >= 0 && t->length_price + t->area_price > 0 && cost->value > 0)
+        return true;
+    return fail(t, EXIT_USAGE,
+                "--%s %s: expected LENGTHPRICE,AREAPRICE,MAX: prices of 0 or larger, not both 0, and the largest cost, "
+                "or x and a factor of the input's cost (as in 1,2,x0.9)",
+                name, value);
 }
 
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
@@ -405,6 +454,16 @@ static const tool_option options[] = {
     {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
      PLACE(planar)},
     {0, "circular", "[=W]", false, "faces have a circumcircle (with --planar)", NULL, set_must, PLACE(circular)},
+    {0, "equal-lengths", "[=W]", false, "all edges have the same length", NULL, set_must, PLACE(equal_lengths)},
+    {0, "edge-length", "MIN,MAX[=W]", false, "edges are at least MIN and at most MAX long; one may be left out", NULL,
+     set_range, PLACE(edge_length)},
+    {0, "face-area", "MIN,MAX[=W]", false, "face areas are at least MIN and at most MAX; one may be left out", NULL,
+     set_range, PLACE(face_area)},
+    {0, "total-area", "A", false, "the area of all faces is A, or xF: F times the input's", NULL, set_total_area,
+     PLACE(total_area)},
+    {0, "cost", "CL,CA,MAX", false,
+     "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
+     NULL, set_cost, PLACE(cost)},
     {0, "volume", "V", false,
      "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's", NULL,
      set_volume, PLACE(volume)},
@@ -583,7 +642,8 @@ static bool has_ending(const char *path, const char *ending) {
 static bool anything_asked(const tool *t) {
     return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
-           t->gauss.given || t->circular.given || t->volume.given || t->parallelograms.given || t->equal_areas.given;
+           t->gauss.given || t->circular.given || t->volume.given || t->parallelograms.given || t->equal_areas.given ||
+           t->equal_lengths.given || t->edge_length.given || t->face_area.given || t->total_area.given || t->cost.given;
 }
 
 static bool check_options(tool *t) {
@@ -983,6 +1043,29 @@ static void add_energies(tool *t) {
     if (t->equal_areas.weight > 0) add_wish(t, &t->equal_areas, gproj_add_equal_areas(form, t->equal_areas.weight));
 }
 
+/* What a measure costs. */
+static double cost_of(const tool *t, const gproj_measures *m) {
+    return t->length_price * m->length + t->area_price * m->area;
+}
+
+/* The value that is asked for, where the input has `have`. */
+static double value_of(const tool_volume *volume, double have) {
+    return volume->factor ? volume->value * have : volume->value;
+}
+
+static void add_sizes(tool *t) {
+    gproj_form *form = t->form;
+    const tool_range *length = &t->edge_length, *area = &t->face_area;
+    int32_t edges = t->mesh->edge_count, faces = t->mesh->face_count;
+    if (t->equal_lengths.weight > 0) gproj_add_equal_lengths(form, edges, NULL, t->equal_lengths.weight);
+    if (length->weight > 0) gproj_add_length_bounds(form, edges, NULL, length->min, length->max, length->weight);
+    if (area->weight > 0) gproj_add_area_bounds(form, faces, NULL, area->min, area->max, area->weight);
+    if (t->total_area.given) gproj_add_total_area(form, value_of(&t->total_area, t->before.area), 1);
+    if (t->cost.given)
+        gproj_add_cost_bounds(form, t->length_price, t->area_price, 0, value_of(&t->cost, cost_of(t, &t->before)), 1);
+    if (t->volume.given) gproj_add_volume(form, value_of(&t->volume, gproj_volume(t->mesh)), 1);
+}
+
 /* The groups stand in the form in the order of the table, whatever their order on the command line. */
 static bool build_form(tool *t) {
     int32_t i;
@@ -990,8 +1073,7 @@ static bool build_form(tool *t) {
     if (!t->form) return fail_memory(t);
     if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
     if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
-    if (t->volume.given)
-        gproj_add_volume(t->form, t->volume.factor ? t->volume.value * gproj_volume(t->mesh) : t->volume.value, 1);
+    add_sizes(t);
     for (i = 0; i < t->fix_count; ++i)
         if (!add_fixed(t, &t->fix[i])) return false;
     for (i = 0; i < t->glide_count; ++i)
@@ -1272,11 +1354,15 @@ static void report_mesh(json *j, const gproj_mesh *mesh) {
     json_close(j, '}');
 }
 
+static const char *kind_name(gproj_kind kind) {
+    return kind == GPROJ_CONSTRAINT ? "constraint" : kind == GPROJ_BOUND ? "bound" : "wish";
+}
+
 static void report_group(json *j, const gproj_group_info *group) {
     json_open(j, NULL, '{');
     j->row = true;
     json_string(j, "name", group->name);
-    json_string(j, "kind", group->kind == GPROJ_CONSTRAINT ? "constraint" : "wish");
+    json_string(j, "kind", kind_name(group->kind));
     json_number(j, "weight", group->schedule.weight);
     json_number(j, "decay", group->schedule.decay > 0 ? group->schedule.decay : 1);
     if (group->schedule.last > 0 && group->schedule.last < INT32_MAX)
@@ -1366,7 +1452,7 @@ static void report_result(json *j, const tool *t) {
     json_close(j, '}');
 }
 
-static void report_measures(json *j, const char *key, const gproj_measures *m) {
+static void report_measures(json *j, const tool *t, const char *key, const gproj_measures *m) {
     json_open(j, key, '{');
     json_number(j, "planarity_max", m->planarity_max);
     json_number(j, "planarity_mean", m->planarity_mean);
@@ -1386,9 +1472,11 @@ static void report_measures(json *j, const char *key, const gproj_measures *m) {
     json_number(j, "mean_edge", m->mean_edge);
     json_number(j, "min_edge", m->min_edge);
     json_number(j, "max_edge", m->max_edge);
+    json_number(j, "length", m->length);
     json_number(j, "area", m->area);
     json_number(j, "min_face_area", m->min_face_area);
     json_number(j, "max_face_area", m->max_face_area);
+    if (t->cost.given) json_number(j, "cost", cost_of(t, m));
     json_close(j, '}');
 }
 
@@ -1406,8 +1494,8 @@ static gproj_code write_report(tool *t, FILE *file) {
     for (i = 0; i < t->record_count; ++i) report_iteration(j, t, &t->record[i]);
     json_close(j, ']');
     report_result(j, t);
-    report_measures(j, "measures_before", &t->before);
-    report_measures(j, "measures", &t->after);
+    report_measures(j, t, "measures_before", &t->before);
+    report_measures(j, t, "measures", &t->after);
     json_open(j, "seconds", '{');
     json_number(j, "reading", t->read_seconds);
     json_number(j, "set_up", t->setup_seconds);
