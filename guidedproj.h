@@ -9240,12 +9240,11 @@ typedef struct gproji_part {
     int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
     double target;     /* the volume, internal units */
     double *gradient;  /* of the volume or cost: 3 numbers a vertex of the mesh */
-    double bound[2];   /* at least and at most, internal units; 0 and infinite: none */
+    double bound[2];   /* at least and at most, internal units (stresses: the caller's); 0 and infinite: none */
     double price[2];   /* of lengths and areas in internal units */
     double unit;       /* of the cost: by how much it changes per mean edge length of the mesh's size */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
     double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
-    double bound[2];   /* of stresses: least, greatest */
 } gproji_part;
 
 /* What the section statics keeps for a form. */
