@@ -94,6 +94,7 @@ enum {
     OUTPUT_MESH,
     OUTPUT_REPORT,
     OUTPUT_PICTURE,
+    OUTPUT_FORCES,
     OUTPUT_COUNT
 };
 
@@ -107,6 +108,12 @@ typedef struct tool {
     tool_range edge_length, face_area;
     tool_volume volume, total_area, cost;
     double length_price, area_price;
+    tool_weight equilibrium, compressive, tensile, force_fairness;
+    tool_range stress;
+    double density, area_load, snow;
+    const char *loads;
+    bool loads_given; /* any of them */
+    tool_word supports;
     tool_word *fix, *glide; /* as many as the command line has words, at most */
     tool_move *move;
     int32_t fix_count, glide_count, move_count;
@@ -127,6 +134,11 @@ typedef struct tool {
     gproj_form *form;
     gproj_result result;
     double *original, *planarity_before, *planarity;
+    double *point_load;               /* of --loads */
+    double *imbalance_before, *imbalance; /* of faces: what the best forces leave unbalanced */
+    double *density_of_edge, *force_in_edge;
+    bool *support;
+    gproj_forces forces;
     gproj_measures before, after;
     tool_record *record;
     int32_t record_count;
@@ -336,6 +348,41 @@ static bool set_cost(tool *t, void *place, const char *name, const char *value) 
                 name, value);
 }
 
+/* The same for stresses, which may be of either sign, with bounds that may be left out. */
+static bool set_stress(tool *t, void *place, const char *name, const char *value) {
+    tool_range *range = (tool_range *)place;
+    tool_word word = split_word(value, 1);
+    const char *comma = (const char *)memchr(word.text, ',', word.length);
+    size_t first = comma ? (size_t)(comma - word.text) : 0, rest = comma ? word.length - first - 1 : 0;
+    bool good = comma && first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0;
+    range->given = true, range->min = -HUGE_VAL, range->max = HUGE_VAL;
+    if (first > 0) good = good && read_number(word.text, first, &range->min);
+    if (rest > 0) good = good && read_number(comma + 1, rest, &range->max);
+    range->weight = word.weight.weight;
+    if (good && range->min <= range->max) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with MIN <= MAX", name, value);
+}
+
+static bool set_load(tool *t, void *place, const char *name, const char *value) {
+    t->loads_given = true;
+    if (read_number(value, strlen(value), (double *)place)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a number", name, value);
+}
+
+static bool set_loads_file(tool *t, void *place, const char *name, const char *value) {
+    t->loads_given = true;
+    if (!value[0]) return fail(t, EXIT_USAGE, "--%s needs a path", name);
+    *(const char **)place = value;
+    return true;
+}
+
+static bool set_supports(tool *t, void *place, const char *name, const char *value) {
+    (void)t, (void)name;
+    ((tool_word *)place)->text = value;
+    ((tool_word *)place)->length = strlen(value);
+    return true;
+}
+
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
     if (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) return true;
     return fail(t, EXIT_USAGE, "--%s %s: expected a number larger than 0", name, value);
@@ -477,6 +524,26 @@ static const tool_option options[] = {
      NULL, add_glide, 0},
     {0, "move", "I,X,Y,Z[=W]", true, "vertex I goes to X,Y,Z; it is then free of --fix and --glide", NULL, add_move, 0},
 
+    {0, "equilibrium", "[=W]", false,
+     "forces in the edges balance the loads at all vertices without support (z is up)",
+     "statics", set_must, PLACE(equilibrium)},
+    {0, "compressive", "[=W]", false, "edges carry compression only", NULL, set_must, PLACE(compressive)},
+    {0, "tensile", "[=W]", false, "edges carry tension only", NULL, set_must, PLACE(tensile)},
+    {0, "stress", "MIN,MAX[=W]", false,
+     "axial forces (compression > 0) are at least MIN and at most MAX; one may be left out", NULL, set_stress,
+     PLACE(stress)},
+    {0, "supports", "WHICH", false,
+     "boundary, corners, a list or a file, as in --fix (boundary). Supports may move: add --fix or --glide", NULL,
+     set_supports, PLACE(supports)},
+    {0, "density", "R", false, "each edge weighs R times its length (1 where no load is given)", NULL, set_load,
+     PLACE(density)},
+    {0, "area-load", "Q", false, "each face weighs Q times its area", NULL, set_load, PLACE(area_load)},
+    {0, "snow", "Q", false, "each face bears Q times its plan area", NULL, set_load, PLACE(snow)},
+    {0, "loads", "FILE", false, "forces on vertices: CSV with the lines VERTEX,FX,FY,FZ", NULL, set_loads_file,
+     PLACE(loads)},
+    {0, "force-fairness", "[=W]", false, "opposite edges of quads carry equal forces (a wish; W: 1 if left out)", NULL,
+     set_wish_or_one, PLACE(force_fairness)},
+
     {0, "reference", "FILE[=W]", false, "stay near the surface of this mesh (W: 0.1 if left out)",
      "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: half of all iterations if "
      "left out)",
@@ -494,7 +561,7 @@ static const tool_option options[] = {
     {0, "equal-areas", "[=W]", false, "faces have equal areas (W: 1 if left out)", NULL, set_wish_or_one,
      PLACE(equal_areas)},
 
-    {0, "iterations", "N", false, "at most so many (12)", "how", set_iterations, PLACE(iterations)},
+    {0, "iterations", "N", false, "at most so many (12; with --equilibrium 25)", "how", set_iterations, PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
     {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", NULL,
@@ -506,8 +573,13 @@ static const tool_option options[] = {
 
     {0, "report", "FILE", false, "JSON: counts, every iteration, verdict, measures, seconds", "out", set_path,
      PLACE(output[OUTPUT_REPORT])},
-    {0, "picture", "FILE", false, "SVG: the result, coloured by the planarity of its faces", NULL, set_path,
-     PLACE(output[OUTPUT_PICTURE])},
+    {0, "forces", "FILE", false,
+     "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I", NULL,
+     set_path, PLACE(output[OUTPUT_FORCES])},
+    {0, "picture", "FILE", false,
+     "SVG: the result, coloured by the planarity of its faces; with --equilibrium also forces as widths of edges, and "
+     "without --planar by how far the faces are from standing by themselves",
+     NULL, set_path, PLACE(output[OUTPUT_PICTURE])},
     {0, "view", "VIEW", false,
      "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", NULL,
      set_view, PLACE(view)},
@@ -643,7 +715,7 @@ static bool anything_asked(const tool *t) {
     return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
            t->gauss.given || t->circular.given || t->volume.given || t->parallelograms.given || t->equal_areas.given ||
-           t->equal_lengths.given || t->edge_length.given || t->face_area.given || t->total_area.given || t->cost.given;
+           t->equilibrium.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given || t->total_area.given || t->cost.given;
 }
 
 static bool check_options(tool *t) {
@@ -662,6 +734,14 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
+    if (!t->equilibrium.given &&
+        (t->compressive.given || t->tensile.given || t->stress.given || t->supports.text || t->loads_given ||
+         t->force_fairness.given || t->output[OUTPUT_FORCES].path))
+        return fail(t, EXIT_USAGE,
+                    "--compressive, --tensile, --stress, --supports, --density, --area-load, --snow, --loads, "
+                    "--force-fairness and --forces are about forces: add --equilibrium");
+    if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
     if (t->gauss.given && !t->planar.given)
         return fail(t, EXIT_USAGE, "--gauss needs the normals of planar faces: add --planar");
     return true;
@@ -762,6 +842,9 @@ static bool prepare_outputs(tool *t) {
             if (!keep_apart(t, output, t->fix[j].text, t->fix[j].length)) return false;
         for (j = 0; i != OUTPUT_MESH && j < t->glide_count; ++j)
             if (!keep_apart(t, output, t->glide[j].text, t->glide[j].length)) return false;
+        if (i != OUTPUT_MESH && t->loads && !keep_apart(t, output, t->loads, strlen(t->loads))) return false;
+        if (i != OUTPUT_MESH && t->supports.text && !keep_apart(t, output, t->supports.text, t->supports.length))
+            return false;
         if (i != OUTPUT_MESH && t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length))
             return false;
     }
@@ -872,7 +955,8 @@ static bool mark_list(tool *t, const char *text, const char *where, int exit_cod
     return true;
 }
 
-static bool mark_fixed(tool *t, const tool_word *word, bool *mark) {
+/* The vertices that the value of an option names. */
+static bool mark_vertices(tool *t, const char *option, const tool_word *word, bool *mark) {
     bool boundary = same_word(word->text, word->length, "boundary"),
          corners = same_word(word->text, word->length, "corners");
     char *name = (char *)take(t, word->length + 1, 1), *text;
@@ -884,7 +968,7 @@ static bool mark_fixed(tool *t, const tool_word *word, bool *mark) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
             mark[i] = boundary ? gproj_mesh_is_boundary_vertex(t->mesh, i) : gproj_form_is_corner(t->form, i);
     } else if (strspn(name, "0123456789,- ") == word->length) {
-        good = mark_list(t, name, "--fix", EXIT_USAGE, mark);
+        good = mark_list(t, name, option, EXIT_USAGE, mark);
     } else {
         text = load_text(t, name);
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
@@ -906,7 +990,7 @@ static bool add_fixed(tool *t, const tool_word *word) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     bool *mark = (bool *)take(t, vertices, sizeof *mark);
     int32_t *list = (int32_t *)take(t, vertices, sizeof *list), count;
-    bool good = mark && list && mark_fixed(t, word, mark);
+    bool good = mark && list && mark_vertices(t, "--fix", word, mark);
     if (good && word->weight.weight > 0) {
         count = gather(t, mark, list);
         if (count > 0) gproj_add_fixed(t->form, count, list, word->weight.weight);
@@ -1066,6 +1150,104 @@ static void add_sizes(tool *t) {
     if (t->volume.given) gproj_add_volume(form, value_of(&t->volume, gproj_volume(t->mesh)), 1);
 }
 
+/* One line VERTEX,FX,FY,FZ; empty lines, comments after # and a heading in the first line are passed over. */
+static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
+    double field[4];
+    size_t at = 0, end;
+    int32_t k;
+    for (end = 0; end < size && line[end] != '#'; ++end) continue;
+    while (end > 0 && isspace((unsigned char)line[end - 1])) --end;
+    if (end == 0 || (number == 1 && isalpha((unsigned char)line[0]))) return true;
+    for (k = 0; k < 4; ++k) {
+        const char *comma = (const char *)memchr(line + at, ',', end - at);
+        size_t length = comma ? (size_t)(comma - line) - at : end - at;
+        while (length > 0 && line[at] == ' ') ++at, --length;
+        if ((k < 3) != (comma != NULL) || !read_number(line + at, length, &field[k])) break;
+        at += length + 1;
+    }
+    if (k < 4)
+        return fail(t, EXIT_REFUSED, "%s, line %ld: expected VERTEX,FX,FY,FZ", t->loads, (long)number);
+    if (!(field[0] >= 0) || field[0] >= t->mesh->vertex_count || field[0] != floor(field[0]))
+        return fail(t, EXIT_REFUSED, "%s, line %ld: there is no vertex %g; the mesh has %ld, counted from 0", t->loads,
+                    (long)number, field[0], (long)t->mesh->vertex_count);
+    for (k = 0; k < 3; ++k) t->point_load[3 * (size_t)field[0] + (size_t)k] += field[k + 1];
+    return true;
+}
+
+static bool read_loads(tool *t) {
+    char *text = load_text(t, t->loads), *line = text;
+    int32_t number = 1;
+    bool good = text != NULL;
+    t->point_load = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->point_load);
+    good = good && t->point_load;
+    for (; good && *line; ++number) {
+        size_t size = strcspn(line, "\n");
+        good = read_load(t, line, size, number);
+        line += size + (line[size] != 0);
+    }
+    free(text);
+    return good;
+}
+
+static bool add_equilibrium(tool *t) {
+    static const tool_word boundary = {"boundary", 8, {false, 0, 0, 0}};
+    size_t vertices = (size_t)t->mesh->vertex_count;
+    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), i;
+    gproj_loads loads;
+    gproj_supports supports;
+    bool good;
+    memset(&loads, 0, sizeof loads);
+    memset(&supports, 0, sizeof supports);
+    t->support = (bool *)take(t, vertices, sizeof *t->support);
+    good = list && t->support && (!t->loads || read_loads(t)) &&
+           mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->support);
+    if (good) {
+        for (i = 0; i < t->mesh->vertex_count; ++i)
+            if (t->support[i]) list[supports.count++] = i;
+        if (supports.count == 0)
+            good = fail(t, EXIT_USAGE, "there is no support: the mesh has no boundary, so name some by --supports");
+    }
+    if (good) {
+        supports.vertex = list;
+        loads.density = t->loads_given ? t->density : 1;
+        loads.area_load = t->area_load;
+        loads.snow = t->snow;
+        loads.point_load = t->point_load;
+        gproj_add_equilibrium(t->form, &loads, &supports, t->equilibrium.weight);
+    }
+    free(list);
+    return good;
+}
+
+static bool add_statics(tool *t) {
+    int32_t edges = t->mesh->edge_count;
+    if (!t->equilibrium.given) return true;
+    if (!add_equilibrium(t)) return false;
+    if (t->compressive.weight > 0) gproj_add_compression(t->form, edges, NULL, t->compressive.weight);
+    if (t->tensile.weight > 0) gproj_add_tension(t->form, edges, NULL, t->tensile.weight);
+    if (t->stress.given)
+        gproj_add_stress_bounds(t->form, edges, NULL, NULL, t->stress.min, t->stress.max, t->stress.weight);
+    if (t->force_fairness.weight > 0)
+        add_wish(t, &t->force_fairness, gproj_add_force_fairness(t->form, t->force_fairness.weight));
+    return true;
+}
+
+/* What the best forces leave unbalanced, as a mean over the corners of each face. */
+static bool measure_imbalance(tool *t, double *of_faces) {
+    const gproj_mesh *mesh = t->mesh;
+    double *residual = (double *)take(t, (size_t)mesh->vertex_count, sizeof *residual);
+    int32_t f, k;
+    bool good = residual && gproj_find_forces(t->form, NULL, residual) == GPROJ_OK;
+    for (f = 0; good && f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        of_faces[f] = 0;
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+            of_faces[f] += residual[mesh->origin[h]] / mesh->face_degree[f];
+    }
+    free(residual);
+    return good || fail_library(t, NULL, gproj_form_error(t->form));
+}
+
 /* The groups stand in the form in the order of the table, whatever their order on the command line. */
 static bool build_form(tool *t) {
     int32_t i;
@@ -1073,6 +1255,7 @@ static bool build_form(tool *t) {
     if (!t->form) return fail_memory(t);
     if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
     if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
+    if (!add_statics(t)) return false;
     add_sizes(t);
     for (i = 0; i < t->fix_count; ++i)
         if (!add_fixed(t, &t->fix[i])) return false;
@@ -1160,6 +1343,26 @@ static bool on_iteration(void *user, gproj_system *system, const gproj_iteration
     return true;
 }
 
+static bool measure_forces(tool *t) {
+    const gproj_mesh *mesh = t->mesh;
+    int32_t e, k;
+    t->density_of_edge = (double *)take(t, (size_t)mesh->edge_count, sizeof *t->density_of_edge);
+    t->force_in_edge = (double *)take(t, (size_t)mesh->edge_count, sizeof *t->force_in_edge);
+    t->imbalance = (double *)take(t, (size_t)mesh->face_count, sizeof *t->imbalance);
+    if (!t->density_of_edge || !t->force_in_edge || !t->imbalance) return false;
+    gproj_get_forces(t->form, t->density_of_edge);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *a = mesh->position + 3 * (size_t)mesh->origin[2 * e],
+                     *b = mesh->position + 3 * (size_t)mesh->origin[2 * e + 1];
+        double square = 0;
+        for (k = 0; k < 3; ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+        t->force_in_edge[e] = t->density_of_edge[e] * sqrt(square);
+    }
+    t->forces = gproj_measure_forces(t->form);
+    if (t->imbalance_before && !measure_imbalance(t, t->imbalance)) return false;
+    return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
+}
+
 static bool solve(tool *t) {
     gproj_solve_options how;
     double begin = now(NULL);
@@ -1177,6 +1380,10 @@ static bool solve(tool *t) {
         t->probe = gproj_mesh_copy(t->mesh, &t->host, &error);
         if (!t->probe) return fail_library(t, NULL, &error);
     }
+    if (t->equilibrium.given && t->output[OUTPUT_PICTURE].path && !t->planar.given) {
+        t->imbalance_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->imbalance_before);
+        if (!t->imbalance_before || !measure_imbalance(t, t->imbalance_before)) return false;
+    }
     t->result = gproj_solve(t->form, t->iterations, &how);
     t->solve_seconds = now(NULL) - begin;
     if (t->bar) fputc('\n', stderr);
@@ -1184,7 +1391,7 @@ static bool solve(tool *t) {
     if (t->exit_code != 0) return false; /* the callback ran out of memory */
     if (t->result.outcome == GPROJ_FAILED) return fail_library(t, NULL, gproj_form_error(t->form));
     t->after = gproj_measure(t->mesh, t->original, t->planarity);
-    return true;
+    return !t->equilibrium.given || measure_forces(t);
 }
 
 /* ---- the report ---- */
@@ -1480,6 +1687,20 @@ static void report_measures(json *j, const tool *t, const char *key, const gproj
     json_close(j, '}');
 }
 
+static void report_forces(json *j, const gproj_forces *m) {
+    json_open(j, "forces", '{');
+    json_number(j, "equilibrium_residual", m->residual);
+    json_integer(j, "residual_vertex", m->residual_vertex);
+    json_number(j, "min_density", m->min_density);
+    json_number(j, "max_density", m->max_density);
+    json_number(j, "min_force", m->min_force);
+    json_number(j, "max_force", m->max_force);
+    json_number(j, "load_path", m->load_path);
+    json_number(j, "total_load", m->total_load);
+    json_number(j, "max_reaction", m->max_reaction);
+    json_close(j, '}');
+}
+
 static gproj_code write_report(tool *t, FILE *file) {
     json writer = {NULL, 0, false, false}, *j = &writer;
     int32_t i;
@@ -1496,6 +1717,7 @@ static gproj_code write_report(tool *t, FILE *file) {
     report_result(j, t);
     report_measures(j, t, "measures_before", &t->before);
     report_measures(j, t, "measures", &t->after);
+    if (t->equilibrium.given) report_forces(j, &t->forces);
     json_open(j, "seconds", '{');
     json_number(j, "reading", t->read_seconds);
     json_number(j, "set_up", t->setup_seconds);
@@ -1525,7 +1747,46 @@ static gproj_code write_picture(tool *t, FILE *file) {
     picture.original = t->original;
     picture.face_value = t->planarity;
     picture.face_before = t->planarity_before;
+    if (t->equilibrium.given) picture.edge_value = t->force_in_edge;
+    if (t->imbalance_before) {
+        snprintf(caption, sizeof caption, "%ld vertices, %ld faces \xc2\xb7 equilibrium to %.1e of the largest load",
+                 (long)t->mesh->vertex_count, (long)t->mesh->face_count, t->forces.residual);
+        picture.legend = "load that the best forces cannot balance, over the mean load";
+        picture.face_value = t->imbalance;
+        picture.face_before = t->imbalance_before;
+    }
     return gprojx_picture(file, t->mesh, &picture);
+}
+
+/* Numbers that read back to the same bits, whatever the locale. */
+static void write_number(FILE *file, double value, char after) {
+    char text[GPROJ_NUMBER_SIZE];
+    gproj_number_write(value, text);
+    fputs(text, file);
+    fputc(after, file);
+}
+
+static gproj_code write_forces(tool *t, FILE *file) {
+    const gproj_mesh *mesh = t->mesh;
+    double *load = (double *)take(t, 3 * (size_t)mesh->vertex_count, sizeof *load);
+    int32_t i;
+    if (!load) return GPROJ_ERROR_MEMORY;
+    gproj_get_loads(t->form, load);
+    fputs("kind,i,j or fx,w or fy,fz\n", file);
+    for (i = 0; i < mesh->edge_count; ++i) {
+        fprintf(file, "edge,%ld,%ld,", (long)mesh->origin[2 * i], (long)mesh->origin[2 * i + 1]);
+        write_number(file, t->density_of_edge[i], '\n');
+    }
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        fprintf(file, "load,%ld,", (long)i);
+        write_number(file, load[3 * (size_t)i], ',');
+        write_number(file, load[3 * (size_t)i + 1], ',');
+        write_number(file, load[3 * (size_t)i + 2], '\n');
+    }
+    for (i = 0; i < mesh->vertex_count; ++i)
+        if (t->support[i]) fprintf(file, "support,%ld\n", (long)i);
+    free(load);
+    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
 
 static bool write_piece(void *user, const char *text, size_t size) {
@@ -1578,6 +1839,7 @@ static bool write_output(tool *t, tool_output *output, gproj_code (*write)(tool 
 static bool write_outputs(tool *t) {
     int32_t i;
     if (!write_output(t, &t->output[OUTPUT_PICTURE], write_picture) ||
+        !write_output(t, &t->output[OUTPUT_FORCES], write_forces) ||
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
@@ -1612,6 +1874,9 @@ static void print_summary(const tool *t) {
     printf("%s\n", t->result.message);
     printf("planarity     %.2e -> %.2e largest, %.2e -> %.2e mean (mean edge lengths)\n", b->planarity_max,
            a->planarity_max, b->planarity_mean, a->planarity_mean);
+    if (t->equilibrium.given)
+        printf("equilibrium   to %.1e of the largest load, force densities %.3g to %.3g, load path %.4g\n",
+               t->forces.residual, t->forces.min_density, t->forces.max_density, t->forces.load_path);
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
     printf("faces         %ld turned over, %ld -> %ld bow-ties\n", (long)a->turned_faces, (long)b->bow_tie_faces,
@@ -1657,6 +1922,8 @@ static void clean_up(tool *t) {
     gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move);
+    free(t->point_load), free(t->support), free(t->density_of_edge), free(t->force_in_edge);
+    free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->record), free(t->group_record);
 }
 
@@ -1665,9 +1932,9 @@ int main(int argc, char **argv) {
     int exit_code;
     memset(&t, 0, sizeof t);
     t.start = now(NULL);
-    t.iterations = 12;
     t.threads = 1;
     if (read_command_line(&t, argc, argv)) {
+        if (t.iterations == 0) t.iterations = t.equilibrium.given ? 25 : 12;
         if (t.help)
             print_help();
         else if (t.version)
