@@ -478,14 +478,15 @@ typedef enum gproj_outcome {
 
 /* What one iteration did; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number;   /* from 1 */
-    double residual;  /* largest |phi| of all rows that must hold with weight > 0, after the step */
-    double merit;     /* sum of w^2 phi^2 over what must hold and wishes, after the step */
-    double energy;    /* the wishes' part of it */
-    double step;      /* largest |dx| */
-    double epsilon;   /* the regularisation used */
-    double length;    /* the part of the step that was taken: 1, or another where the merit asked for it */
-    int32_t attempts; /* factorisations: 1, or more where the step was damped, guarded or met bounds */
+    int32_t number;    /* from 1 */
+    double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
+    double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
+    double energy;     /* the wishes' part of it */
+    double step;       /* largest |dx| */
+    double epsilon;    /* the regularisation used */
+    double length;     /* the part of the step that was taken: 1, or another where the merit asked for it */
+    int32_t attempts;  /* factorisations: 1, or more where the step was damped, guarded or met bounds */
+    double optimality; /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
 
@@ -504,15 +505,24 @@ typedef struct gproj_solve_options {
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over */
+    /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
+       must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
+       last do not apply, only the weights' ratios matter, and nothing is biased. gproj_solve adds closeness to where it
+       begins where nothing is wished: it ends at the mesh nearest to that. Wants about 30 iterations. Converged means
+       here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
+    bool nearest;
 } gproj_solve_options;
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations;  /* steps taken */
-    int32_t damped;      /* of these, steps that were damped, shortened, guarded or met bounds */
-    double residual;     /* largest |phi| of all rows that must hold with weight > 0 */
-    double tolerance;    /* what it was compared with */
-    double step;         /* largest |dx| of the last step */
+    int32_t iterations; /* steps taken */
+    int32_t damped;     /* of these, steps that were damped, shortened, guarded or met bounds */
+    double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
+    double tolerance;   /* what it was compared with */
+    double step;        /* largest |dx| of the last step */
+    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the tangent space of what must hold, over
+       the norm without projection: 0 at a minimum, 1 where nothing has been gained. Else 0. */
+    double optimality;
     int32_t worst_group; /* where that residual is; -1 where nothing must hold */
     int32_t worst_element;
     double seconds[GPROJ_PHASE_COUNT];
@@ -1466,7 +1476,6 @@ GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, 
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
     return gproji_number_write_digits(value, 0, text);
 }
-
 
 /* ============================================================================================================
    >>memory   The host's allocator with accounts. Uses platform.
@@ -4902,10 +4911,11 @@ typedef struct gproji_row {
     int64_t slot;  /* compiled: its slots; none for a wide row */
     int64_t pair;  /* compiled: its blocks: for each slot b all slots a >= b */
     double constant;
-    double weight; /* own * factor, times the group's; 0: the row is left out of everything */
-    double own;    /* what the row itself asks for */
-    double factor; /* the weight of its element */
-    double phi;    /* the value at the last evaluation */
+    double weight;           /* own * factor, times the group's; 0: the row is left out of everything */
+    double own;              /* what the row itself asks for */
+    double factor;           /* the weight of its element */
+    double phi;              /* the value at the last evaluation */
+    double multiplier, rise; /* nearest: y of what must hold, and what a step adds to it */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
@@ -4941,6 +4951,9 @@ typedef struct gproji_group {
     size_t term_local_count, local_capacity, gradient_count, slot_count, pair_count;
 } gproji_group;
 
+/* Nearest: is x no good, seen from s->saved? */
+typedef bool (*gproji_refuse_step)(void *user, const gproj_system *system);
+
 /* A bound's row along a step: w^2 min(0, phi + t h + t^2 q)^2 is its part of the merit. */
 typedef struct gproji_hinge {
     double w2, phi, h, q;
@@ -4955,6 +4968,9 @@ struct gproj_system {
     int32_t variable_count;
     int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
     int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
+    bool sliding;         /* nearest: away from the start, where faces may become small */
+    gproji_refuse_step refuse_step; /* NULL: none is refused */
+    void *refuse_user;
     double *x;
     int32_t *block; /* of each variable, the first variable of its block */
     size_t x_capacity, block_capacity;
@@ -4976,7 +4992,7 @@ struct gproj_system {
     double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
     double *step;          /* dx */
     double *saved;         /* x before the step */
-    double *residual;      /* work of refinement and of the low-rank update */
+    double *residual;      /* work of refinement and of the low-rank update; nearest: the sum of steps */
     double *correction;    /* the same */
     double *wide_response; /* wide_count columns A^-1 (w g), and one for the right-hand side */
     double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
@@ -6058,6 +6074,8 @@ typedef struct gproji_loop {
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
+    double shift; /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row, to change their coefficients in place. */
@@ -6553,6 +6571,455 @@ GPROJI_INTERNAL bool gproji_options_are_valid(const gproj_system *s, int32_t ite
     return false;
 }
 
+/* -- the nearest point -- */
+
+/* With options.nearest the loop minimises the wishes on the set where the constraints hold. It looks for x and
+   multipliers y of the constraint rows with
+       s^2 sum_wishes w^2 phi g + sum_constraints w^2 y g = 0,    phi = 0 for constraints             (1)
+   by the method of multipliers (Hestenes 1969; Powell 1969; Bertsekas: Constrained Optimization and Lagrange Multiplier
+   Methods, 1982). A slide from x along the constraint set:
+   - the step minimises the model s^2 |wishes|^2 + |phi + G dx + y|^2 of the augmented Lagrangian; y += phi + G dx, and
+     again with the same factor until G dx = -phi;
+   - near a solution the matrix also has the curvature sum y (Hessian of phi), as in Newton's method for (1), and a shift
+     of the diagonal where it is not positive definite. Farther away Gauss and Newton's matrix is calmer;
+   - x + t dx is led back to phi = 0 by steps orthogonal to it, with the same factor;
+   - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian and turns no face over.
+   The first iterations are guided projections and the last ones plain projections, so that the constraints hold however
+   far the slides came. A small s keeps x close to the constraints, a large one lets it go farther in a step. */
+
+static const double gproji_nearest_scale = 0.03;   /* s, for the wish with the largest weight */
+static const double gproji_nearest_epsilon = 3e-5; /* the smallest eps: as in other steps it follows the residual */
+static const double gproji_nearest_optimal = 1e-6;
+static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
+static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
+static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
+enum {
+    GPROJI_NEAREST_GUIDED = 1,   /* iterations at the beginning */
+    GPROJI_NEAREST_RESTORE = 5,  /* iterations at the end */
+    GPROJI_NEAREST_ATTEMPTS = 6, /* factorisations with curvature, before those without */
+    GPROJI_NEAREST_ROUNDS = 12,  /* multipliers with one factorisation */
+    GPROJI_NEAREST_HALVES = 5,   /* lengths of a step */
+    GPROJI_NEAREST_RETRACT = 3   /* steps back to the constraints */
+};
+
+/* The weights of slides: wishes keep theirs, whatever their schedules say, scaled so that the largest is `scale`. */
+GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
+    double largest = 0;
+    int32_t i;
+    s->sliding = scale == gproji_nearest_scale;
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].kind == GPROJ_WISH) largest = gproji_fmax(largest, s->group[i].schedule.weight);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->weight = g->schedule.weight;
+        if (g->guard && !s->sliding) g->weight = 0;
+        if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
+    }
+}
+
+/* Does the row have a multiplier now? */
+GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_row *row) {
+    return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
+}
+
+/* Adds w2 y (Hessian of phi) of a narrow row to the matrix, lower triangle. */
+GPROJI_INTERNAL void gproji_assemble_curvature(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                               double w2y, double *entries) {
+    int64_t slots = row[1].slot - row->slot, t, a, b;
+    for (t = row->term; t < row[1].term; ++t) {
+        const gproji_term_local *place = &g->term_local[t];
+        int32_t low = gproji_min(place->i, place->j), high = gproji_max(place->i, place->j), p, q;
+        double *column;
+        if (g->term[t].j < 0) continue;
+        for (b = 0; b + 1 < slots && g->slot_local[row->slot + b + 1] <= row->local + low;) ++b;
+        for (a = b; a + 1 < slots && g->slot_local[row->slot + a + 1] <= row->local + high;) ++a;
+        q = g->local_variable[row->local + low];
+        p = g->local_variable[row->local + high];
+        column = entries + g->pair_entry[row->pair + b * slots - b * (b - 1) / 2 + (a - b)] +
+                 (int64_t)(q - s->node_first[s->node[q]]) * s->node_stride[s->node[q]];
+        column[p - s->node_first[s->node[p]]] += (low == high ? 2 : 1) * w2y * g->term[t].a;
+    }
+}
+
+/* The curvature of all narrow rows: y phi of constraints, phi^2 / 2 of wishes. */
+GPROJI_INTERNAL void gproji_assemble_curvatures(gproj_system *s) {
+    double *entries = gproji_cholesky_entries(s->cholesky);
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            double y = g->kind == GPROJ_WISH ? row->phi : row->multiplier;
+            if (!row->wide && row->active) gproji_assemble_curvature(s, g, row, gproji_weight2(g, row) * y, entries);
+        }
+    }
+}
+
+/* Before the first solve of a slide: phi + y in place of phi. Rows without a weight forget their multipliers, and so do
+   bounds that do not act: their multipliers fall to 0. */
+GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            if (!gproji_is_multiplied(g, row)) row->multiplier = 0;
+            row->rise = row->active ? 0 : -row->multiplier;
+            row->phi += row->multiplier;
+        }
+    }
+}
+
+/* After a solve: phi becomes what the model leaves of a constraint, phi + G dx, and y rises by it; wishes are served.
+   Returns the sum of w^2 phi^2. */
+GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
+    double sum = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            if (!row->active || !gproji_is_multiplied(g, row)) {
+                row->phi = 0;
+                continue;
+            }
+            row->phi += gproji_row_times(g, row, s->step) - (first ? row->multiplier : 0);
+            row->rise += row->phi;
+            sum += gproji_weight2(g, row) * row->phi * row->phi;
+        }
+    }
+    return sum;
+}
+
+/* Solves for dx and the rise of the multipliers, from rows linearised at x. False when the matrix is not positive
+   definite; rows are to be evaluated again after that. */
+GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
+    gproj_system *s = loop->system;
+    double *sum = s->residual, first = 0, left = HUGE_VAL;
+    int32_t round, v;
+    gproj_factor_outcome outcome;
+    double follows = gproji_epsilon_max;
+    if (curved) follows = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_nearest_epsilon), follows);
+    loop->iteration.epsilon = sqrt(follows * follows + gproji_nearest_scale * gproji_nearest_scale * shift);
+    gproji_assemble(s, loop->iteration.epsilon);
+    if (curved) gproji_assemble_curvatures(s);
+    gproji_add_multipliers(s);
+    gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
+    outcome = gproji_cholesky_factor_entries(s->cholesky);
+    loop->iteration.attempts++;
+    gproji_lap(loop, GPROJ_PHASE_FACTOR);
+    if (outcome != GPROJ_FACTORED) return false;
+    memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
+    for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
+        gproji_merit_gradient(s);
+        gproji_solve_step(s);
+        for (v = 0; v < s->variable_count; ++v) sum[v] += s->step[v];
+        left = gproji_raise_multipliers(s, round == 0);
+        if (round == 0) first = left;
+    }
+    memcpy(s->step, sum, (size_t)s->variable_count * sizeof *sum);
+    gproji_lap(loop, GPROJ_PHASE_SOLVE);
+    return true;
+}
+
+/* Lets bounds act that the model's step would violate, and lets those go whose multipliers would hold the step back
+   (y > 0). True: the step must be found again. */
+GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
+    bool changed = false;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            bool active = false;
+            if (gproji_is_multiplied(g, row)) {
+                double phi = gproji_row_value(g, r, s->saved, NULL) + gproji_row_times(g, row, s->step);
+                active = row->active ? row->multiplier + row->rise < 0 : !g->guard && phi < -1e-12;
+            }
+            changed = changed || active != row->active;
+            row->active = active;
+        }
+    }
+    return changed;
+}
+
+/* Bounds act first where they are violated or have a multiplier. */
+GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            row->active = gproji_is_multiplied(g, row) && row->phi + row->multiplier < 0;
+        }
+    }
+}
+
+/* Multipliers of bounds are not positive: what is left of them. */
+GPROJI_INTERNAL void gproji_limit_multipliers(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
+            gproji_row *row = &s->group[i].row[r];
+            row->rise = gproji_fmin(row->rise, -row->multiplier);
+        }
+}
+
+/* The rows at x again, with the bounds that act as they are. */
+GPROJI_INTERNAL void gproji_evaluate_slide(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
+            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x, NULL);
+}
+
+/* Finds a slide, again where it meets bounds. */
+GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift) {
+    gproj_system *s = loop->system;
+    int32_t round;
+    gproji_start_multiplied_bounds(s);
+    for (round = 0; gproji_find_slide(loop, curved, shift); ++round) {
+        bool again = gproji_switch_multiplied_bounds(s);
+        if (!again || round == GPROJI_BOUND_ROUNDS) {
+            gproji_limit_multipliers(s);
+            return true;
+        }
+        gproji_evaluate_slide(s);
+    }
+    return false;
+}
+
+/* The augmented Lagrangian sum w^2 (phi^2 + 2 y phi) at x with the risen multipliers, and its slope along the step if
+   x is where rows were linearised. A bound's row adds -w^2 y^2 where phi > -y. */
+GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x, double *slope) {
+    double value = 0;
+    int32_t i, r;
+    if (slope) *slope = 0;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            double w2 = gproji_weight2(g, row), y = row->multiplier + row->rise, phi;
+            if (!(w2 > 0)) continue;
+            phi = gproji_row_value(g, r, x, NULL);
+            if (g->kind == GPROJ_BOUND && phi + y >= 0) {
+                value -= w2 * y * y;
+                continue;
+            }
+            value += w2 * phi * (phi + 2 * y);
+            if (slope) *slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->step);
+        }
+    }
+    return value;
+}
+
+/* phi of what must hold and acts at x, without gradients; 0 for other rows. Returns the sum of w^2 phi^2. */
+GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
+    double sum = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            row->phi = 0;
+            if (row->active && gproji_is_multiplied(g, row))
+                row->phi = gproji_counted(g, gproji_row_value(g, r, s->x, NULL));
+            sum += gproji_weight2(g, row) * row->phi * row->phi;
+        }
+    }
+    return sum;
+}
+
+/* Leads x back to what must hold with the factor and the gradients of the slide, as long as that works. */
+GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
+    double before = HUGE_VAL, now = gproji_evaluate_constraints(s);
+    int32_t k, v;
+    for (k = 0; k < GPROJI_NEAREST_RETRACT && now < 0.5 * before; ++k) {
+        before = now;
+        gproji_merit_gradient(s);
+        gproji_solve_step(s);
+        for (v = 0; v < s->variable_count; ++v) s->x[v] += s->step[v];
+        now = gproji_evaluate_constraints(s);
+        for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->step[v];
+    }
+    memcpy(s->step, s->residual, (size_t)s->variable_count * sizeof *s->step);
+}
+
+/* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
+   does, x is as before. */
+GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
+    gproj_system *s = loop->system;
+    double slope, before = gproji_lagrangian(s, s->saved, &slope), t = 1;
+    int32_t i, r;
+    for (; halves > 0; --halves, t /= 2) {
+        loop->iteration.step = gproji_take_step(s, t);
+        if (!(loop->iteration.step <= DBL_MAX)) break;
+        gproji_retract(s);
+        if (loop->iteration.step > 1e-7 && !(gproji_lagrangian(s, s->x, NULL) <= before + 0.1 * t * slope)) continue;
+        if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
+        loop->iteration.length = t;
+        for (i = 0; i < s->group_count; ++i)
+            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier += t * s->group[i].row[r].rise;
+        return true;
+    }
+    gproji_step_back(s);
+    return false;
+}
+
+/* The first shift to try after a slide that had this one. */
+GPROJI_INTERNAL void gproji_next_shift(gproji_loop *loop, double shift) {
+    loop->shift = shift;
+    if (loop->iteration.length == 1) loop->shift = shift < gproji_nearest_flat ? 0 : shift / 3;
+    if (loop->iteration.length < 0.5) loop->shift = 1.5 * shift;
+}
+
+/* One slide from a linearised x. False when no attempt was good; x is then as before. */
+GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    bool curved = loop->iteration.optimality < gproji_nearest_curved;
+    double shift = curved ? loop->shift : 0;
+    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    for (loop->iteration.attempts = 0; loop->iteration.attempts < GPROJI_NEAREST_ATTEMPTS + 4;) {
+        if (gproji_find_bounded_slide(loop, curved, shift) &&
+            gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
+            loop->minimum = curved && shift <= gproji_nearest_flat;
+            if (curved) gproji_next_shift(loop, shift);
+            gproji_lap(loop, GPROJ_PHASE_SOLVE);
+            return true;
+        }
+        gproji_lap(loop, GPROJ_PHASE_SOLVE);
+        gproji_evaluate(s);
+        shift = gproji_fmax(3 * shift, gproji_nearest_shift);
+        if (curved && loop->iteration.attempts == GPROJI_NEAREST_ATTEMPTS) {
+            loop->shift = shift;
+            curved = false;
+            shift = 0;
+        }
+    }
+    return false;
+}
+
+/* How far (1) is from holding at x: the norm of the left side over that of its wishes' part, row by row. The smallest
+   over all y would be the norm of the gradient projected to the tangent space of the constraints. */
+GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
+    double wishes = 0, left = 0;
+    int64_t l;
+    int32_t i, r, rows = 0;
+    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            bool wish = g->kind == GPROJ_WISH;
+            double pull = gproji_weight2(g, row) * (wish ? row->phi : row->multiplier);
+            gproji_row_add(g, row, pull, s->gradient);
+            rows += wish;
+            for (l = row->local; wish && l < row[1].local; ++l)
+                wishes += pull * pull * g->local_gradient[l] * g->local_gradient[l];
+        }
+    }
+    for (i = 0; i < s->variable_count; ++i) left += s->gradient[i] * s->gradient[i];
+    if (rows == 0) return 0;
+    return sqrt(left / gproji_fmax(wishes, 1e-12 * gproji_nearest_scale * gproji_nearest_scale * gproji_nearest_scale *
+                                               gproji_nearest_scale * (1 + (double)rows)));
+}
+
+/* Rows, standing and optimality at x with the weights of slides; energies as the schedules weigh them. */
+GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double factor = 1;
+    int32_t i;
+    gproji_set_nearest_weights(s, gproji_nearest_scale);
+    gproji_linearise(loop);
+    loop->iteration.optimality = loop->result.optimality = gproji_optimality(s);
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0)
+            factor = s->group[i].schedule.weight / s->group[i].weight;
+    loop->standing.merit += loop->standing.energy * (factor * factor - 1);
+    loop->standing.energy *= factor * factor;
+}
+
+/* Moves x by at most `size`, to and fro in an order without symmetry, always the same: symmetric meshes would stay on a
+   saddle, where a symmetric step cannot leave it. */
+GPROJI_INTERNAL void gproji_break_symmetry(gproj_system *s, double size) {
+    uint32_t state = 1;
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) {
+        state = state * 1664525u + 1013904223u;
+        s->x[v] += size * ((double)(state >> 8) / 8388608.0 - 1);
+    }
+}
+
+/* Iteration n of a nearest solve that slides until `last`. False: nothing can be done. */
+GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_t guided, int32_t last) {
+    gproj_system *s = loop->system;
+    int32_t i;
+    if (n > guided && n <= last && gproji_slide(loop)) return true;
+    if (n > guided && gproji_holds(loop)) return false;
+    gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].guard && n <= guided) s->group[i].weight = gproji_weight_in(s, &s->group[i], n);
+    gproji_linearise(loop);
+    if (!gproji_iterate(loop)) return false;
+    if (n == guided) gproji_break_symmetry(s, gproji_nearest_symmetry * loop->iteration.step);
+    return true;
+}
+
+/* Do the constraints hold at a minimum of the wishes? */
+GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
+    double optimality = loop->iteration.optimality;
+    return gproji_holds(loop) && (optimality == 0 || (loop->minimum && optimality <= gproji_nearest_optimal));
+}
+
+/* The iterations; returns how they ended. */
+GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop, int32_t iterations) {
+    gproj_system *s = loop->system;
+    int32_t half = iterations / 2 + iterations % 2, i, r, n;
+    int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
+    int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
+    s->late = 0;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
+    gproji_see_nearest(loop);
+    gproji_start_bounds(s);
+    for (n = 1; n <= iterations; ++n) {
+        if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+        if (gproji_is_nearest(loop)) return GPROJ_CONVERGED;
+        if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
+        memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+        s->late = n <= half ? 0 : s->late + 1;
+        if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
+        gproji_see_nearest(loop);
+        gproji_report_iteration(loop, n);
+        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
+        if (s->changed) gproji_see_nearest(loop);
+    }
+    if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+    return gproji_is_nearest(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
+}
+
+/* The verdict's sentence where the constraints hold, and how near the nearest is. */
+GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
+    gproj_result *r = &loop->result;
+    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
+    char figure[64];
+    if (!gproji_holds(loop) || r->worst_group < 0) {
+        gproji_format(figure, sizeof figure, "; projected gradient of the wishes %g", r->optimality);
+        gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
+        return;
+    }
+    if (r->outcome == GPROJ_CONVERGED) more = ", at a minimum of the wishes";
+    if (r->outcome == GPROJ_ITERATION_LIMIT) more = ", but the iterations ran out before a minimum of the wishes";
+    if (r->outcome == GPROJ_STALLED) more = ", and no step serves the wishes better";
+    if (r->outcome == GPROJ_CANCELLED) more = ", cancelled by the caller";
+    if (r->outcome == GPROJ_TIME_OUT) more = ", but the time budget ran out before a minimum of the wishes";
+    gproji_format(r->message, sizeof r->message,
+                  "%s%s: %d iteration%s, largest residual %g (%s), projected gradient of the wishes %g",
+                  gproji_outcome_string(GPROJ_CONVERGED), more, r->iterations, plural, r->residual,
+                  loop->system->group[r->worst_group].name, r->optimality);
+}
+
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
     gproj_error refused;
@@ -6567,10 +7034,12 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_lap(&loop, GPROJ_PHASE_ANALYSE);
     s->solving = true;
-    loop.result.outcome = gproji_run_loop(&loop, iterations);
-    s->solving = false;
+    loop.result.outcome =
+        loop.options.nearest ? gproji_run_nearest(&loop, iterations) : gproji_run_loop(&loop, iterations);
+    s->solving = s->sliding = false;
     if (s->error.code != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_write_verdict(&loop);
+    if (loop.options.nearest) gproji_write_nearest_verdict(&loop);
     return loop.result;
 }
 
@@ -8843,7 +9312,6 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
     return hit;
 }
 
-
 /* ============================================================================================================
    >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
 
@@ -9279,6 +9747,7 @@ struct gproj_form {
     int32_t planarity;       /* the group of the planar faces; -1: none */
     gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
     double *guard_area;      /* of each of them, its vectorial area when the solve began: 3 numbers */
+    bool guard_on;           /* in this solve */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
 };
@@ -11754,7 +12223,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
    leave less than 0.2 is found again. These bounds act on the steps only: they are no part of residual and verdict. */
 
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_slack = 0.2,
-                    gproji_guard_area = 1e-4;
+                    gproji_guard_small = 0.1, gproji_guard_kept = 0.25, gproji_guard_area = 1e-4;
 enum {
     GPROJI_GUARD_DEGREE = 64,
     GPROJI_GUARD_LONGER = 2
@@ -11776,6 +12245,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
         double n[3], area = gproji_length3(form->guard_area + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         system->group[group].row[i].weight = area > gproji_guard_area ? sqrt(area) : 0;
+        system->group[group].row[i].constant = -(system->sliding ? gproji_guard_small : gproji_guard_wanted);
         if (!(area > gproji_guard_area)) continue;
         gproji_guard_normal(form, system->x, i, n);
         /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
@@ -11786,6 +12256,26 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
             }
         }
     }
+}
+
+/* Has a face lost most of its area in the step from `saved`, seen along its normal or the one it had at first? */
+GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const gproj_system *system) {
+    const gproj_form *form = (const gproj_form *)user;
+    int32_t i, k;
+    for (i = 0; form->guard_on && i < form->guard->count; ++i) {
+        const double *first = form->guard_area + 3 * (size_t)i;
+        double axis[2][3], before[3], after[3];
+        if (gproji_length3(first) <= gproji_guard_area) continue;
+        gproji_area_vector(form->mesh, system->saved, form->guard->vertex[i], before);
+        gproji_area_vector(form->mesh, system->x, form->guard->vertex[i], after);
+        gproji_guard_normal(form, system->saved, i, axis[0]);
+        gproji_copy3(first, axis[1]);
+        for (k = 0; k < 2; ++k) {
+            double had = gproji_dot3(before, axis[k]);
+            if (had > 0 && gproji_dot3(after, axis[k]) < gproji_guard_kept * had) return true;
+        }
+    }
+    return false;
 }
 
 /* The row of a face: for each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
@@ -11819,6 +12309,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     form->system->group[form->guard->group].guard = true;
     form->system->group[form->guard->group].slack = gproji_guard_slack;
     form->system->group[form->guard->group].refresh_user = form;
+    form->system->refuse_step = gproji_refuse_turned;
+    form->system->refuse_user = form;
     for (f = 0, count = 0; f < form->mesh->face_count; ++f) {
         if (form->mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         form->guard->vertex[count++] = f;
@@ -11832,6 +12324,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
     gproj_schedule schedule;
     int32_t i;
     bool wanted = !skip && form->planarity >= 0 && form->system->group[form->planarity].schedule.weight > 0;
+    form->guard_on = wanted;
     if (wanted && !form->guard) gproji_add_guard(form);
     if (!form->guard || !gproji_form_ready(form)) return;
     schedule.weight = wanted ? gproji_guard_weight : 0;
@@ -11891,8 +12384,8 @@ GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, i
 /* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
-   ends, 0 without any. */
-GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip) {
+   ends, 0 without any. Where the nearest mesh is asked for, closeness is what it is nearest by. */
+GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
     int32_t half = gproji_half(iterations), i;
     gproj_schedule schedule;
@@ -11901,10 +12394,12 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
         schedule.weight = wanted ? 0.03 : 0;
         schedule.decay = 0.3;
         schedule.last = gproji_min(5, half);
+        if (nearest && wanted) schedule.weight = 1, schedule.decay = 0, schedule.last = 0;
         gproj_system_set_schedule(form->system, form->closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
             gproj_system_set_row(form->system, form->closeness, i, NULL, -gproj_system_values(form->system)[i]);
     }
+    if (nearest) return GPROJI_NEAREST_GUIDED;
     return others ? half : wanted ? gproji_min(5, half) : 0;
 }
 
@@ -11954,7 +12449,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     gproji_restart_gliding(form);
     gproji_begin_forces(form);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
-    guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness);
+    guided =
+        gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
     form->system->default_last = gproji_half(iterations);

@@ -121,7 +121,7 @@ typedef struct tool {
     int32_t iterations, threads;
     double epsilon, tolerance, time_limit;
     gprojx_view view;
-    bool view_given, quiet, help, version;
+    bool nearest, view_given, quiet, help, version;
     bool seen[MOST_OPTIONS];
 
     /* the work */
@@ -561,7 +561,12 @@ static const tool_option options[] = {
     {0, "equal-areas", "[=W]", false, "faces have equal areas (W: 1 if left out)", NULL, set_wish_or_one,
      PLACE(equal_areas)},
 
-    {0, "iterations", "N", false, "at most so many (12; with --equilibrium 25)", "how", set_iterations, PLACE(iterations)},
+    {0, "nearest", "", false,
+     "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
+     "best: they keep their weights W to the end",
+     "how", set_flag, PLACE(nearest)},
+    {0, "iterations", "N", false, "at most so many (12; with --equilibrium 25, with --nearest 30)", NULL,
+     set_iterations, PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
     {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", NULL,
@@ -720,6 +725,7 @@ static bool anything_asked(const tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
     if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
     if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
@@ -1093,12 +1099,13 @@ static bool add_gliding(tool *t, const tool_word *word) {
     return glide_along(t, first, word->weight.weight);
 }
 
-/* A wish with its schedule. The first half of the iterations where no last one is given. */
+/* A wish with its schedule. The first half of the iterations where no last one is given; all with --nearest. */
 static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
     gproj_schedule schedule;
     schedule.weight = weight->weight;
     schedule.decay = weight->decay;
     schedule.last = weight->last > 0 ? weight->last : t->iterations > 1 ? t->iterations / 2 : 1;
+    if (t->nearest) schedule.decay = 0, schedule.last = 0;
     if (group >= 0) gproj_set_schedule(t->form, group, schedule);
 }
 
@@ -1371,6 +1378,7 @@ static bool solve(tool *t) {
     how.epsilon = t->epsilon;
     how.time_budget = t->time_limit;
     how.skip_closeness = t->closeness.given && t->closeness.weight <= 0;
+    how.nearest = t->nearest;
     how.on_iteration = on_iteration;
     how.user = t;
     if (t->output[OUTPUT_REPORT].path) {
@@ -1520,8 +1528,11 @@ static const char *outcome_name(gproj_outcome outcome) {
     }
 }
 
+/* What must hold does. How near a nearest mesh came is told by the sentence and the report. */
 static int verdict_code(const tool *t) {
-    return t->result.outcome == GPROJ_CONVERGED ? EXIT_REACHED : EXIT_NOT_REACHED;
+    bool holds = t->result.outcome == GPROJ_CONVERGED ||
+                 (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
+    return holds ? EXIT_REACHED : EXIT_NOT_REACHED;
 }
 
 /* How many faces have this many sides. */
@@ -1615,6 +1626,7 @@ static void report_iteration(json *j, tool *t, const tool_record *record) {
     json_number(j, "merit", iteration->merit);
     json_number(j, "energy", iteration->energy);
     json_number(j, "step", iteration->step);
+    if (t->nearest) json_number(j, "optimality", iteration->optimality);
     json_number(j, "epsilon", iteration->epsilon);
     json_integer(j, "attempts", iteration->attempts);
     json_open(j, "groups", '[');
@@ -1649,6 +1661,7 @@ static void report_result(json *j, const tool *t) {
     json_number(j, "residual", result->residual);
     json_number(j, "tolerance", result->tolerance);
     json_number(j, "last_step", result->step);
+    if (t->nearest) json_number(j, "optimality", result->optimality);
     if (result->worst_group >= 0) {
         gproj_group_info group = gproj_system_group_info(gproj_form_system(t->form), result->worst_group);
         json_open(j, "worst", '{');
@@ -1934,7 +1947,6 @@ int main(int argc, char **argv) {
     t.start = now(NULL);
     t.threads = 1;
     if (read_command_line(&t, argc, argv)) {
-        if (t.iterations == 0) t.iterations = t.equilibrium.given ? 25 : 12;
         if (t.help)
             print_help();
         else if (t.version)

@@ -1,0 +1,553 @@
+/* test_nearest.c - >>loop: the nearest point where the constraints hold, by multipliers. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+static gproj_solve_options gprojt_nearest(void) {
+    gproj_solve_options options;
+    memset(&options, 0, sizeof options);
+    options.nearest = true;
+    return options;
+}
+
+static gproj_result gprojt_solve_nearest(gproj_system *s, int32_t iterations) {
+    gproj_solve_options options = gprojt_nearest();
+    return gproj_system_solve(s, iterations, &options);
+}
+
+/* -- one point near quadrics, against what is computed otherwise -- */
+
+/* A system of one point at `start`, wished to be at `wish`, with a weight. */
+static gproj_system *gprojt_one_point(const double start[3], const double wish[3], double weight) {
+    gproj_system *s = gproj_system_create(NULL);
+    int32_t group, k;
+    gproj_system_add_variables(s, 3, 3, start);
+    group = gprojt_add_group(s, "closeness", GPROJ_WISH, weight);
+    for (k = 0; k < 3; ++k) gprojt_add_linear(s, group, k, 1, -wish[k], 0);
+    return s;
+}
+
+/* Adds the row sum (x_k / a_k)^2 - 1, times `sign`. */
+static int32_t gprojt_add_ellipsoid(gproj_system *s, gproj_kind kind, const double a[3], double sign) {
+    int32_t group = gprojt_add_group(s, "ellipsoid", kind, 1), k;
+    gproj_term term[3];
+    for (k = 0; k < 3; ++k) term[k] = gprojt_term(k, k, sign / (a[k] * a[k]));
+    gproj_system_add_row(s, group, 3, term, -sign, 0);
+    return group;
+}
+
+/* The point of an ellipsoid nearest to p outside of it: x_k = a_k^2 p_k / (a_k^2 + t) with the t > 0 that puts it on
+   the ellipsoid, by bisection. */
+static void gprojt_nearest_on_ellipsoid(const double a[3], const double p[3], double out[3]) {
+    double low = 0, high = 1e4;
+    int i, k;
+    for (i = 0; i < 200; ++i) {
+        double t = (low + high) / 2, sum = 0;
+        for (k = 0; k < 3; ++k) {
+            out[k] = a[k] * a[k] * p[k] / (a[k] * a[k] + t);
+            sum += (out[k] / a[k]) * (out[k] / a[k]);
+        }
+        if (sum > 1) {
+            low = t;
+        } else {
+            high = t;
+        }
+    }
+}
+
+GPROJT_TEST(nearest_on_ellipsoids) {
+    uint64_t seed = 3;
+    int i, k;
+    for (i = 0; i < 40; ++i) {
+        double a[3], p[3], expected[3];
+        gproj_system *s;
+        gproj_result result;
+        for (k = 0; k < 3; ++k) a[k] = i < 5 ? 1 : 0.5 + 2 * gprojt_uniform(&seed);
+        for (k = 0; k < 3; ++k) p[k] = (k == i % 3 ? 2.6 : 0.2) + gprojt_uniform(&seed);
+        s = gprojt_one_point(p, p, i % 2 ? 1 : 1e-3);
+        gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+        result = gprojt_solve_nearest(s, 40);
+        gprojt_nearest_on_ellipsoid(a, p, expected);
+        if (result.outcome != GPROJ_CONVERGED || gprojt_far(gproj_system_values(s), expected) > 1e-6)
+            printf("    %d: off by %g; %s\n", i, gprojt_far(gproj_system_values(s), expected), result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual <= 1e-13 && result.optimality <= 1e-6);
+        GPROJT_CHECK(gprojt_far(gproj_system_values(s), expected) < 1e-6);
+        gproj_system_destroy(s);
+    }
+}
+
+/* The curve x^2 + y^2 = 1, z = x y + 0.3 x^2 in closed form, scanned for its nearest point. */
+static double gprojt_curve_distance(double angle, const double p[3], double q[3]) {
+    q[0] = cos(angle), q[1] = sin(angle), q[2] = q[0] * q[1] + 0.3 * q[0] * q[0];
+    return gprojt_far(p, q);
+}
+
+GPROJT_TEST(nearest_on_two_quadrics) {
+    uint64_t seed = 8;
+    int i, k;
+    for (i = 0; i < 30; ++i) {
+        double p[3], q[3], best = 0, angle, step;
+        gproj_system *s;
+        gproj_result result;
+        gproj_term term[3];
+        int32_t group;
+        for (k = 0; k < 3; ++k) p[k] = 3 * gprojt_uniform(&seed) - 1.5;
+        s = gprojt_one_point(p, p, 1);
+        group = gprojt_add_group(s, "curve", GPROJ_CONSTRAINT, 1);
+        term[0] = gprojt_term(0, 0, 1), term[1] = gprojt_term(1, 1, 1);
+        gproj_system_add_row(s, group, 2, term, -1, 0);
+        term[0] = gprojt_term(0, 1, 1), term[1] = gprojt_term(0, 0, 0.3), term[2] = gprojt_term(2, -1, -1);
+        gproj_system_add_row(s, group, 3, term, 0, 1);
+        result = gprojt_solve_nearest(s, 60);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        /* it is a local minimum: no point of the curve beside it is nearer */
+        angle = atan2(gproj_system_values(s)[1], gproj_system_values(s)[0]);
+        best = gprojt_curve_distance(angle, p, q);
+        GPROJT_CHECK(gprojt_far(q, gproj_system_values(s)) < 1e-12);
+        for (step = 1e-4; step < 0.02; step *= 2) {
+            GPROJT_CHECK(gprojt_curve_distance(angle + step, p, q) >= best - 1e-13);
+            GPROJT_CHECK(gprojt_curve_distance(angle - step, p, q) >= best - 1e-13);
+        }
+        gproj_system_destroy(s);
+    }
+}
+
+/* phi >= 0 inside: points within stay where they are, others come to the surface. */
+GPROJT_TEST(nearest_in_a_ball) {
+    static const double a[3] = {1, 1.5, 0.7};
+    uint64_t seed = 4;
+    int i, k;
+    for (i = 0; i < 20; ++i) {
+        double p[3], expected[3], size = 0;
+        gproj_system *s;
+        gproj_result result;
+        for (k = 0; k < 3; ++k) p[k] = (i % 2 ? 2.4 : 0.5) * a[k] * (0.1 + gprojt_uniform(&seed));
+        for (k = 0; k < 3; ++k) size += (p[k] / a[k]) * (p[k] / a[k]);
+        s = gprojt_one_point(p, p, 1);
+        gprojt_add_ellipsoid(s, GPROJ_BOUND, a, -1);
+        result = gprojt_solve_nearest(s, 40);
+        memcpy(expected, p, sizeof p);
+        if (size > 1) gprojt_nearest_on_ellipsoid(a, p, expected);
+        if (gprojt_far(gproj_system_values(s), expected) > 1e-6)
+            printf("    %d: off by %g; %s\n", i, gprojt_far(gproj_system_values(s), expected), result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(gprojt_far(gproj_system_values(s), expected) < 1e-6);
+        gproj_system_destroy(s);
+    }
+}
+
+/* A bound whose boundary is not where the minimum is lets go: from outside the ball, wished inside. */
+GPROJT_TEST(bounds_let_go) {
+    static const double a[3] = {1, 1, 1}, start[3] = {3, 1, 0.5}, wish[3] = {0.2, 0.1, -0.3};
+    gproj_system *s = gprojt_one_point(start, wish, 1);
+    gproj_result result;
+    gprojt_add_ellipsoid(s, GPROJ_BOUND, a, -1);
+    result = gprojt_solve_nearest(s, 40);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_far(gproj_system_values(s), wish) < 1e-6);
+    gproj_system_destroy(s);
+}
+
+/* A row with a global group (low-rank update): the mean of many points is prescribed, closeness wished; they all move by
+   the same. */
+GPROJT_TEST(global_rows) {
+    enum {
+        COUNT = 700
+    };
+    gproj_system *s = gproj_system_create(NULL);
+    double x[COUNT];
+    gproj_term term[COUNT];
+    gproj_group global;
+    gproj_result result;
+    uint64_t seed = 2;
+    int32_t i, group;
+    double mean = 0, worst = 0;
+    for (i = 0; i < COUNT; ++i) x[i] = gprojt_uniform(&seed), mean += x[i] / COUNT;
+    gproj_system_add_variables(s, COUNT, 1, x);
+    group = gprojt_add_group(s, "closeness", GPROJ_WISH, 1);
+    for (i = 0; i < COUNT; ++i) gprojt_add_linear(s, group, i, 1, -x[i], i);
+    memset(&global, 0, sizeof global);
+    global.name = "mean", global.global = true, global.schedule.weight = 1;
+    group = gproj_system_add_group(s, &global);
+    for (i = 0; i < COUNT; ++i) term[i] = gprojt_term(i, -1, 1.0 / COUNT);
+    gproj_system_add_row(s, group, COUNT, term, -2, 0);
+    result = gprojt_solve_nearest(s, 30);
+    for (i = 0; i < COUNT; ++i) worst = fmax(worst, fabs(gproj_system_values(s)[i] - x[i] - (2 - mean)));
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && worst < 1e-6);
+    gproj_system_destroy(s);
+}
+
+/* Without constraints it is least squares; with nothing wished, projection; with nothing at all, nothing. */
+GPROJT_TEST(one_side_only) {
+    static const double a[3] = {1, 2, 1}, start[3] = {1, 1, 1}, wish[3] = {4, 5, 6};
+    gproj_system *s = gprojt_one_point(start, wish, 0.1);
+    gproj_result result = gprojt_solve_nearest(s, 20);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_far(gproj_system_values(s), wish) < 1e-6);
+    GPROJT_CHECK(result.worst_group == -1);
+    gproj_system_destroy(s);
+    s = gproj_system_create(NULL);
+    gproj_system_add_variables(s, 3, 3, start);
+    gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+    result = gprojt_solve_nearest(s, 20);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual <= 1e-13 && result.optimality == 0);
+    gproj_system_destroy(s);
+    s = gproj_system_create(NULL);
+    result = gprojt_solve_nearest(s, 20);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0);
+    gproj_system_destroy(s);
+}
+
+/* Only the ratios of the wishes' weights matter, and decay and last do not. */
+GPROJT_TEST(weights_are_ratios) {
+    static const double a[3] = {1, 2, 0.6}, p[3] = {1.5, 1.2, 0.9}, q[3] = {0.3, 2, 1.4};
+    double found[3][3];
+    int i;
+    for (i = 0; i < 3; ++i) {
+        double size = i == 1 ? 100 : 1;
+        gproj_system *s = gprojt_one_point(p, p, size);
+        int32_t second = gprojt_add_group(s, "second", GPROJ_WISH, 0.5 * size), k;
+        for (k = 0; k < 3; ++k) gprojt_add_linear(s, second, k, 1, -q[k], 0);
+        gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+        if (i == 2) gproj_system_set_schedule(s, second, gprojt_schedule(0.5, 0.5, 3));
+        GPROJT_CHECK(gprojt_solve_nearest(s, 40).outcome == GPROJ_CONVERGED);
+        memcpy(found[i], gproj_system_values(s), sizeof found[i]);
+        gproj_system_destroy(s);
+    }
+    GPROJT_CHECK(gprojt_far(found[0], found[1]) < 1e-9 && gprojt_far(found[0], found[2]) == 0);
+}
+
+/* -- meshes -- */
+
+typedef void (*gprojt_asks)(gproj_form *form);
+
+static void gprojt_ask_planar(gproj_form *form) { gproj_add_planarity(form, 1); }
+static void gprojt_ask_circular(gproj_form *form) {
+    gproj_add_planarity(form, 1);
+    gproj_add_circularity(form, 1);
+}
+static void gprojt_ask_fixed(gproj_form *form) {
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+}
+static void gprojt_ask_gliding(gproj_form *form) {
+    gproj_add_planarity(form, 1);
+    gproj_add_gliding_boundary(form, 1);
+}
+static double gprojt_wanted_volume;
+static void gprojt_ask_volume(gproj_form *form) {
+    gproj_add_planarity(form, 1);
+    gproj_add_volume(form, gprojt_wanted_volume, 1);
+}
+
+/* Solves a copy of the mesh in the usual way or for the nearest one; `positions`: the outcome. */
+static gproj_measures gprojt_measure_solve(const gproj_mesh *mesh, gprojt_asks ask, bool nearest, int32_t iterations,
+                                           const gproj_host *host, gproj_result *result, double *positions) {
+    gproj_error error;
+    gproj_mesh *copy = gproj_mesh_copy(mesh, NULL, &error);
+    gproj_form *form = gproj_form_create(copy, host);
+    gproj_solve_options options = gprojt_nearest();
+    gproj_measures measures;
+    options.nearest = nearest;
+    ask(form);
+    *result = gproj_solve(form, iterations, &options);
+    measures = gproj_measure(copy, mesh->position, NULL);
+    if (positions) memcpy(positions, copy->position, 3 * (size_t)copy->vertex_count * sizeof *positions);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(copy);
+    return measures;
+}
+
+GPROJT_TEST(moves_less_than_projection) {
+    static const gprojt_asks asks[] = {gprojt_ask_planar, gprojt_ask_circular, gprojt_ask_fixed, gprojt_ask_gliding,
+                                       gprojt_ask_volume};
+    int shape, i;
+    for (i = 0; i < 5; ++i) {
+        for (shape = 0; shape < 6; ++shape) {
+            gproj_mesh *mesh = gprojt_noisy(shape, 6, 0.06, 5);
+            gproj_result plain, nearest;
+            gproj_measures before, after;
+            gprojt_wanted_volume = 1.05 * gproj_volume(mesh);
+            before = gprojt_measure_solve(mesh, asks[i], false, 30, NULL, &plain, NULL);
+            after = gprojt_measure_solve(mesh, asks[i], true, 30, NULL, &nearest, NULL);
+            if (plain.outcome == GPROJ_CONVERGED) {
+                if (nearest.residual > nearest.tolerance || after.deviation_rms > before.deviation_rms * (1 + 1e-9))
+                    printf("    shape %d, asked %d: %g, plain %g; %s\n", shape, i, after.deviation_rms,
+                           before.deviation_rms, nearest.message);
+                GPROJT_CHECK(nearest.residual <= nearest.tolerance);
+                GPROJT_CHECK(after.deviation_rms <= before.deviation_rms * (1 + 1e-9));
+                GPROJT_CHECK(after.turned_faces <= before.turned_faces);
+            }
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
+/* The part of g that is orthogonal to all constraint rows at the system's x, over |g|: Gram and Schmidt, twice. */
+static double gprojt_projected(gproj_system *s, const double *g) {
+    int32_t n = gproj_system_variable_count(s), i, r, k, v, kept = 0, round;
+    double *basis = (double *)malloc((size_t)n * (size_t)n * sizeof *basis), *left, size = 0, norm = 0;
+    if (!basis) abort();
+    left = (double *)malloc((size_t)n * sizeof *left);
+    if (!left) abort();
+    for (i = 0; i <= gproj_system_group_count(s); ++i) {
+        bool last = i == gproj_system_group_count(s);
+        gproj_group_info info = gprojt_info(s, last ? 0 : i);
+        if (!last && info.kind != GPROJ_CONSTRAINT) continue;
+        for (r = 0; r < (last ? 1 : info.rows) && kept < n; ++r) {
+            double *row = last ? left : basis + (size_t)n * (size_t)kept, first = 0;
+            if (last) {
+                memcpy(left, g, (size_t)n * sizeof *left);
+            } else {
+                gproj_system_row_value(s, i, r, row);
+            }
+            for (v = 0; v < n; ++v) first += row[v] * row[v];
+            for (round = 0; round < 2; ++round) {
+                for (k = 0; k < kept; ++k) {
+                    const double *q = basis + (size_t)n * (size_t)k;
+                    double dot = 0;
+                    for (v = 0; v < n; ++v) dot += q[v] * row[v];
+                    for (v = 0; v < n; ++v) row[v] -= dot * q[v];
+                }
+            }
+            norm = 0;
+            for (v = 0; v < n; ++v) norm += row[v] * row[v];
+            if (last || norm < 1e-16 * first) continue;
+            for (v = 0; v < n; ++v) row[v] /= sqrt(norm);
+            kept++;
+        }
+    }
+    for (v = 0; v < n; ++v) size += g[v] * g[v];
+    free(basis);
+    free(left);
+    return sqrt(norm / size);
+}
+
+/* The displacement is orthogonal to the tangent space of the constraints. */
+GPROJT_TEST(conditions_of_kuhn_and_tucker) {
+    static const gprojt_asks asks[] = {gprojt_ask_planar, gprojt_ask_fixed};
+    int i, shape;
+    for (i = 0; i < 2; ++i) {
+        for (shape = 0; shape < 3; ++shape) {
+            gproj_mesh *mesh = gprojt_noisy(shape, 4, 0.06, 9);
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_solve_options options = gprojt_nearest();
+            gproj_result result;
+            gproj_system *s = gproj_form_system(form);
+            double *before, *g, projected = 0, sum = 0;
+            int32_t v, n;
+            asks[i](form);
+            n = gproj_system_variable_count(s);
+            before = (double *)malloc((size_t)n * sizeof *before);
+            g = (double *)calloc((size_t)n, sizeof *g);
+            if (!before || !g) abort();
+            memcpy(before, gproj_system_values(s), (size_t)n * sizeof *before);
+            result = gproj_solve(form, 100, &options);
+            for (v = 0; v < 3 * mesh->vertex_count; ++v) g[v] = gproj_system_values(s)[v] - before[v];
+            for (v = 0; v < n; ++v) sum += g[v] * g[v];
+            if (sum > 0) projected = gprojt_projected(s, g);
+            if (result.outcome != GPROJ_CONVERGED || projected > 2e-6)
+                printf("    shape %d, asked %d: projected %g; %s\n", shape, i, projected, result.message);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality <= 1e-6);
+            GPROJT_CHECK(projected <= result.optimality * 1.01 + 1e-9);
+            free(before);
+            free(g);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
+/* What satisfies everything already stays to the bit. */
+GPROJT_TEST(nothing_to_do) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(3)), *flat;
+    gproj_result result;
+    gproj_error error;
+    double *positions = gprojt_keep(mesh);
+    gprojt_measure_solve(mesh, gprojt_ask_planar, false, 30, NULL, &result, positions);
+    flat = gproj_mesh_copy(mesh, NULL, &error);
+    memcpy(flat->position, positions, 3 * (size_t)flat->vertex_count * sizeof *positions);
+    gprojt_measure_solve(flat, gprojt_ask_planar, true, 30, NULL, &result, positions);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0);
+    GPROJT_CHECK(memcmp(positions, flat->position, 3 * (size_t)flat->vertex_count * sizeof *positions) == 0);
+    free(positions);
+    gproj_mesh_destroy(mesh);
+    gproj_mesh_destroy(flat);
+}
+
+GPROJT_TEST(same_bits_for_all_crews) {
+    gproj_mesh *mesh = gprojt_noisy(0, 12, 0.1, 3);
+    double *first = gprojt_keep(mesh), *other = gprojt_keep(mesh);
+    gproj_result result;
+    int i;
+    gprojt_measure_solve(mesh, gprojt_ask_planar, true, 20, NULL, &result, first);
+    for (i = 0; i < GPROJT_CREWS; ++i) {
+        gproj_host host = gprojt_crew(i);
+        gprojt_measure_solve(mesh, gprojt_ask_planar, true, 20, &host, &result, other);
+        GPROJT_CHECK(memcmp(first, other, 3 * (size_t)mesh->vertex_count * sizeof *first) == 0);
+    }
+    free(first);
+    free(other);
+    gproj_mesh_destroy(mesh);
+}
+
+typedef struct gprojt_log {
+    int count, stop_after;
+    uint64_t allocations;
+    bool allocated;
+    double optimality;
+} gprojt_log;
+
+static bool gprojt_note(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    gprojt_log *log = (gprojt_log *)user;
+    uint64_t allocations = gproj_system_memory(s).allocations;
+    if (log->count++ > 0 && allocations != log->allocations) log->allocated = true;
+    log->allocations = allocations;
+    log->optimality = iteration->optimality;
+    return log->count != log->stop_after;
+}
+
+/* Few iterations, cancelling, time: the sentence says what holds and what does not. Iterations do not allocate. */
+GPROJT_TEST(honest_verdicts) {
+    gproj_mesh *mesh = gprojt_noisy(0, 10, 0.25, 7);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_nearest();
+    gprojt_log log;
+    gproj_result result;
+    double *start = gprojt_keep(mesh);
+    int32_t n;
+    memset(&log, 0, sizeof log);
+    gproj_add_planarity(form, 1);
+    options.on_iteration = gprojt_note;
+    options.user = &log;
+    for (n = 0; n < 14; ++n) {
+        memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+        result = gproj_solve(form, n, &options);
+        if (result.outcome == GPROJ_CONVERGED) {
+            GPROJT_CHECK(result.optimality <= 1e-6 && result.residual <= result.tolerance);
+        } else {
+            GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && strstr(result.message, "iterations ran out"));
+            GPROJT_CHECK(strstr(result.message, "projected gradient") != NULL);
+        }
+        GPROJT_CHECK((strstr(result.message, "all constraints hold") != NULL) == (result.residual <= result.tolerance));
+        GPROJT_CHECK(n == 0 || result.optimality == log.optimality);
+    }
+    memset(&log, 0, sizeof log);
+    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    log.stop_after = 3;
+    result = gproj_solve(form, 30, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 3 && !log.allocated);
+    memset(&log, 0, sizeof log);
+    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    result = gproj_solve(form, 60, &options);
+    GPROJT_CHECK(result.residual <= result.tolerance && !log.allocated && log.count > 5);
+    /* afterwards the usual solve is as ever */
+    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    options.nearest = false;
+    result = gproj_solve(form, 20, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality == 0);
+    free(start);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A wish that stays on does not keep the constraints from holding, and is served better than by guiding alone. */
+GPROJT_TEST(wishes_stay_on) {
+    gproj_result result[2];
+    double energy[2];
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 8, 0.05, 4);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options = gprojt_nearest();
+        int32_t fairness;
+        options.nearest = i == 1;
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed_boundary(form, 1);
+        fairness = gproj_add_fairness(form, 0.2);
+        result[i] = gproj_solve(form, 60, &options);
+        gproj_set_schedule(form, fairness, gprojt_schedule(1, 1, INT32_MAX));
+        gproj_system_check_gradients(gproj_form_system(form));
+        energy[i] = 0;
+        {
+            int32_t r, rows = gproj_form_group_info(form, fairness).rows;
+            for (r = 0; r < rows; ++r) {
+                double phi = gproj_system_row_value(gproj_form_system(form), fairness, r, NULL);
+                energy[i] += phi * phi;
+            }
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    if (!(energy[1] < energy[0])) printf("    energies %g %g; %s\n", energy[0], energy[1], result[1].message);
+    GPROJT_CHECK(result[1].residual <= result[1].tolerance && energy[1] < energy[0]);
+}
+
+/* The meshes and the figures of other tools, where the folder is there. */
+GPROJT_TEST(real_meshes) {
+    static const struct {
+        const char *name;
+        double rms;
+    } known[] = {{"Intersection", 7.6e-4}, {"botanic-garden", 1.25e-3}, {"M2_eq_quad2", 4.3e-3}, {"heart", 7.6e-3},
+                 {"eyeye_circular", 3.6e-3}, {"tubemesh", 5.2e-3}, {"YasIsland", 7.4e-6}, {"hypar", 7.8e-2}};
+    int i;
+    for (i = 0; i < 8; ++i) {
+        char path[512];
+        gproj_mesh *mesh;
+        gproj_measures m;
+        gproj_result result;
+        snprintf(path, sizeof path, "%s/%s.obj", gprojt_data_folder(), known[i].name);
+        mesh = gproj_mesh_load(path, NULL, NULL);
+        if (!mesh) GPROJT_SKIP("the folder of real meshes is not there");
+        m = gprojt_measure_solve(mesh, gprojt_ask_planar, true, 30, NULL, &result, NULL);
+        if (m.deviation_rms > known[i].rms || m.planarity_max > 1e-12 || m.turned_faces > 0)
+            printf("    %s: rms %g, planarity %g, %d turned\n", known[i].name, m.deviation_rms, m.planarity_max,
+                   m.turned_faces);
+        GPROJT_CHECK(m.deviation_rms <= known[i].rms && m.planarity_max <= 1e-12 && m.turned_faces == 0);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* One solve of a small mesh whose i-th allocation fails, for every i. */
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 5);
+    double *start = gprojt_keep(mesh);
+    long fail_at;
+    for (fail_at = 1;; ++fail_at) {
+        gprojt_failing failing;
+        gproj_solve_options options = gprojt_nearest();
+        gproj_host host;
+        gproj_form *form;
+        gproj_result result;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = fail_at;
+        host = gprojt_failing_host(&failing);
+        memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+        form = gproj_form_create(mesh, &host);
+        gproj_add_planarity(form, 1);
+        result = gproj_solve(form, 30, &options);
+        GPROJT_CHECK(failing.calls < fail_at || result.outcome == GPROJ_FAILED);
+        gproj_form_destroy(form);
+        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
+        if (failing.calls < fail_at) break;
+    }
+    GPROJT_CHECK(fail_at > 30);
+    free(start);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(nearest_on_ellipsoids);
+    GPROJT_RUN(nearest_on_two_quadrics);
+    GPROJT_RUN(nearest_in_a_ball);
+    GPROJT_RUN(bounds_let_go);
+    GPROJT_RUN(global_rows);
+    GPROJT_RUN(one_side_only);
+    GPROJT_RUN(weights_are_ratios);
+    GPROJT_RUN(moves_less_than_projection);
+    GPROJT_RUN(conditions_of_kuhn_and_tucker);
+    GPROJT_RUN(nothing_to_do);
+    GPROJT_RUN(same_bits_for_all_crews);
+    GPROJT_RUN(honest_verdicts);
+    GPROJT_RUN(wishes_stay_on);
+    GPROJT_RUN(real_meshes);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
