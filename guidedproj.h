@@ -4170,8 +4170,8 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
    does not, the interior-point method goes on and its next guess is better. So the method cannot cycle, and a limit of
    factorisations ends it in any case. */
 enum {
-    GPROJI_SQUARES_LIMIT = 80, /* factorisations */
-    GPROJI_SQUARES_ROUNDS = 8, /* of exchanges, one factorisation each */
+    GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
+    GPROJI_SQUARES_ROUNDS = 12, /* of exchanges, one factorisation each */
     GPROJI_SQUARES_CORRECTORS = 3
 };
 

@@ -549,8 +549,8 @@ GPROJT_TEST(roofs) {
 
 /* 10,000 vertices. */
 GPROJT_TEST(large_roofs) {
-#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE)
-    GPROJT_SKIP("large meshes are not for instrumented builds");
+#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJ_USE_CBLAS)
+    GPROJT_SKIP("large meshes are for plain builds");
 #else
     static const int32_t kinds[4] = {DOME, WAVE, FLAT, SADDLE};
     int32_t k, j;
@@ -558,7 +558,7 @@ GPROJT_TEST(large_roofs) {
         for (j = 0; j < 2; ++j) {
             squares s = roof(kinds[k], 99, j == 1, k == 0 || k == 3 ? 0.05 : 0.3, 12);
             gproj_least_squares_result r = check_solved(&s, 200);
-            GPROJT_CHECK(r.factorisations <= (kinds[k] == WAVE ? 30 : 20));
+            GPROJT_CHECK(r.factorisations <= (kinds[k] == DOME || kinds[k] == SADDLE ? 20 : 30));
             GPROJT_CHECK(r.at_bounds > 50);
             squares_free(&s);
         }
