@@ -348,7 +348,7 @@ typedef struct gproj_least_squares {
 
 typedef enum gproj_least_squares_outcome {
     GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
-    GPROJ_LEAST_SQUARES_LIMIT,  /* the allowed factorisations or the digits ran out; x is the best point met */
+    GPROJ_LEAST_SQUARES_LIMIT,  /* factorisations or digits ran out; x is the best point met, see kkt */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
     GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_least_squares_outcome;
@@ -368,11 +368,15 @@ typedef struct gproj_least_squares_result {
     size_t work_bytes;
 } gproj_least_squares_result;
 
-/* Solves the problem. x, `columns` numbers, finite: where to start; at the end the solution. A start of zeros is
-   good; a start that is nearly right, with the bounds it should have, makes it faster. `host`, `result` and `error`
-   may be NULL. Usual are 5 to 20 factorisations of a matrix with the pattern of A'A; there are never more than 80. So
-   a row of A must not have very many entries. Other than GPROJ_OK are only errors: GPROJ_ERROR_ARGUMENT, _INDEX,
-   _NUMBER, _SIZE for what is wrong with the problem, GPROJ_ERROR_MEMORY. */
+/* Solves the problem. x, `columns` numbers: where to start; at the end the solution. A start of zeros is good. A start
+   that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
+   zeros. `host`, `result` and `error` may be NULL.
+   The work are factorisations of a matrix with the pattern of A'A, so a row of A must not have very many entries. Usual
+   are 5 to 20; up to 30 where most bounds matter and the residual stays large; there are never more than 80.
+   Where A has dependent columns and damping is 0, nothing is added to the problem: 1e-12 of the diagonal of A'A stands in
+   the matrix of each step, but not in the conditions that the solution satisfies.
+   Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for what is
+   wrong with the problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -4175,8 +4179,8 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
    does not, the interior-point method goes on and its next guess is better. So the method cannot cycle, and a limit of
    factorisations ends it in any case. */
 enum {
-    GPROJI_SQUARES_LIMIT = 80, /* factorisations */
-    GPROJI_SQUARES_ROUNDS = 8, /* of exchanges, one factorisation each */
+    GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
+    GPROJI_SQUARES_ROUNDS = 12, /* of exchanges, one factorisation each */
     GPROJI_SQUARES_CORRECTORS = 3
 };
 
@@ -4492,7 +4496,7 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
         memcpy(s->best, s->trial, (size_t)s->columns * sizeof(double));
         s->best_kkt = kkt;
     }
-    return largest <= s->noise;
+    return largest <= gproji_fmax(s->noise, DBL_EPSILON * s->scale);
 }
 
 /* -- Newton steps and exchanges -- */
@@ -4551,7 +4555,7 @@ GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
         gproji_squares_minimise(s);
         count = gproji_squares_exchange(s);
         if (gproji_squares_judge(s)) return true;
-        if (count == 0 || count > before / 2) return false;
+        if (count == 0 || count > before / 2 + 2) return false;
         before = count;
     }
     return false;
@@ -4587,9 +4591,9 @@ GPROJI_INTERNAL void gproji_squares_move_inside(gproji_squares *s, double shift)
             margin = gproji_fmin(margin, 0.25 * (s->upper[j] - s->lower[j]));
             s->x[j] = gproji_fmax(gproji_fmin(s->x[j], s->upper[j] - margin), s->lower[j] + margin);
         } else if (below) {
-            s->x[j] = gproji_fmax(s->x[j], s->lower[j] - 0.7 * margin) + margin;
+            s->x[j] += margin;
         } else if (above) {
-            s->x[j] = gproji_fmin(s->x[j], s->upper[j] + 0.7 * margin) - margin;
+            s->x[j] -= margin;
         }
     }
 }
@@ -4617,7 +4621,7 @@ GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
     gproji_squares_move_inside(s, shift);
     for (c = 0; c < s->pairs; ++c) {
         s->slack[c] = gproji_squares_slack(s, c);
-        s->dual[c] = force * sqrt(s->diagonal[s->variable[c]]);
+        s->dual[c] = 0.1 * force * sqrt(s->diagonal[s->variable[c]]);
         if (!(s->slack[c] > 0)) return false; /* bounds that are neighbours as numbers */
     }
     return true;
@@ -4675,7 +4679,7 @@ GPROJI_INTERNAL double gproji_squares_predict(gproji_squares *s) {
     for (c = 0; c < s->pairs; ++c) d->target[c] = -s->slack[c] * s->dual[c];
     gproji_squares_direct(s, d);
     ratio = gproji_squares_mean(s, d, gproji_fmin(d->reach, 1)) / mean;
-    aim = ratio * ratio * ratio * mean;
+    aim = 0.1 * ratio * ratio * mean;
     for (c = 0; c < s->pairs; ++c) d->target[c] += aim - s->sign[c] * d->x[s->variable[c]] * d->dual[c];
     gproji_squares_direct(s, d);
     return aim;
@@ -4746,14 +4750,15 @@ GPROJI_INTERNAL void gproji_squares_guess(gproji_squares *s) {
 
 /* From s->x: the interior-point method, with a polish whenever it seems to know the bounds. */
 GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
-    double tolerance = 1e-5, doubt = 0.01, first = 0;
+    double tolerance = 1e-4, doubt = 0.02, first = 0;
     bool moves = true;
     if (!gproji_squares_interior(s)) return false;
     while (s->code == GPROJ_OK && s->factorisations < GPROJI_SQUARES_LIMIT) {
         double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(s, &s->direction, 0);
-        bool last = !moves || gap <= 1e-22 * first;
+        bool last = !moves || gap <= 1e-22 * first, clear;
         if (first <= 0) first = gap;
-        if (last || (imbalance < tolerance && gap < tolerance * first && gproji_squares_doubt(s) <= doubt)) {
+        clear = gproji_squares_doubt(s) <= doubt || gap <= 1e-5 * tolerance * first;
+        if (last || (imbalance <= tolerance && gap <= tolerance * first && clear)) {
             gproji_squares_guess(s);
             if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return true;
             gproji_squares_free_all(s);
@@ -4793,14 +4798,22 @@ GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
     return true;
 }
 
-/* scale, and the start as the first candidate. True: it is a solution. */
+/* Judges a first candidate, x or 0, moved between the bounds. */
+GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j) s->trial[j] = s->x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
+    s->best_kkt = HUGE_VAL;
+    return gproji_squares_judge(s);
+}
+
+/* scale, and the start as the first candidate; 0 where the start is worse than that. True: it is a solution. */
 GPROJI_INTERNAL bool gproji_squares_begin(gproji_squares *s, const double *x) {
     int32_t j;
     for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
     s->scale = gproji_squares_gradient(s, s->trial);
     if (!(s->scale > 0)) s->scale = 1;
-    for (j = 0; j < s->columns; ++j) s->trial[j] = s->x[j] = s->best[j] = gproji_squares_clip(s, j, x[j]);
-    return gproji_squares_judge(s);
+    if (gproji_squares_propose(s, x)) return true;
+    return s->best_kkt > 1 && gproji_squares_propose(s, NULL);
 }
 
 /* The start may know which bounds hold. */
@@ -4872,7 +4885,6 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
     s.columns = problem->columns;
     s.damping = problem->damping * problem->damping;
     s.proximity = 1e-12;
-    s.best_kkt = HUGE_VAL;
     s.heap = gproji_heap_of(host);
     gproji_pool_start(&s.pool, &s.heap);
     gproji_squares_run(&s, host, x, result);

@@ -1,0 +1,736 @@
+/* test_least_squares.c - >>least-squares: against all sets of held variables, against Lawson and Hanson's method, and by
+   the conditions of optimality, evaluated here, for random problems and for forces in meshes. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_mesh.h"
+
+/* -- problems -- */
+
+/* Room for a problem of its own: columns are added one after the other. */
+typedef struct squares {
+    gproj_least_squares p;
+    int64_t *start;
+    int32_t *row;
+    double *value, *b, *lower, *upper, *x;
+    int64_t room;
+} squares;
+
+static squares squares_of(int32_t rows, int32_t columns, int64_t entries) {
+    squares s;
+    memset(&s, 0, sizeof s);
+    s.room = entries;
+    s.start = (int64_t *)calloc((size_t)columns + 1, sizeof(int64_t));
+    s.row = (int32_t *)calloc((size_t)entries + 1, sizeof(int32_t));
+    s.value = (double *)calloc((size_t)entries + 1, sizeof(double));
+    s.b = (double *)calloc((size_t)rows + 1, sizeof(double));
+    s.lower = (double *)calloc((size_t)columns + 1, sizeof(double));
+    s.upper = (double *)calloc((size_t)columns + 1, sizeof(double));
+    s.x = (double *)calloc((size_t)columns + 1, sizeof(double));
+    s.p.rows = rows, s.p.columns = columns;
+    s.p.start = s.start, s.p.row = s.row, s.p.value = s.value, s.p.b = s.b;
+    s.p.lower = s.lower;
+    return s;
+}
+
+static void squares_free(squares *s) {
+    free(s->start), free(s->row), free(s->value), free(s->b), free(s->lower), free(s->upper), free(s->x);
+}
+
+/* Random entries and b; bounds: 0 <= x. */
+static squares random_squares(int32_t rows, int32_t columns, double density, uint64_t *seed) {
+    squares s = squares_of(rows, columns, (int64_t)rows * columns);
+    int32_t i, j;
+    int64_t at = 0;
+    for (j = 0; j < columns; ++j) {
+        for (i = 0; i < rows; ++i)
+            if (gprojt_uniform(seed) < density) s.row[at] = i, s.value[at++] = 2 * gprojt_uniform(seed) - 1;
+        s.start[j + 1] = at;
+    }
+    for (i = 0; i < rows; ++i) s.b[i] = 2 * gprojt_uniform(seed) - 1;
+    return s;
+}
+
+/* Bounds of all kinds: none, one, two, equal ones. */
+static void random_bounds(squares *s, uint64_t *seed) {
+    int32_t j;
+    s->p.upper = s->upper;
+    for (j = 0; j < s->p.columns; ++j) {
+        double middle = 2 * gprojt_uniform(seed) - 1, half = gprojt_uniform(seed);
+        int32_t kind = gprojt_below(seed, 6);
+        s->lower[j] = kind == 0 || kind == 1 ? -HUGE_VAL : middle - half;
+        s->upper[j] = kind == 0 || kind == 2 ? HUGE_VAL : middle + half;
+        if (kind == 3) s->upper[j] = s->lower[j] = middle;
+    }
+}
+
+static double lower_of(const squares *s, int32_t j) { return s->p.lower ? s->p.lower[j] : -HUGE_VAL; }
+static double upper_of(const squares *s, int32_t j) { return s->p.upper ? s->p.upper[j] : HUGE_VAL; }
+
+/* g = A'(A x - b) + damping^2 x, in long double where the compiler has it. Returns |A x - b|. */
+static double gradient_of(const squares *s, const double *x, double *g) {
+    long double *misfit = (long double *)calloc((size_t)s->p.rows + 1, sizeof(long double)), sum = 0;
+    int32_t i, j;
+    int64_t e;
+    for (i = 0; i < s->p.rows; ++i) misfit[i] = -(long double)s->b[i];
+    for (j = 0; j < s->p.columns; ++j)
+        for (e = s->start[j]; e < s->start[j + 1]; ++e) misfit[s->row[e]] += (long double)s->value[e] * x[j];
+    for (j = 0; j < s->p.columns; ++j) {
+        long double t = (long double)s->p.damping * s->p.damping * x[j];
+        for (e = s->start[j]; e < s->start[j + 1]; ++e) t += s->value[e] * misfit[s->row[e]];
+        g[j] = (double)t;
+    }
+    for (i = 0; i < s->p.rows; ++i) sum += misfit[i] * misfit[i];
+    free(misfit);
+    return sqrt((double)sum);
+}
+
+static double objective_of(const squares *s, const double *x) {
+    double *g = (double *)malloc(((size_t)s->p.columns + 1) * sizeof(double)), r = gradient_of(s, x, g), sum = r * r;
+    int32_t j;
+    for (j = 0; j < s->p.columns; ++j) sum += s->p.damping * s->p.damping * x[j] * x[j];
+    free(g);
+    return 0.5 * sum;
+}
+
+/* The largest violation of optimality; huge where x leaves its bounds. */
+static double violation_of(const squares *s, const double *x) {
+    double *g = (double *)malloc(((size_t)s->p.columns + 1) * sizeof(double)), worst = 0;
+    int32_t j;
+    gradient_of(s, x, g);
+    for (j = 0; j < s->p.columns; ++j) {
+        double l = lower_of(s, j), u = upper_of(s, j);
+        if (!(x[j] >= l && x[j] <= u)) worst = 1e300;
+        if (l == u || (x[j] == l && g[j] >= 0) || (x[j] == u && g[j] <= 0)) continue;
+        if (!(fabs(g[j]) <= worst)) worst = fabs(g[j]);
+    }
+    free(g);
+    return worst;
+}
+
+static gproj_least_squares_result solve(squares *s) {
+    gproj_least_squares_result result;
+    gproj_error error;
+    gproj_code code = gproj_solve_least_squares(&s->p, NULL, s->x, &result, &error);
+    GPROJT_CHECK(code == GPROJ_OK && error.code == GPROJ_OK && error.message[0] == 0);
+    return result;
+}
+
+/* Solves, and checks from outside that it is solved. `size`: of the entries of A and b. */
+static gproj_least_squares_result check_solved(squares *s, double size) {
+    gproj_least_squares_result result = solve(s);
+    double *g = (double *)malloc(((size_t)s->p.columns + 1) * sizeof(double)), residual = gradient_of(s, s->x, g);
+    int32_t j, at_bounds = 0;
+    for (j = 0; j < s->p.columns; ++j) at_bounds += s->x[j] == lower_of(s, j) || s->x[j] == upper_of(s, j);
+    GPROJT_CHECK(result.outcome == GPROJ_LEAST_SQUARES_SOLVED);
+    GPROJT_CHECK(result.kkt >= 0 && result.kkt <= 1e-10);
+    GPROJT_CHECK(violation_of(s, s->x) <= 1e-11 * size * size);
+    GPROJT_NEAR(result.residual, residual, 1e-9 * size);
+    GPROJT_CHECK(result.at_bounds == at_bounds);
+    free(g);
+    return result;
+}
+
+/* -- oracles -- */
+
+/* Solves the n x n system of a dense symmetric positive semidefinite matrix by Gauss with diagonal pivots; what is
+   singular gives 0. Both are overwritten. */
+static void dense_solve(int32_t n, double *a, double *b) {
+    int32_t i, j, k, *order = (int32_t *)malloc(((size_t)n + 1) * sizeof(int32_t)), rank = 0;
+    char *used = (char *)calloc((size_t)n + 1, 1);
+    double first = 0;
+    for (k = 0; k < n; ++k) {
+        int32_t p = -1;
+        for (i = 0; i < n; ++i)
+            if (!used[i] && (p < 0 || a[i * n + i] > a[p * n + p])) p = i;
+        if (k == 0) first = a[p * n + p];
+        if (!(a[p * n + p] > 1e-12 * first)) break;
+        used[p] = 1, order[rank++] = p;
+        for (i = 0; i < n; ++i) {
+            double f = a[i * n + p] / a[p * n + p];
+            if (used[i]) continue;
+            for (j = 0; j < n; ++j) a[i * n + j] -= f * a[p * n + j];
+            b[i] -= f * b[p];
+        }
+    }
+    for (i = 0; i < n; ++i)
+        if (!used[i]) b[i] = 0;
+    for (k = rank - 1; k >= 0; --k) {
+        int32_t p = order[k];
+        for (i = 0; i < n; ++i) {
+            bool later = !used[i];
+            for (j = k + 1; j < rank; ++j) later = later || order[j] == i;
+            if (later) b[p] -= a[p * n + i] * b[i];
+        }
+        b[p] /= a[p * n + p];
+    }
+    free(order), free(used);
+}
+
+/* x with the variables of `held` at their values and the others at the minimum. */
+static void minimum_with(const squares *s, const char *held, double *x) {
+    int32_t n = s->p.columns, m = s->p.rows, i, j, k;
+    double *a = (double *)calloc((size_t)m * (size_t)n + 1, sizeof(double)),
+           *q = (double *)calloc((size_t)n * (size_t)n + 1, sizeof(double)),
+           *c = (double *)calloc((size_t)n + 1, sizeof(double)),
+           *rest = (double *)calloc((size_t)m + 1, sizeof(double));
+    int64_t e;
+    for (j = 0; j < n; ++j)
+        for (e = s->start[j]; e < s->start[j + 1]; ++e) a[s->row[e] * n + j] += s->value[e];
+    for (i = 0; i < m; ++i)
+        for (rest[i] = s->b[i], j = 0; j < n; ++j)
+            if (held[j]) rest[i] -= a[i * n + j] * x[j];
+    for (j = 0; j < n; ++j) {
+        if (held[j]) continue;
+        for (i = 0; i < m; ++i) c[j] += a[i * n + j] * rest[i];
+        for (k = 0; k < n; ++k)
+            for (i = 0; !held[k] && i < m; ++i) q[j * n + k] += a[i * n + j] * a[i * n + k];
+        q[j * n + j] += s->p.damping * s->p.damping;
+    }
+    dense_solve(n, q, c);
+    for (j = 0; j < n; ++j)
+        if (!held[j]) x[j] = c[j];
+    free(a), free(q), free(c), free(rest);
+}
+
+/* The smallest objective over all sets of held variables, each at either bound. */
+static double brute_force(const squares *s) {
+    int32_t n = s->p.columns, j;
+    int64_t sets = 1, k;
+    double best = HUGE_VAL, x[12];
+    for (j = 0; j < n; ++j) sets *= 3;
+    for (k = 0; k < sets; ++k) {
+        char held[12];
+        int64_t rest = k;
+        bool good = true;
+        for (j = 0; j < n; ++j, rest /= 3) {
+            held[j] = rest % 3 != 0;
+            x[j] = rest % 3 == 1 ? lower_of(s, j) : rest % 3 == 2 ? upper_of(s, j) : 0;
+            good = good && fabs(x[j]) < 1e100;
+        }
+        if (!good) continue;
+        minimum_with(s, held, x);
+        for (j = 0; j < n; ++j) good = good && x[j] >= lower_of(s, j) - 1e-13 && x[j] <= upper_of(s, j) + 1e-13;
+        if (good && objective_of(s, x) < best) best = objective_of(s, x);
+    }
+    return best;
+}
+
+/* Lawson and Hanson (1974): x >= 0, one variable freed at a time. */
+static void lawson_hanson(const squares *s, double *x) {
+    int32_t n = s->p.columns, j, round;
+    char *held = (char *)malloc((size_t)n + 1);
+    double *g = (double *)malloc(((size_t)n + 1) * sizeof(double)),
+           *z = (double *)malloc(((size_t)n + 1) * sizeof(double));
+    for (j = 0; j < n; ++j) held[j] = 1, x[j] = 0;
+    for (round = 0; round < 10 * n; ++round) {
+        int32_t best = -1;
+        gradient_of(s, x, g);
+        for (j = 0; j < n; ++j)
+            if (held[j] && g[j] < -1e-12 && (best < 0 || g[j] < g[best])) best = j;
+        if (best < 0) break;
+        held[best] = 0;
+        for (;;) {
+            double a = 1;
+            for (j = 0; j < n; ++j) z[j] = 0;
+            minimum_with(s, held, z);
+            for (j = 0; j < n; ++j)
+                if (!held[j] && z[j] <= 0 && x[j] / (x[j] - z[j]) < a) a = x[j] / (x[j] - z[j]);
+            for (j = 0; j < n; ++j) x[j] += a * (z[j] - x[j]);
+            if (a >= 1) break;
+            for (j = 0; j < n; ++j)
+                if (!held[j] && x[j] < 1e-14) held[j] = 1, x[j] = 0;
+        }
+    }
+    free(held), free(g), free(z);
+}
+
+GPROJT_TEST(small_problems_against_all_sets) {
+    uint64_t seed = 1;
+    int32_t k;
+    for (k = 0; k < 400; ++k) {
+        int32_t n = 1 + gprojt_below(&seed, 6), m = 1 + gprojt_below(&seed, 9);
+        squares s = random_squares(m, n, k % 2 ? 1.0 : 0.5, &seed);
+        double wanted;
+        random_bounds(&s, &seed);
+        s.p.damping = k % 3 == 0 ? 0.3 : 0;
+        check_solved(&s, 4);
+        wanted = brute_force(&s);
+        GPROJT_NEAR(objective_of(&s, s.x), wanted, 1e-12);
+        squares_free(&s);
+    }
+}
+
+GPROJT_TEST(against_lawson_hanson) {
+    uint64_t seed = 2;
+    int32_t k, j;
+    for (k = 0; k < 30; ++k) {
+        int32_t n = 25 + gprojt_below(&seed, 10), m = n + gprojt_below(&seed, 20);
+        squares s = random_squares(m, n, k % 2 ? 1.0 : 0.4, &seed);
+        double x[40], worst = 0;
+        if (k % 3 == 0) s.p.damping = 0.1;
+        check_solved(&s, 8);
+        lawson_hanson(&s, x);
+        GPROJT_CHECK(violation_of(&s, x) < 1e-9);
+        for (j = 0; j < n; ++j) worst = fmax(worst, fabs(x[j] - s.x[j]));
+        GPROJT_CHECK(worst < 1e-7);
+        squares_free(&s);
+    }
+}
+
+/* -- random sparse problems -- */
+
+GPROJT_TEST(sparse_problems) {
+    uint64_t seed = 3;
+    int32_t k, most = 0;
+    for (k = 0; k < 60; ++k) {
+        int32_t n = 50 + gprojt_below(&seed, 150), m = 20 + gprojt_below(&seed, 300);
+        squares s = random_squares(m, n, 4.0 / m, &seed);
+        gproj_least_squares_result r;
+        if (k % 2) random_bounds(&s, &seed);
+        if (k % 5 == 0) s.p.damping = 1e-3;
+        r = check_solved(&s, 10);
+        if (r.factorisations > most) most = r.factorisations;
+        squares_free(&s);
+    }
+    GPROJT_CHECK(most <= 25);
+}
+
+/* Columns that are equal, opposite or 0, and columns whose entries are split in two. */
+GPROJT_TEST(dependent_columns) {
+    uint64_t seed = 4;
+    int32_t k, j;
+    for (k = 0; k < 40; ++k) {
+        int32_t n = 60, m = 40;
+        squares s = random_squares(m, n, 0.1, &seed);
+        int64_t e;
+        for (j = 3; j + 3 < n; j += 6) { /* column j + 1 is +-column j, as far as the entries reach */
+            int64_t count = s.start[j + 1] - s.start[j], room = s.start[j + 2] - s.start[j + 1];
+            for (e = 0; e < room; ++e) {
+                s.row[s.start[j + 1] + e] = s.row[s.start[j] + (count ? e % count : 0)];
+                s.value[s.start[j + 1] + e] = e < count ? (j % 4 ? 1 : -1) * s.value[s.start[j] + e] : 0;
+            }
+        }
+        for (e = s.start[8]; e < s.start[9]; ++e) s.value[e] = 0;
+        for (e = s.start[10]; e + 1 < s.start[11]; e += 2) s.row[e + 1] = s.row[e];
+        if (k % 2) random_bounds(&s, &seed);
+        check_solved(&s, 8);
+        for (j = 0; j < n; ++j) GPROJT_CHECK(fabs(s.x[j]) < 1e6);
+        squares_free(&s);
+    }
+}
+
+/* Columns of very different lengths; powers of two, so that the scaled problem is the same problem. */
+GPROJT_TEST(units) {
+    uint64_t seed = 5;
+    int32_t k, j;
+    for (k = 0; k < 6; ++k) {
+        squares s = random_squares(90, 70, 0.06, &seed), t = random_squares(90, 70, 0.06, &seed);
+        gproj_least_squares_result r, q;
+        int64_t e;
+        double factor = ldexp(1, 15 * k - 40), worst = 0;
+        memcpy(t.start, s.start, 71 * sizeof(int64_t));
+        memcpy(t.row, s.row, (size_t)s.start[70] * sizeof(int32_t));
+        for (e = 0; e < s.start[70]; ++e) t.value[e] = s.value[e] * factor;
+        for (j = 0; j < 90; ++j) t.b[j] = s.b[j] * 1024;
+        r = solve(&s), q = solve(&t);
+        GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && q.outcome == r.outcome);
+        GPROJT_CHECK(r.factorisations == q.factorisations && r.at_bounds == q.at_bounds);
+        for (j = 0; j < 70; ++j) worst = fmax(worst, fabs(t.x[j] * factor / 1024 - s.x[j]) / (1 + fabs(s.x[j])));
+        GPROJT_CHECK(worst < 1e-9);
+        squares_free(&s), squares_free(&t);
+    }
+}
+
+/* Columns of the Hilbert matrix: as ill-conditioned as it gets. The verdict must be true, whatever it is. */
+GPROJT_TEST(ill_conditioned) {
+    int32_t n, i, j;
+    for (n = 2; n <= 40; n += 2) {
+        squares s = squares_of(n, n, (int64_t)n * n);
+        gproj_least_squares_result r;
+        for (j = 0; j < n; ++j) {
+            for (i = 0; i < n; ++i) s.row[j * n + i] = i, s.value[j * n + i] = 1.0 / (1 + i + j);
+            s.start[j + 1] = (int64_t)(j + 1) * n;
+        }
+        for (i = 0; i < n; ++i) s.b[i] = cos(3.0 * i);
+        s.p.lower = n % 4 ? s.lower : NULL;
+        r = solve(&s);
+        GPROJT_CHECK(r.factorisations <= 80 && r.outcome != GPROJ_LEAST_SQUARES_FAILED);
+        GPROJT_CHECK(violation_of(&s, s.x) <= (r.kkt + 1e-12) * 40 * 40);
+        if (n % 4) GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED);
+        squares_free(&s);
+    }
+}
+
+GPROJT_TEST(damping) {
+    uint64_t seed = 6;
+    double value[2] = {1, 1}, b[1] = {3}, x[2] = {0, 0}, lower[2] = {-HUGE_VAL, 0};
+    int64_t start[3] = {0, 1, 2};
+    int32_t row[2] = {0, 0};
+    gproj_least_squares p;
+    gproj_least_squares_result r;
+    squares s = random_squares(30, 50, 0.2, &seed), t;
+    memset(&p, 0, sizeof p);
+    p.rows = 1, p.columns = 2, p.start = start, p.row = row, p.value = value, p.b = b, p.lower = lower;
+    p.damping = 1; /* (1 + 1 + 1) x = 3: both are 1 */
+    GPROJT_CHECK(gproj_solve_least_squares(&p, NULL, x, &r, NULL) == GPROJ_OK);
+    GPROJT_NEAR(x[0], 1, 1e-15);
+    GPROJT_NEAR(x[1], 1, 1e-15);
+    GPROJT_NEAR(r.residual, 1, 1e-15);
+    p.damping = 0; /* the solution nearest to the start */
+    x[0] = 2, x[1] = 3;
+    GPROJT_CHECK(gproj_solve_least_squares(&p, NULL, x, &r, NULL) == GPROJ_OK);
+    GPROJT_NEAR(x[0], 1, 1e-6);
+    GPROJT_NEAR(x[1], 2, 1e-6);
+    /* With damping the solution is unique, and the start does not matter. */
+    s.p.damping = 0.5;
+    t = s;
+    check_solved(&s, 8);
+    t.x = (double *)malloc(50 * sizeof(double));
+    {
+        int32_t j;
+        for (j = 0; j < 50; ++j) t.x[j] = 10 * gprojt_uniform(&seed) - 5;
+        check_solved(&t, 8);
+        for (j = 0; j < 50; ++j) GPROJT_NEAR(s.x[j], t.x[j], 1e-12);
+    }
+    free(t.x);
+    squares_free(&s);
+}
+
+/* -- bounds -- */
+
+GPROJT_TEST(all_bounds_hold) {
+    uint64_t seed = 7;
+    squares s = random_squares(40, 30, 0.3, &seed);
+    gproj_least_squares_result r;
+    int32_t j;
+    int64_t e;
+    for (e = 0; e < s.start[30]; ++e) s.value[e] = fabs(s.value[e]);
+    for (j = 0; j < 40; ++j) s.b[j] = -1;
+    r = check_solved(&s, 8); /* pushes all down to 0 */
+    GPROJT_CHECK(r.at_bounds == 30);
+    for (j = 0; j < 30; ++j) s.x[j] = 2;
+    r = check_solved(&s, 8);
+    GPROJT_CHECK(r.at_bounds == 30);
+    for (j = 0; j < 40; ++j) s.b[j] = 1e3; /* up to 0.001, from below */
+    for (j = 0; j < 30; ++j) s.upper[j] = 0.001, s.x[j] = -7;
+    s.p.lower = NULL, s.p.upper = s.upper;
+    r = check_solved(&s, 1e3);
+    GPROJT_CHECK(r.at_bounds == 30);
+    squares_free(&s);
+}
+
+GPROJT_TEST(fixed_variables) {
+    uint64_t seed = 8;
+    squares s = random_squares(40, 30, 0.3, &seed);
+    gproj_least_squares_result r;
+    int32_t j;
+    s.p.upper = s.upper;
+    for (j = 0; j < 30; ++j) s.lower[j] = s.upper[j] = 0.1 * j - 1;
+    r = check_solved(&s, 8); /* all of them: nothing to do */
+    GPROJT_CHECK(r.at_bounds == 30 && r.factorisations == 0);
+    for (j = 0; j < 30; ++j) GPROJT_CHECK(s.x[j] == s.lower[j]);
+    for (j = 0; j < 30; j += 2) s.lower[j] = -HUGE_VAL, s.upper[j] = HUGE_VAL;
+    r = check_solved(&s, 8); /* half: one factorisation */
+    GPROJT_CHECK(r.at_bounds == 15 && r.factorisations == 1);
+    for (j = 0; j < 30; j += 2) s.upper[j] = s.lower[j] = 0, s.upper[j] = DBL_MIN; /* a box without a number inside */
+    s.upper[4] = 1;
+    r = solve(&s);
+    for (j = 0; j < 30; ++j) GPROJT_CHECK(s.x[j] >= s.lower[j] && s.x[j] <= s.upper[j]);
+    GPROJT_CHECK(r.factorisations <= 80);
+    squares_free(&s);
+}
+
+GPROJT_TEST(without_bounds) {
+    uint64_t seed = 9;
+    squares s = random_squares(40, 30, 0.3, &seed);
+    gproj_least_squares_result r;
+    int32_t j;
+    s.p.lower = NULL;
+    r = check_solved(&s, 8);
+    GPROJT_CHECK(r.factorisations == 1 && r.at_bounds == 0);
+    s.p.lower = s.lower, s.p.upper = s.upper;
+    for (j = 0; j < 30; ++j) s.lower[j] = j % 2 ? -HUGE_VAL : -1e200, s.upper[j] = j % 3 ? HUGE_VAL : 1e60, s.x[j] = 0;
+    r = check_solved(&s, 8);
+    GPROJT_CHECK(r.factorisations == 1 && r.at_bounds == 0);
+    squares_free(&s);
+}
+
+GPROJT_TEST(empty) {
+    squares s = squares_of(3, 0, 0), t = squares_of(0, 3, 0);
+    gproj_least_squares_result r;
+    s.b[0] = 3, s.b[1] = 4;
+    r = solve(&s);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.residual == 5 && r.factorisations == 0);
+    s.p.start = NULL, s.p.row = NULL, s.p.value = NULL, s.p.lower = NULL;
+    GPROJT_CHECK(gproj_solve_least_squares(&s.p, NULL, NULL, NULL, NULL) == GPROJ_OK);
+    t.x[0] = -1, t.x[1] = 2;
+    t.p.row = NULL, t.p.value = NULL, t.p.b = NULL;
+    r = solve(&t);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.residual == 0 && r.at_bounds == 2);
+    GPROJT_CHECK(t.x[0] == 0 && t.x[1] == 2 && t.x[2] == 0);
+    t.p.damping = 1;
+    r = solve(&t);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && t.x[0] == 0 && fabs(t.x[1]) < 1e-15 && t.x[2] == 0);
+    squares_free(&s), squares_free(&t);
+}
+
+/* -- forces in meshes -- */
+
+/* A mesh with supported boundary: a column for each edge with an unsupported end, three rows for each unsupported
+   vertex, sum w (v_i - v_j) + load_i = 0, with a unit load downwards at each. */
+static squares forces_of(const gproj_mesh *mesh) {
+    int32_t *number = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof(int32_t)), v, e, d, side, unsupported = 0;
+    int64_t at = 0;
+    squares s;
+    for (v = 0; v < mesh->vertex_count; ++v) number[v] = gproj_mesh_is_boundary_vertex(mesh, v) ? -1 : unsupported++;
+    s = squares_of(3 * unsupported, mesh->edge_count, 6 * (int64_t)mesh->edge_count);
+    s.p.columns = 0;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        int64_t begin = at;
+        for (side = 0; side < 2; ++side) {
+            int32_t i = mesh->origin[2 * e + side], j = mesh->origin[2 * e + 1 - side];
+            for (d = 0; number[i] >= 0 && d < 3; ++d) {
+                s.row[at] = 3 * number[i] + d;
+                s.value[at++] = mesh->position[3 * i + d] - mesh->position[3 * j + d];
+            }
+        }
+        if (at > begin) s.start[++s.p.columns] = at;
+    }
+    for (v = 0; v < unsupported; ++v) s.b[3 * v + 2] = 1;
+    free(number);
+    return s;
+}
+
+enum {
+    DOME,
+    WAVE,
+    FLAT,
+    SADDLE
+};
+
+/* A quad or triangle mesh over a square of side n, so that its edges are about 1 long. */
+static squares roof(int32_t kind, int32_t n, bool triangles, double noise, uint64_t seed) {
+    gprojt_soup soup = triangles ? gprojt_triangle_grid(n, n) : gprojt_quad_grid(n, n);
+    gproj_mesh *mesh;
+    squares s;
+    int32_t v, d;
+    for (v = 0; v < soup.vertex_count; ++v) {
+        double *p = soup.position + 3 * v, x = 2 * p[0] - 1, y = 2 * p[1] - 1;
+        p[0] *= n, p[1] *= n;
+        if (kind == DOME) p[2] = 0.3 * n * (2 - x * x - y * y);
+        if (kind == WAVE) p[2] *= n;
+        if (kind == FLAT) p[2] = 0;
+        if (kind == SADDLE) p[2] = 0.2 * n * (x * x - y * y);
+        for (d = 0; d < 3; ++d) p[d] += noise * (gprojt_uniform(&seed) - 0.5);
+    }
+    mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    s = forces_of(mesh);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
+    return s;
+}
+
+GPROJT_TEST(roofs) {
+    static const int32_t sizes[3] = {5, 10, 25};
+    int32_t k, kind, j;
+    for (k = 0; k < 3; ++k)
+        for (kind = DOME; kind <= SADDLE; ++kind)
+            for (j = 0; j < 4; ++j) {
+                squares s = roof(kind, sizes[k], j % 2 == 1, j < 2 ? 0 : 0.3, 11);
+                gproj_least_squares_result r = check_solved(&s, 50);
+                GPROJT_CHECK(r.factorisations <= (kind == WAVE ? 30 : 20));
+                if (kind == DOME && j < 2) { /* stands, by its whole net */
+                    GPROJT_CHECK(r.residual < 1e-9);
+                    GPROJT_CHECK(r.at_bounds == 0);
+                }
+                if (kind == FLAT && j < 2) GPROJT_CHECK(r.at_bounds == s.p.columns && r.residual > 1);
+                squares_free(&s);
+            }
+}
+
+/* 10,000 vertices. */
+GPROJT_TEST(large_roofs) {
+#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJ_USE_CBLAS)
+    GPROJT_SKIP("large meshes are for plain builds");
+#else
+    static const int32_t kinds[4] = {DOME, WAVE, FLAT, SADDLE};
+    int32_t k, j;
+    for (k = 0; k < 4; ++k)
+        for (j = 0; j < 2; ++j) {
+            squares s = roof(kinds[k], 99, j == 1, k == 0 || k == 3 ? 0.05 : 0.3, 12);
+            gproj_least_squares_result r = check_solved(&s, 200);
+            GPROJT_CHECK(r.factorisations <= (kinds[k] == DOME || kinds[k] == SADDLE ? 20 : 30));
+            GPROJT_CHECK(r.at_bounds > 50);
+            squares_free(&s);
+        }
+#endif
+}
+
+GPROJT_TEST(real_meshes) {
+    int32_t k;
+    gproj_error error;
+    for (k = 0; k < GPROJT_REAL_MESHES; ++k) {
+        gproj_mesh *mesh = gprojt_load_real_mesh(k, NULL, &error);
+        squares s;
+        gproj_least_squares_result r;
+        double length = 0;
+        int32_t i;
+        if (!mesh) GPROJT_SKIP("no folder of real meshes");
+        for (i = 0; i < mesh->edge_count; ++i)
+            length += gproji_distance3(mesh->position + 3 * mesh->origin[2 * i],
+                                       mesh->position + 3 * mesh->origin[2 * i + 1]) /
+                      mesh->edge_count;
+        for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] /= length;
+        s = forces_of(mesh);
+        r = check_solved(&s, 100);
+        GPROJT_CHECK(r.factorisations <= 20);
+        gproj_mesh_destroy(mesh);
+        squares_free(&s);
+    }
+}
+
+/* The solution as start costs nothing; after a small change of b the neighbourhood is enough. */
+GPROJT_TEST(starts) {
+    squares s = roof(WAVE, 20, false, 0.2, 13);
+    gproj_least_squares_result r = check_solved(&s, 50), q;
+    double *x = (double *)malloc((size_t)s.p.columns * sizeof(double));
+    int32_t i;
+    memcpy(x, s.x, (size_t)s.p.columns * sizeof(double));
+    q = check_solved(&s, 50);
+    GPROJT_CHECK(q.factorisations == 0 && q.residual == r.residual && q.at_bounds == r.at_bounds);
+    GPROJT_CHECK(!memcmp(x, s.x, (size_t)s.p.columns * sizeof(double)));
+    for (i = 0; i < s.p.rows; ++i) s.b[i] *= 1.0001;
+    q = check_solved(&s, 50);
+    GPROJT_CHECK(q.factorisations == 1);
+    for (i = 0; i < s.p.columns; ++i) s.x[i] = 1e6 * (i % 3) - 1e5; /* a senseless one */
+    q = check_solved(&s, 50);
+    GPROJT_CHECK(q.factorisations == r.factorisations);
+    free(x);
+    squares_free(&s);
+}
+
+GPROJT_TEST(deterministic) {
+    int32_t k;
+    for (k = 0; k < 2; ++k) {
+        squares s = roof(SADDLE, 15, k == 1, 0.1, 14), t = roof(SADDLE, 15, k == 1, 0.1, 14);
+        gproj_least_squares_result r = solve(&s), q = solve(&t);
+        GPROJT_CHECK(r.factorisations == q.factorisations && r.kkt == q.kkt && r.residual == q.residual);
+        GPROJT_CHECK(!memcmp(s.x, t.x, (size_t)s.p.columns * sizeof(double)));
+        squares_free(&s), squares_free(&t);
+    }
+}
+
+/* -- failures -- */
+
+/* Fails with this code, leaves x as it is, and says so. */
+static void check_refused(const gproj_least_squares *p, double *x, gproj_code wanted, gproj_place place,
+                          int64_t index) {
+    gproj_least_squares_result r;
+    gproj_error error;
+    double before = x ? x[0] : 0;
+    GPROJT_CHECK(gproj_solve_least_squares(p, NULL, x, &r, &error) == wanted);
+    GPROJT_CHECK(error.code == wanted && error.place == place && error.index == index && error.message[0]);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_FAILED && r.factorisations == 0);
+    GPROJT_CHECK(gproj_solve_least_squares(p, NULL, x, NULL, NULL) == wanted);
+    if (x) GPROJT_CHECK(memcmp(&before, x, sizeof before) == 0);
+}
+
+GPROJT_TEST(bad_arguments) {
+    uint64_t seed = 15;
+    squares s = random_squares(10, 8, 0.5, &seed);
+    gproj_least_squares p = s.p;
+    volatile double zero = 0;
+    double nan = zero / zero, infinity = HUGE_VAL;
+    s.x[0] = 0.25;
+    check_refused(NULL, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1);
+    check_refused(&p, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1);
+    p.columns = -1, check_refused(&p, s.x, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.rows = -1, check_refused(&p, s.x, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.columns = INT32_MAX, check_refused(&p, s.x, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.start = NULL, check_refused(&p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.row = NULL, check_refused(&p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.value = NULL, check_refused(&p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.b = NULL, check_refused(&p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.damping = -1, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.damping = nan, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.damping = infinity, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.rows = 3, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0), p = s.p;
+    s.b[4] = nan, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 4), s.b[4] = 1;
+    s.b[4] = 1e60, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 4), s.b[4] = 1;
+    s.x[3] = infinity, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, 3), s.x[3] = 1;
+    s.value[s.start[2]] = nan, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_COLUMN, 2),
+    s.value[s.start[2]] = 1;
+    s.row[s.start[2]] = -1, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 2), s.row[s.start[2]] = 1;
+    s.start[0] = 1, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0), s.start[0] = 0;
+    s.start[5] = 0, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 4);
+    squares_free(&s);
+}
+
+GPROJT_TEST(bad_bounds) {
+    uint64_t seed = 16;
+    squares s = random_squares(10, 8, 0.5, &seed);
+    volatile double zero = 0;
+    double nan = zero / zero, infinity = HUGE_VAL;
+    int32_t j;
+    s.p.upper = s.upper;
+    for (j = 0; j < 8; ++j) s.upper[j] = 1;
+    s.upper[3] = -0.5, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 3), s.upper[3] = 1;
+    s.upper[3] = nan, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 3), s.upper[3] = 1;
+    s.upper[3] = -infinity, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 3), s.upper[3] = 1;
+    s.upper[3] = -1e70, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 3), s.upper[3] = 1;
+    s.lower[6] = infinity, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 6), s.lower[6] = 0;
+    s.lower[6] = 1e70, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 6), s.lower[6] = 0;
+    s.lower[6] = -nan, check_refused(&s.p, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, 6), s.lower[6] = 0;
+    check_solved(&s, 8);
+    squares_free(&s);
+}
+
+GPROJT_TEST(failing_allocations) {
+    squares s = roof(SADDLE, 6, true, 0.2, 17);
+    long at, most = 0;
+    for (at = 1; at < 1000 && !most; ++at) {
+        gprojt_failing f;
+        gproj_host host;
+        gproj_error error;
+        gproj_least_squares_result r;
+        gproj_code code;
+        memset(&f, 0, sizeof f);
+        f.fail_at = at;
+        host = gprojt_failing_host(&f);
+        s.x[0] = 0.125, s.x[1] = -3;
+        code = gproj_solve_least_squares(&s.p, &host, s.x, &r, &error);
+        GPROJT_CHECK(f.held == 0 && f.bytes == 0 && f.wrong_sizes == 0);
+        if (code == GPROJ_OK) {
+            GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && f.calls < at);
+            GPROJT_CHECK(r.memory.used > 0 && r.factor_bytes > 0 && r.work_bytes > 0);
+            most = at;
+        } else {
+            GPROJT_CHECK(code == GPROJ_ERROR_MEMORY && error.code == GPROJ_ERROR_MEMORY && error.message[0]);
+            GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_FAILED && s.x[0] == 0.125 && s.x[1] == -3);
+        }
+    }
+    GPROJT_CHECK(most > 10);
+    squares_free(&s);
+}
+
+int main(void) {
+    GPROJT_RUN(small_problems_against_all_sets);
+    GPROJT_RUN(against_lawson_hanson);
+    GPROJT_RUN(sparse_problems);
+    GPROJT_RUN(dependent_columns);
+    GPROJT_RUN(units);
+    GPROJT_RUN(ill_conditioned);
+    GPROJT_RUN(damping);
+    GPROJT_RUN(all_bounds_hold);
+    GPROJT_RUN(fixed_variables);
+    GPROJT_RUN(without_bounds);
+    GPROJT_RUN(empty);
+    GPROJT_RUN(roofs);
+    GPROJT_RUN(large_roofs);
+    GPROJT_RUN(real_meshes);
+    GPROJT_RUN(starts);
+    GPROJT_RUN(deterministic);
+    GPROJT_RUN(bad_arguments);
+    GPROJT_RUN(bad_bounds);
+    GPROJT_RUN(failing_allocations);
+    return gprojt_report();
+}
