@@ -697,11 +697,11 @@ typedef struct gproj_measures {
     int32_t planarity_face; /* where the largest is; -1 without faces */
     double circularity_max; /* of faces with more than 3 sides: largest difference of the distances of a face's vertices
                                from its circumcentre, in mean edge lengths */
-    double
-        conicality_max;  /* of vertices where 4 or more faces meet: largest difference of the angles between the faces'
-                               normals and the axis that suits them best, in radians */
-    double area_spread;  /* standard deviation of the face areas over their mean */
-    double diagonal_max; /* quads: distance of the lines through the diagonals, in mean edge lengths */
+    double area_spread;     /* standard deviation of the face areas over their mean */
+    double diagonal_max;    /* quads: distance of the lines through the diagonals, in mean edge lengths */
+    /* Of vertices where 4 or more faces meet: the largest difference of the angles of the faces' normals with the axis
+       that is nearest to the bisecting planes of neighbouring faces, in radians. */
+    double conicality_max;
     double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
     double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
     int32_t turned_faces;                /* vectorial area against the one of the original face */
@@ -752,12 +752,10 @@ typedef struct gproj_offset_measures {
     /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial area. */
     double face_distance_min, face_distance_max;
     double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, of vertices with a face, in the mesh's units */
-    double parallel_max;                             /* of an offset edge: the largest part of o_j - o_i across the edge
-                                                        v_j - v_i, in mean edge lengths of the mesh */
-    double
-        support_planarity_max; /* of the quads of gproj_mesh_support: the largest distance of o_j from the plane through
-                                     v_i, v_j and o_i, in mean edge lengths of the mesh */
-    int32_t reversed_edges;    /* they run against their edges: the distance is larger than a radius of curvature */
+    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of gproj_mesh_support,
+       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths of the mesh. */
+    double parallel_max, support_planarity_max;
+    int32_t reversed_edges; /* they run against their edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
 /* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
@@ -813,10 +811,12 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
    A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (collapsed_edges of
    gproj_measure). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
-/* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with an axis a_v,
-   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). a_v are variables that start at the axis that
-   suits the normals best. Rows for the vertices where 4 or more faces meet; three planes always touch a cone. Needs the
-   normals of planar faces: call gproj_add_planarity before. Residuals are differences of cosines. */
+/* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
+   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting
+   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew in
+   each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
+   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis nearest
+   to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
 /* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
