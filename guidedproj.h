@@ -735,11 +735,11 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
    going round closes best. Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
-/* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where
-   n_k'x = 1 for the normals n_k of the faces around the vertex, and x_j - x_i along the edge for every edge, in the
-   least-squares sense. Exact for conical meshes, where x = a / cos(angle) with the axis a of the vertex. At the boundary
-   x is near n_1 + n_2 of the two faces there, or the one normal; it keeps the boundary's edges parallel. Vertices
-   without a face stay. */
+/* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
+   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis a
+   of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the boundary
+   n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary, which become
+   as parallel as they can. Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
 /* The panels between a mesh and its offset: face e is the quad v_i v_j o_j o_i of edge e with half-edge 2e from i to j.
@@ -9506,11 +9506,14 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
 
 /* -- the field of a face offset -- */
 
-/* Minimises sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges, P the
-   projection across the edge, by conjugate gradients (Hestenes, Stiefel 1952) on the normal equations: from x, to the
-   minimum that is nearest to it. */
+/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the minimum that is nearest to it; in two
+   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between two
+   faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for edges
+   between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x moves only
+   as the distances of the faces allow: along the one edge between two faces, or in the plane of the only face. */
 typedef struct gproji_parallels {
     const gproj_mesh *mesh;
+    bool boundary;     /* the second stage */
     double *normal;    /* 3 a face, unit */
     double *direction; /* 3 an edge, unit */
     double *slope;     /* 3 a vertex: minus half the gradient at x */
@@ -9519,15 +9522,14 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 3,
+    GPROJI_PARALLEL_ROUNDS = 2,
     GPROJI_PARALLEL_STEPS = 1000
 };
 
-/* out = A x - distance * b: A the matrix of the normal equations, b its right-hand side. */
-GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
+/* out += n (n'x - distance) for the corners of the faces. */
+GPROJI_INTERNAL void gproji_apply_distances(const gproji_parallels *p, const double *x, double distance, double *out) {
     const gproj_mesh *mesh = p->mesh;
-    int32_t f, e, h, k;
-    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
+    int32_t f, h, k;
     for (f = 0; f < mesh->face_count; ++f) {
         const double *n = p->normal + 3 * (size_t)f;
         h = mesh->face_halfedge[f];
@@ -9536,15 +9538,48 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
             gproji_add_scaled3(gproji_dot3(n, x + v) - distance, n, out + v);
         }
     }
+}
+
+/* What a vertex of the second stage cannot do is taken from `out`. */
+GPROJI_INTERNAL void gproji_keep_distances(const gproji_parallels *p, double *out) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v, out += 3) {
+        int32_t valence = gproj_mesh_valence(mesh, v), h;
+        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
+            gproji_set3(0, 0, 0, out);
+            continue;
+        }
+        h = gproji_rotate(mesh,
+                          mesh->vertex_halfedge[v]); /* with the first face on its left; on its right the second */
+        if (valence == 2) {
+            const double *n = p->normal + 3 * (size_t)mesh->face[h];
+            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
+        } else {
+            const double *e = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
+            double along = gproji_dot3(e, out);
+            gproji_set3(along * e[0], along * e[1], along * e[2], out);
+        }
+    }
+}
+
+/* out = A x - distance * b: A the matrix of the normal equations, b its right-hand side. */
+GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t e;
+    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
+    if (!p->boundary) gproji_apply_distances(p, x, distance, out);
     for (e = 0; e < mesh->edge_count; ++e) {
         const double *direction = p->direction + 3 * (size_t)e;
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         double d[3];
+        if ((mesh->face[2 * e + 1] < 0) != p->boundary) continue; /* half-edge 2e always has a face */
         gproji_sub3(x + j, x + i, d);
         gproji_add_scaled3(-gproji_dot3(d, direction), direction, d);
         gproji_add_scaled3(1, d, out + j);
         gproji_add_scaled3(-1, d, out + i);
     }
+    if (p->boundary) gproji_keep_distances(p, out);
 }
 
 GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
@@ -9562,7 +9597,7 @@ GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     gproji_apply_parallels(p, x, 1, p->slope);
     for (i = 0; i < count; ++i) p->step[i] = p->slope[i] = -p->slope[i];
     start = square = gproji_dot(p->slope, p->slope, count);
-    for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * start && square > 1e-34 * (double)count; ++n) {
+    for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * start && square > 1e-30 * (double)count; ++n) {
         gproji_apply_parallels(p, p->step, 0, p->image);
         curvature = gproji_dot(p->step, p->image, count);
         if (!(curvature > 0)) return;
@@ -9611,6 +9646,9 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
         for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
         for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
         gproji_start_parallels(&p, x);
+        p.boundary = false;
+        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
+        p.boundary = true;
         for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
     }
     gproji_give(heap, p.normal, faces, sizeof *p.normal);
