@@ -729,10 +729,11 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
    tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
 
 /* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane orthogonal
-   to the edge, gives m at all of them. Exact (edges parallel, distance constant) for planar circular faces with even
-   numbers of sides, without holes and handles, whatever m is at the first vertex: it is chosen so that m goes along the
-   normals of the vertices. Where there is less freedom (holes, handles, odd faces), m is chosen among those for which
-   going round closes best. Vertices without a face stay. */
+   to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round closes: in a
+   mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without doubled
+   vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices, and with
+   holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes best.
+   Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
 /* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
@@ -9092,7 +9093,7 @@ GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *p
         }
         h = gproji_rotate(mesh, h);
     } while (h != start);
-    ridge = 1e-12 * (uu + vv);
+    ridge = 1e-14 * (uu + vv);
     uu += ridge, vv += ridge;
     determinant = uu * vv - uv * uv;
     if (!(determinant > 0)) return count;
@@ -9453,7 +9454,7 @@ GPROJI_INTERNAL void gproji_closing(const gproj_mesh *mesh, const gproji_mirrors
 }
 
 /* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed) in
-   which the mesh does not close as well as it can. */
+   which the mesh does not close as well as it can; all of it where hardly half would be left. */
 GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted[3], double m[3]) {
     static const double up[3] = {0, 0, 1};
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, least, column[3];
@@ -9472,8 +9473,8 @@ GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted
         gproji_set3(v[0][k], v[1][k], v[2][k], column);
         gproji_add_scaled3(gproji_dot3(column, wanted), column, m);
     }
-    gproji_set3(v[0][best], v[1][best], v[2][best], column);
-    if (!gproji_normalise3(m, column)) gproji_normalise3(m, up);
+    if (gproji_length3(m) < 0.5 * gproji_length3(wanted)) gproji_copy3(wanted, m);
+    gproji_normalise3(m, up);
 }
 
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
