@@ -166,7 +166,7 @@ expect 2 "would overwrite the input" grid.obj -o new.obj --planar --offset 0.3,g
 expect 2 "would overwrite the input" grid.obj -o new.obj --planar --offset 0.3,old.obj --support grid.obj
 expect 2 "there is no folder" grid.obj -o new.obj --planar --offset 0.3,nowhere/old.obj
 expect 2 "add --planar" grid.obj -o new.obj --conical
-expect 3 "offset vertex" grid.obj -o new.obj --planar --offset 1e200,old.obj --report new.json
+expect 3 "offset vertex" grid.obj --quiet -o new.obj --planar --offset 1e200,old.obj --report new.json
 mkdir -p folder.obj
 expect 2 "is a folder" grid.obj -o folder.obj --planar
 if [ "$(id -u)" -ne 0 ]; then
