@@ -416,6 +416,28 @@ GPROJT_TEST(inexact_offsets_are_told) {
     }
 }
 
+/* Crumpled meshes, and meshes that are one point or a line: everything stays finite. */
+GPROJT_TEST(meshes_without_shape) {
+    int i;
+    for (i = 0; i < 3 * GPROJT_SHAPES; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(i % GPROJT_SHAPES, 3, 2, 3), *a, *b;
+        int32_t k, kind = i / GPROJT_SHAPES, n = 3 * mesh->vertex_count;
+        for (k = 0; k < n; ++k)
+            if (kind == 2 || (kind == 1 && k % 3)) mesh->position[k] = 1;
+        a = gproj_mesh_vertex_offset(mesh, 0.1, NULL, NULL);
+        b = gproj_mesh_face_offset(mesh, 0.1, NULL, NULL);
+        GPROJT_REQUIRE(a && b);
+        GPROJT_CHECK(gprojt_all_finite(a->position, n) && gprojt_all_finite(b->position, n));
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).conicality_max <= 3.2);
+        GPROJT_CHECK(gproj_measure_offset(mesh, b).parallel_max >= 0);
+        gprojt_shape_it(mesh, false, true, 3);
+        GPROJT_CHECK(gprojt_all_finite(mesh->position, n));
+        gproj_mesh_destroy(a);
+        gproj_mesh_destroy(b);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A flat mesh, with a vertex of its own and a second component: offsets are translations along the normals. */
 GPROJT_TEST(flat_pieces) {
     static const double p[] = {0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0, 3, 1, 0, 9, 9, 9, 0, 0, 5, 0, 1, 5, 0, 0, 6};
@@ -568,6 +590,7 @@ int main(void) {
     GPROJT_RUN(vertex_offsets_of_circular_meshes);
     GPROJT_RUN(real_circular_meshes);
     GPROJT_RUN(inexact_offsets_are_told);
+    GPROJT_RUN(meshes_without_shape);
     GPROJT_RUN(flat_pieces);
     GPROJT_RUN(offsets_scale_with_the_mesh);
     GPROJT_RUN(offsets_are_measured);
