@@ -2,10 +2,10 @@
    Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
 
    WHAT IT DOES
-     Take a polygon mesh and say what must hold (flat or circular panels, boundaries on curves, fixed vertices, a
-     volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like steps the mesh
-     satisfies all constraints together to machine precision, and you get an honest verdict: what holds, how exactly,
-     and where it does not.
+     Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, boundaries on curves, fixed
+     vertices, a volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like
+     steps the mesh satisfies all constraints together to machine precision, and you get an honest verdict: what holds,
+     how exactly, and where it does not.
      Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
      and projection onto any system of quadratic equations.
 
