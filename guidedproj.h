@@ -2,10 +2,10 @@
    Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
 
    WHAT IT DOES
-     Take a polygon mesh and say what must hold (flat or circular panels, boundaries on curves, fixed vertices, a
-     volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like steps the mesh
-     satisfies all constraints together to machine precision, and you get an honest verdict: what holds, how exactly,
-     and where it does not.
+     Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, boundaries on curves, fixed
+     vertices, a volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like
+     steps the mesh satisfies all constraints together to machine precision, and you get an honest verdict: what holds,
+     how exactly, and where it does not.
      Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
      and projection onto any system of quadratic equations.
 
@@ -60,6 +60,7 @@
        >>api-mesh       half-edge meshes, OBJ and OFF
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
+       >>api-offset     parallel meshes at constant distance, supports
        >>api-form       form-finding: a mesh, what must hold, what is wished
        >>api-statics    forces in the edges of a form
      the implementation: each section uses only earlier ones
@@ -82,6 +83,7 @@
        >>curve          polylines
        >>surface        reference surfaces
        >>measure        what a mesh is like
+       >>offset         parallel meshes and what is between them
        >>form           a mesh and its system
        >>catalogue      the constraints and wishes
        >>statics        equilibrium, bounds on forces, their start
@@ -711,6 +713,9 @@ typedef struct gproj_measures {
                                from its circumcentre, in mean edge lengths */
     double area_spread;     /* standard deviation of the face areas over their mean */
     double diagonal_max;    /* quads: distance of the lines through the diagonals, in mean edge lengths */
+    /* Of vertices where 4 or more faces meet: the largest difference of the angles of the faces' normals with the axis
+       that is nearest to the bisecting planes of neighbouring faces, in radians. */
+    double conicality_max;
     double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
     double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
     int32_t turned_faces;                /* vectorial area against the one of the original face */
@@ -728,6 +733,48 @@ typedef struct gproj_measures {
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-offset   Parallel meshes at constant distance, and the support structure between them.
+
+   Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar (Pottmann,
+   Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant distance,
+   conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is, gproj_measure_offset
+   tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
+
+/* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane orthogonal
+   to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round closes: in a
+   mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without doubled
+   vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices, and with
+   holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes best.
+   Vertices without a face stay. */
+GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
+                                               gproj_error *error);
+/* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
+   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis a
+   of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the boundary
+   n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary, which become
+   as parallel as they can. Vertices without a face stay. */
+GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
+                                             gproj_error *error);
+/* The panels between a mesh and its offset: face e is the quad v_i v_j o_j o_i of edge e with half-edge 2e from i to j.
+   More than two of them meet at a node's axis, which no manifold mesh has: so each quad has its own four vertices,
+   4e .. 4e + 3, in this order. Refused where the meshes do not have the same faces. */
+GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
+                                         gproj_error *error);
+
+typedef struct gproj_offset_measures {
+    /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial area. */
+    double face_distance_min, face_distance_max;
+    double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, of vertices with a face, in the mesh's units */
+    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of gproj_mesh_support,
+       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths of the mesh. */
+    double parallel_max, support_planarity_max;
+    int32_t reversed_edges; /* they run against their edges: the distance is larger than a radius of curvature */
+} gproj_offset_measures;
+
+/* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
+GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
@@ -779,6 +826,13 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
    A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (collapsed_edges of
    gproj_measure). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
+/* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
+   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting
+   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew in
+   each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
+   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis nearest
+   to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
+GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
 /* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
@@ -856,7 +910,7 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from where the first ended, or from where you have moved the vertices to. The system's values of
-   vertices and face normals are overwritten at the beginning; variables of your own keep theirs. "The original" of
+   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" of
    fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
    the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
    written.
@@ -9459,6 +9513,100 @@ GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t f
     return most - least;
 }
 
+/* The unit normal of a face with other positions, along its vectorial area; 0 where that is 0. */
+GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
+    static const double none[3] = {0, 0, 0};
+    gproji_area_vector(mesh, position, face, out);
+    gproji_normalise3(out, none);
+}
+
+/* The bisecting plane of the two faces at a half-edge: its unit normal b is along e x (n_f + n_g), e the unit vector of
+   the edge, n the unit normals. False at the boundary. */
+GPROJI_INTERNAL bool gproji_bisecting_plane(const gproj_mesh *mesh, const double *position, int32_t halfedge,
+                                            double b[3]) {
+    static const double none[3] = {0, 0, 0};
+    double e[3], other[3];
+    if (mesh->face[halfedge] < 0 || mesh->face[halfedge ^ 1] < 0) return false;
+    gproji_sub3(position + 3 * (size_t)mesh->origin[halfedge ^ 1], position + 3 * (size_t)mesh->origin[halfedge], e);
+    gproji_normalise3(e, none);
+    gproji_unit_normal(mesh, position, mesh->face[halfedge], b);
+    gproji_unit_normal(mesh, position, mesh->face[halfedge ^ 1], other);
+    gproji_add_scaled3(1, other, b);
+    gproji_cross3(e, b, b);
+    gproji_normalise3(b, none);
+    return true;
+}
+
+/* The mean unit normal of the faces around a vertex; e_z where they have none. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double *position, int32_t vertex,
+                                           double out[3]) {
+    static const double up[3] = {0, 0, 1};
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double n[3];
+    gproji_copy3(up, out);
+    if (start < 0) return 0;
+    gproji_set3(0, 0, 0, out);
+    do {
+        if (mesh->face[h] >= 0) {
+            gproji_unit_normal(mesh, position, mesh->face[h], n);
+            gproji_add_scaled3(1, n, out);
+            ++count;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    gproji_normalise3(out, up);
+    return count;
+}
+
+/* The axis of the cone that the planes around a vertex touch: it is in the bisecting planes of all edges. The unit vector
+   along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal to it
+   and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
+                                         double axis[3]) {
+    int32_t count = gproji_mean_normal(mesh, position, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
+    double b[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant, t[2];
+    if (count < 3) return count;
+    gproji_tangents3(axis, u, v);
+    do {
+        if (gproji_bisecting_plane(mesh, position, h, b)) {
+            double bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
+            uu += bu * bu, uv += bu * bv, vv += bv * bv;
+            um -= bu * bm, vm -= bv * bm;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    ridge = 1e-14 * (uu + vv);
+    uu += ridge, vv += ridge;
+    determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) return count;
+    t[0] = (um * vv - vm * uv) / determinant;
+    t[1] = (vm * uu - um * uv) / determinant;
+    gproji_add_scaled3(t[0], u, axis);
+    gproji_add_scaled3(t[1], v, axis);
+    gproji_normalise3(axis, axis);
+    return count;
+}
+
+/* The largest difference of the angles between the normals of the faces around a vertex and their best axis; 0 where
+   fewer than four meet. */
+GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t vertex) {
+    double axis[3], n[3], cross[3], least = HUGE_VAL, most = 0;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    if (gproji_cone_axis(mesh, mesh->position, vertex, axis) < 4) return 0;
+    do {
+        if (mesh->face[h] >= 0) {
+            double angle;
+            gproji_unit_normal(mesh, mesh->position, mesh->face[h], n);
+            gproji_cross3(n, axis, cross);
+            angle = atan2(gproji_length3(cross), gproji_dot3(n, axis));
+            least = gproji_fmin(least, angle);
+            most = gproji_fmax(most, angle);
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return most - least;
+}
+
 /* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
    the vector that joins them over the area they span. */
 GPROJI_INTERNAL double gproji_diagonal_distance(const gproj_mesh *mesh, int32_t face) {
@@ -9691,8 +9839,460 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
     if (!mesh) return m;
     gproji_measure_edges(mesh, &m);
     gproji_measure_faces(mesh, planarity, &m);
-    for (v = 0; v < mesh->vertex_count; ++v) m.gauss_variation += gproji_gauss_area(mesh, v);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        m.gauss_variation += gproji_gauss_area(mesh, v);
+        m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(mesh, v));
+    }
     if (original) gproji_measure_change(mesh, original, &m);
+    return m;
+}
+
+/* ============================================================================================================
+   >>offset   Parallel meshes at constant distance, and what is between them. Uses platform, memory, error, vector, mesh,
+   measure.
+
+   Based on Pottmann, Liu, Wallner, Bobenko, Wang: Geometry of multi-layer freeform structures for architecture (2007),
+   and Liu, Pottmann, Wallner, Yang, Wang: Geometric modeling with conical meshes and developable surfaces (2006).
+   An offset is the mesh with vertices v + distance * x; a first part finds the field x, 3 numbers a vertex. */
+
+/* -- the field of a vertex offset -- */
+
+/* The work of gproji_vertex_field: all arrays 9 numbers or 1 entry a vertex. */
+typedef struct gproji_mirrors {
+    double *image;  /* 3x3, by rows: the product of reflections that leads from the first vertex of the component */
+    int32_t *queue; /* the vertices of the component, in the order in which they are reached */
+    bool *reached;
+    int32_t first, last; /* the component's part of the queue */
+} gproji_mirrors;
+
+/* The unit vector of an edge from the origin of a half-edge; 0 without length. */
+GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
+    static const double none[3] = {0, 0, 0};
+    gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
+    gproji_normalise3(out, none);
+}
+
+/* `out` = the 3x3 matrix `in`, mirrored in the plane orthogonal to the half-edge: (I - 2 e e') in. */
+GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, const double in[9], double out[9]) {
+    double e[3];
+    int32_t i, j;
+    gproji_edge_direction(mesh, halfedge, e);
+    for (j = 0; j < 3; ++j) {
+        double along = e[0] * in[j] + e[1] * in[3 + j] + e[2] * in[6 + j];
+        for (i = 0; i < 3; ++i) out[3 * i + j] = in[3 * i + j] - 2 * along * e[i];
+    }
+}
+
+/* Reaches the component of a vertex, breadth first. */
+GPROJI_INTERNAL void gproji_reach(const gproj_mesh *mesh, int32_t vertex, gproji_mirrors *work) {
+    double *image = work->image + 9 * (size_t)vertex;
+    int32_t at;
+    memset(image, 0, 9 * sizeof *image);
+    image[0] = image[4] = image[8] = 1;
+    work->first = work->last;
+    work->queue[work->last++] = vertex;
+    work->reached[vertex] = true;
+    for (at = work->first; at < work->last; ++at) {
+        int32_t start = mesh->vertex_halfedge[work->queue[at]], h = start;
+        do {
+            int32_t next = mesh->origin[h ^ 1];
+            if (!work->reached[next]) {
+                gproji_mirror(mesh, h, work->image + 9 * (size_t)work->queue[at], work->image + 9 * (size_t)next);
+                work->reached[next] = true;
+                work->queue[work->last++] = next;
+            }
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+    }
+}
+
+/* The mean of D'D over the edges of the component, D = image_j - mirror(image_i): m at the first vertex closes along an
+   edge where D m = 0. And the sum of image'n over its vertices, n the unit normal there: m goes along it best. */
+GPROJI_INTERNAL void gproji_closing(const gproj_mesh *mesh, const gproji_mirrors *work, double closing[3][3],
+                                    double wanted[3]) {
+    int32_t at, edges = 0, i, j, k;
+    memset(closing, 0, 9 * sizeof closing[0][0]);
+    gproji_set3(0, 0, 0, wanted);
+    for (at = work->first; at < work->last; ++at) {
+        int32_t vertex = work->queue[at], start = mesh->vertex_halfedge[vertex], h = start;
+        const double *image = work->image + 9 * (size_t)vertex;
+        double normal[3];
+        gproji_mean_normal(mesh, mesh->position, vertex, normal);
+        for (i = 0; i < 3; ++i) gproji_add_scaled3(normal[i], image + 3 * i, wanted);
+        do {
+            const double *other = work->image + 9 * (size_t)mesh->origin[h ^ 1];
+            double d[9];
+            gproji_mirror(mesh, h, image, d);
+            for (i = 0; i < 9; ++i) d[i] = other[i] - d[i];
+            for (i = 0; i < 3; ++i)
+                for (j = 0; j < 3; ++j)
+                    for (k = 0; k < 3; ++k) closing[i][j] += d[3 * k + i] * d[3 * k + j];
+            ++edges;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+    }
+    for (i = 0; i < 3; ++i)
+        for (j = 0; j < 3; ++j) closing[i][j] /= edges;
+}
+
+/* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed) in
+   which the mesh does not close as well as it can; all of it where hardly half would be left. */
+GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted[3], double m[3]) {
+    static const double up[3] = {0, 0, 1};
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, least, column[3];
+    int32_t sweep, k, best = 0;
+    for (sweep = 0; sweep < 12; ++sweep) {
+        gproji_jacobi_rotate(closing, v, 0, 1);
+        gproji_jacobi_rotate(closing, v, 0, 2);
+        gproji_jacobi_rotate(closing, v, 1, 2);
+    }
+    for (k = 1; k < 3; ++k)
+        if (closing[k][k] < closing[best][best]) best = k;
+    least = gproji_fmax(closing[best][best], 0);
+    gproji_set3(0, 0, 0, m);
+    for (k = 0; k < 3; ++k) {
+        if (closing[k][k] > 10 * least + 1e-10) continue;
+        gproji_set3(v[0][k], v[1][k], v[2][k], column);
+        gproji_add_scaled3(gproji_dot3(column, wanted), column, m);
+    }
+    if (gproji_length3(m) < 0.5 * gproji_length3(wanted)) gproji_copy3(wanted, m);
+    gproji_normalise3(m, up);
+}
+
+GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
+    static const double none[3] = {0, 0, 0};
+    size_t vertices = (size_t)mesh->vertex_count;
+    gproji_mirrors work;
+    int32_t v, at;
+    work.first = work.last = 0;
+    work.image = (double *)gproji_take(heap, 9 * vertices, sizeof *work.image);
+    work.queue = (int32_t *)gproji_take(heap, vertices, sizeof *work.queue);
+    work.reached = (bool *)gproji_take_zeroed(heap, vertices, sizeof *work.reached);
+    for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
+        double closing[3][3], wanted[3], m[3];
+        if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
+        gproji_reach(mesh, v, &work);
+        gproji_closing(mesh, &work, closing, wanted);
+        gproji_best_start(closing, wanted, m);
+        for (at = work.first; at < work.last; ++at) {
+            const double *image = work.image + 9 * (size_t)work.queue[at];
+            double *out = x + 3 * (size_t)work.queue[at];
+            gproji_set3(gproji_dot3(image, m), gproji_dot3(image + 3, m), gproji_dot3(image + 6, m), out);
+            gproji_normalise3(out, none);
+        }
+    }
+    gproji_give(heap, work.image, 9 * vertices, sizeof *work.image);
+    gproji_give(heap, work.queue, vertices, sizeof *work.queue);
+    gproji_give(heap, work.reached, vertices, sizeof *work.reached);
+    return work.image && work.queue && work.reached;
+}
+
+/* -- the field of a face offset -- */
+
+/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the minimum that is nearest to it; in two
+   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between two
+   faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for edges
+   between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x moves only
+   as the distances of the faces allow: along the one edge between two faces, or in the plane of the only face. */
+typedef struct gproji_parallels {
+    const gproj_mesh *mesh;
+    bool boundary;     /* the second stage */
+    double *normal;    /* 3 a face, unit */
+    double *direction; /* 3 an edge, unit */
+    double *slope;     /* 3 a vertex: minus half the gradient at x */
+    double *step;      /* 3 a vertex */
+    double *image;     /* 3 a vertex: the matrix times the step */
+} gproji_parallels;
+
+enum {
+    GPROJI_PARALLEL_ROUNDS = 2,
+    GPROJI_PARALLEL_STEPS = 1000
+};
+
+/* out += n (n'x - distance) for the corners of the faces. */
+GPROJI_INTERNAL void gproji_apply_distances(const gproji_parallels *p, const double *x, double distance, double *out) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t f, h, k;
+    for (f = 0; f < mesh->face_count; ++f) {
+        const double *n = p->normal + 3 * (size_t)f;
+        h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            size_t v = 3 * (size_t)mesh->origin[h];
+            gproji_add_scaled3(gproji_dot3(n, x + v) - distance, n, out + v);
+        }
+    }
+}
+
+/* What a vertex of the second stage cannot do is taken from `out`. */
+GPROJI_INTERNAL void gproji_keep_distances(const gproji_parallels *p, double *out) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v, out += 3) {
+        int32_t valence = gproj_mesh_valence(mesh, v), h;
+        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
+            gproji_set3(0, 0, 0, out);
+            continue;
+        }
+        h = gproji_rotate(mesh,
+                          mesh->vertex_halfedge[v]); /* with the first face on its left; on its right the second */
+        if (valence == 2) {
+            const double *n = p->normal + 3 * (size_t)mesh->face[h];
+            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
+        } else {
+            const double *e = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
+            double along = gproji_dot3(e, out);
+            gproji_set3(along * e[0], along * e[1], along * e[2], out);
+        }
+    }
+}
+
+/* out = A x - distance * b: A the matrix of the normal equations, b its right-hand side. */
+GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t e;
+    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
+    if (!p->boundary) gproji_apply_distances(p, x, distance, out);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *direction = p->direction + 3 * (size_t)e;
+        size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
+        double d[3];
+        if ((mesh->face[2 * e + 1] < 0) != p->boundary) continue; /* half-edge 2e always has a face */
+        gproji_sub3(x + j, x + i, d);
+        gproji_add_scaled3(-gproji_dot3(d, direction), direction, d);
+        gproji_add_scaled3(1, d, out + j);
+        gproji_add_scaled3(-1, d, out + i);
+    }
+    if (p->boundary) gproji_keep_distances(p, out);
+}
+
+GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
+    double sum = 0;
+    size_t i;
+    for (i = 0; i < count; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/* One round, until the slope is a small part of what it was. */
+GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
+    size_t count = 3 * (size_t)p->mesh->vertex_count, i;
+    double square, before, start, curvature;
+    int32_t n;
+    gproji_apply_parallels(p, x, 1, p->slope);
+    for (i = 0; i < count; ++i) p->step[i] = p->slope[i] = -p->slope[i];
+    start = square = gproji_dot(p->slope, p->slope, count);
+    for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * start && square > 1e-30 * (double)count; ++n) {
+        gproji_apply_parallels(p, p->step, 0, p->image);
+        curvature = gproji_dot(p->step, p->image, count);
+        if (!(curvature > 0)) return;
+        for (i = 0; i < count; ++i) {
+            x[i] += square / curvature * p->step[i];
+            p->slope[i] -= square / curvature * p->image[i];
+        }
+        before = square;
+        square = gproji_dot(p->slope, p->slope, count);
+        for (i = 0; i < count; ++i) p->step[i] = p->slope[i] + square / before * p->step[i];
+    }
+}
+
+/* Where it begins: each vertex for itself, x = a / cos(angle) with the axis a of its cone. */
+GPROJI_INTERNAL void gproji_start_parallels(const gproji_parallels *p, double *x) {
+    const gproj_mesh *mesh = p->mesh;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start, count;
+        double axis[3], cosine = 0;
+        gproji_set3(0, 0, 0, x + 3 * (size_t)v);
+        count = gproji_cone_axis(mesh, mesh->position, v, axis);
+        if (count == 0) continue;
+        do {
+            if (mesh->face[h] >= 0) cosine += gproji_dot3(p->normal + 3 * (size_t)mesh->face[h], axis) / count;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+        gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
+    }
+}
+
+GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
+    size_t faces = 3 * (size_t)mesh->face_count, edges = 3 * (size_t)mesh->edge_count,
+           count = 3 * (size_t)mesh->vertex_count;
+    gproji_parallels p;
+    bool taken;
+    int32_t i;
+    p.mesh = mesh;
+    p.normal = (double *)gproji_take(heap, faces, sizeof *p.normal);
+    p.direction = (double *)gproji_take(heap, edges, sizeof *p.direction);
+    p.slope = (double *)gproji_take(heap, count, sizeof *p.slope);
+    p.step = (double *)gproji_take(heap, count, sizeof *p.step);
+    p.image = (double *)gproji_take(heap, count, sizeof *p.image);
+    taken = p.normal && p.direction && p.slope && p.step && p.image;
+    if (taken) {
+        for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
+        for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
+        gproji_start_parallels(&p, x);
+        p.boundary = false;
+        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
+        p.boundary = true;
+        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
+    }
+    gproji_give(heap, p.normal, faces, sizeof *p.normal);
+    gproji_give(heap, p.direction, edges, sizeof *p.direction);
+    gproji_give(heap, p.slope, count, sizeof *p.slope);
+    gproji_give(heap, p.step, count, sizeof *p.step);
+    gproji_give(heap, p.image, count, sizeof *p.image);
+    return taken;
+}
+
+/* -- the meshes -- */
+
+typedef bool (*gproji_field)(gproji_heap *heap, const gproj_mesh *mesh, double *x);
+
+/* The mesh with vertices v + distance * x. */
+GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distance, gproji_field field,
+                                          const gproj_host *host, gproj_error *error) {
+    gproj_mesh *offset;
+    gproji_heap *heap;
+    gproj_code code;
+    size_t count, i;
+    double *x;
+    gproji_error_clear(error);
+    if (!mesh || !gproji_is_finite(distance)) {
+        gproji_fail(error, mesh ? GPROJ_ERROR_NUMBER : GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    mesh ? "the distance of the offset is not a finite number" : "the mesh to offset is NULL");
+        return NULL;
+    }
+    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    offset = gproj_mesh_copy(mesh, host, error);
+    if (!offset) return NULL;
+    heap = &gproji_mesh_owner(offset)->heap;
+    count = 3 * (size_t)mesh->vertex_count;
+    x = (double *)gproji_take_zeroed(heap, count, sizeof *x);
+    code = x && field(heap, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
+    for (i = 0; !code && i < count; ++i) offset->position[i] += distance * x[i];
+    gproji_give(heap, x, count, sizeof *x);
+    if (!code) code = gproji_check_positions(mesh->vertex_count, offset->position, "offset vertex", error);
+    if (!code) return offset;
+    gproj_mesh_destroy(offset);
+    return NULL;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
+                                               gproj_error *error) {
+    return gproji_offset(mesh, distance, gproji_vertex_field, host, error);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
+                                             gproj_error *error) {
+    return gproji_offset(mesh, distance, gproji_face_field, host, error);
+}
+
+/* Do the two meshes have the same vertices, half-edges and faces, by their numbers? */
+GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b) {
+    size_t bytes;
+    if (!a || !b || a->vertex_count != b->vertex_count || a->face_count != b->face_count ||
+        a->halfedge_count != b->halfedge_count)
+        return false;
+    bytes = (size_t)a->halfedge_count * sizeof *a->origin;
+    return memcmp(a->origin, b->origin, bytes) == 0 && memcmp(a->face, b->face, bytes) == 0;
+}
+
+/* The four corners of the panel of an edge: v_i v_j o_j o_i. */
+GPROJI_INTERNAL void gproji_support_quad(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
+                                         double out[12]) {
+    gproji_copy3(gproji_corner_position(mesh, 2 * edge), out);
+    gproji_copy3(gproji_corner_position(mesh, 2 * edge + 1), out + 3);
+    gproji_copy3(gproji_corner_position(offset, 2 * edge + 1), out + 6);
+    gproji_copy3(gproji_corner_position(offset, 2 * edge), out + 9);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
+                                         gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproj_mesh *support = NULL;
+    double *position;
+    int32_t *degree, *corner, e;
+    size_t edges;
+    gproji_error_clear(error);
+    if (!gproji_correspond(mesh, offset)) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
+        return NULL;
+    }
+    if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
+        gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the support of %d edges has too many vertices",
+                    mesh->edge_count);
+        return NULL;
+    }
+    edges = (size_t)mesh->edge_count;
+    position = (double *)gproji_take(&heap, 12 * edges, sizeof *position);
+    degree = (int32_t *)gproji_take(&heap, edges, sizeof *degree);
+    corner = (int32_t *)gproji_take(&heap, 4 * edges, sizeof *corner);
+    if (position && degree && corner) {
+        for (e = 0; e < mesh->edge_count; ++e) {
+            gproji_support_quad(mesh, offset, e, position + 12 * (size_t)e);
+            degree[e] = 4;
+        }
+        for (e = 0; e < 4 * mesh->edge_count; ++e) corner[e] = e;
+        support = gproj_mesh_create(4 * mesh->edge_count, position, mesh->edge_count, degree, corner, host, error);
+    } else {
+        gproji_fail_memory(error);
+    }
+    gproji_give(&heap, position, 12 * edges, sizeof *position);
+    gproji_give(&heap, degree, edges, sizeof *degree);
+    gproji_give(&heap, corner, 4 * edges, sizeof *corner);
+    return support;
+}
+
+/* -- how exact they are -- */
+
+GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
+    *least = gproji_fmin(*least, value);
+    *most = gproji_fmax(*most, value);
+}
+
+/* How far the offset of an edge is from parallel, and its panel from planar: c = o_j - o_i without its part along the
+   edge e, and the part of c along the normal e x (o_i - v_i) of the panel. */
+GPROJI_INTERNAL void gproji_measure_edge_offset(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
+                                                double unit, gproj_offset_measures *m) {
+    static const double none[3] = {0, 0, 0};
+    double e[3], c[3], normal[3], along;
+    gproji_edge_direction(mesh, 2 * edge, e);
+    gproji_sub3(gproji_corner_position(offset, 2 * edge + 1), gproji_corner_position(offset, 2 * edge), c);
+    along = gproji_dot3(e, c);
+    m->reversed_edges += along < 0;
+    gproji_add_scaled3(-along, e, c);
+    m->parallel_max = gproji_fmax(m->parallel_max, gproji_length3(c) / unit);
+    gproji_sub3(gproji_corner_position(offset, 2 * edge), gproji_corner_position(mesh, 2 * edge), normal);
+    gproji_cross3(e, normal, normal);
+    gproji_normalise3(normal, none);
+    m->support_planarity_max = gproji_fmax(m->support_planarity_max, fabs(gproji_dot3(normal, c)) / unit);
+}
+
+GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
+    gproj_offset_measures m;
+    double unit, d[3], n[3];
+    int32_t f, v, e, k, h;
+    memset(&m, 0, sizeof m);
+    m.face_distance_min = m.vertex_distance_min = HUGE_VAL;
+    m.face_distance_max = -HUGE_VAL;
+    if (!gproji_correspond(mesh, offset)) {
+        m.face_distance_max = m.vertex_distance_max = m.parallel_max = m.support_planarity_max = HUGE_VAL;
+        return m;
+    }
+    unit = gproji_mean_edge(mesh, mesh->position);
+    if (!(unit > 0)) unit = 1;
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproji_unit_normal(mesh, mesh->position, f, n);
+        h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            gproji_sub3(gproji_corner_position(offset, h), gproji_corner_position(mesh, h), d);
+            gproji_widen(gproji_dot3(n, d), &m.face_distance_min, &m.face_distance_max);
+        }
+    }
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (mesh->vertex_halfedge[v] >= 0)
+            gproji_widen(gproji_distance3(offset->position + 3 * (size_t)v, mesh->position + 3 * (size_t)v),
+                         &m.vertex_distance_min, &m.vertex_distance_max);
+    for (e = 0; e < mesh->edge_count; ++e) gproji_measure_edge_offset(mesh, offset, e, unit, &m);
     return m;
 }
 
@@ -9752,6 +10352,7 @@ struct gproj_form {
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
     int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
     int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
+    int32_t *cone;    /* of each vertex, the first variable of its cone's axis; -1: none; NULL: no vertex has one */
     double *area;     /* work: the vectorial area of each face */
     int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
     int32_t ring_size;
@@ -9807,6 +10408,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
         gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
         gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
         gproji_give(&form->own, form->axis, (size_t)form->mesh->face_count, sizeof *form->axis);
+        gproji_give(&form->own, form->cone, (size_t)form->mesh->vertex_count, sizeof *form->cone);
         gproji_give(&form->own, form->area, 3 * (size_t)form->mesh->face_count, sizeof *form->area);
         gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
     }
@@ -10860,6 +11462,104 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
             gproji_add_axis_row(form, group, f, form->axis[f], h);
     }
     return gproji_form_ready(form) ? group : -1;
+}
+
+/* How many faces meet at a vertex. */
+GPROJI_INTERNAL int32_t gproji_faces_at(const gproj_mesh *mesh, int32_t vertex) {
+    return gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
+}
+
+/* The row det(a, e, m) / (2 |e|) = 0 of a half-edge, linearised at x: a the axis of its origin, e = v_j - v_i, m = n_f +
+   n_g. Its derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
+GPROJI_INTERNAL void gproji_refresh_cone_row(const gproj_form *form, gproj_system *system, int32_t group, int32_t row,
+                                             int32_t halfedge) {
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(system), *a = x + form->cone[mesh->origin[halfedge]];
+    double e[3], m[3], slope[5][3], scale;
+    int32_t count, k, c;
+    gproj_term *term = gproji_row_terms(system, group, row, &count);
+    gproji_sub3(x + 3 * (size_t)mesh->origin[halfedge ^ 1], x + 3 * (size_t)mesh->origin[halfedge], e);
+    gproji_copy3(x + form->normal[mesh->face[halfedge]], m);
+    gproji_add_scaled3(1, x + form->normal[mesh->face[halfedge ^ 1]], m);
+    gproji_cross3(e, m, slope[0]);
+    gproji_cross3(a, m, slope[1]);
+    gproji_cross3(m, a, slope[2]);
+    gproji_cross3(a, e, slope[3]);
+    gproji_copy3(slope[3], slope[4]);
+    scale = 0.5 / gproji_fmax(gproji_length3(e), 1e-6);
+    for (k = 0; k < 5; ++k)
+        for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[k][c];
+    gproj_system_set_row(system, group, row, NULL, -2 * scale * gproji_dot3(a, slope[0]));
+}
+
+GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group) {
+    const gproji_part *part = (const gproji_part *)user;
+    int32_t i;
+    for (i = 0; i < part->count; ++i)
+        if (part->vertex[i] >= 0) gproji_refresh_cone_row(part->form, system, group, i, part->vertex[i]);
+}
+
+/* The rows of one vertex: a'a = 1, and one for each edge between two faces. */
+GPROJI_INTERNAL void gproji_add_cone_rows(gproj_form *form, gproji_part *part, int32_t vertex) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t axis = form->cone[vertex], start = mesh->vertex_halfedge[vertex], h = start, c;
+    gproj_term term[15];
+    for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
+    gproj_system_add_row(form->system, part->group, 3, term, -1, vertex);
+    part->vertex[part->count++] = -1;
+    do {
+        int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
+        for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
+            gproji_set_term(&term[c], axis + c, -1, 0);
+            gproji_set_term(&term[3 + c], 3 * vertex + c, -1, 0);
+            gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
+            gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
+            gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
+        }
+        if (face >= 0 && other >= 0) {
+            gproj_system_add_row(form->system, part->group, 15, term, 0, vertex);
+            part->vertex[part->count++] = h;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start && gproji_form_ready(form));
+}
+
+/* Gives the vertices where four or more faces meet the axes of their cones as variables, if they have none. Returns the
+   number of rows that they will have; -1 without memory. */
+GPROJI_INTERNAL int32_t gproji_add_cones(gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t v, rows = 0;
+    if (!form->cone) {
+        form->cone = (int32_t *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *form->cone);
+        if (!form->cone) {
+            gproji_fail_memory(&form->error);
+            return -1;
+        }
+        for (v = 0; v < mesh->vertex_count; ++v) form->cone[v] = -1;
+    }
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double start[3];
+        if (gproji_faces_at(mesh, v) < 4) continue;
+        gproji_cone_axis(mesh, gproj_system_values(form->system), v, start);
+        if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
+        rows += gproj_mesh_valence(mesh, v) + 1;
+    }
+    return gproji_form_ready(form) ? rows : -1;
+}
+
+GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
+    gproji_part *part;
+    int32_t rows, v;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form)) return -1;
+    rows = gproji_add_cones(form);
+    part = rows < 0 ? NULL : gproji_new_part(form, rows);
+    if (!part) return -1;
+    part->count = 0;
+    part->group =
+        gproji_new_group(form, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_cones, part);
+    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
+        if (form->cone[v] >= 0) gproji_add_cone_rows(form, part, v);
+    return gproji_form_ready(form) ? part->group : -1;
 }
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
@@ -12352,7 +13052,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses all earlier
    sections. */
 
-/* x = the mesh's positions, and the normals of its faces as they are now. */
+/* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     double *x = gproj_system_values(form->system);
     int32_t i;
@@ -12363,6 +13063,8 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
         if (form->normal[i] >= 0) gproji_face_normal(form, i, x + form->normal[i]);
     for (i = 0; form->axis && i < form->mesh->face_count; ++i)
         if (form->axis[i] >= 0) gproji_start_axis_point(form, i, x + form->axis[i]);
+    for (i = 0; form->cone && i < form->mesh->vertex_count; ++i)
+        if (form->cone[i] >= 0) gproji_cone_axis(form->mesh, x, i, x + form->cone[i]);
 }
 
 /* The mesh's positions = x; a vertex that has not moved keeps its coordinates to the bit. */

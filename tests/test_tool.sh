@@ -101,8 +101,8 @@ expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
 expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
-for later in --conical --equilibrium --compressive --supports=boundary \
-    --subdivide=1 --nearest --forces=a.csv --offset=1,a.obj --density=1; do
+for later in --equilibrium --compressive --supports=boundary \
+    --subdivide=1 --nearest --forces=a.csv --density=1; do
     expect 2 "there is no option $(echo "$later" | sed 's/=.*//')" grid.obj -o new.obj --planar $later
 done
 expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
@@ -152,6 +152,21 @@ expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
 expect 2 "AZIMUTH,ELEVATION" grid.obj -o new.obj --planar --picture new.svg --view north
+expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3
+expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3,
+expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0,old.obj
+expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset old.obj
+expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset inf,old.obj
+expect 2 "must end in .obj or .off" grid.obj -o new.obj --planar --offset 0.3,new.stl
+expect 2 "must end in .obj or .off" grid.obj -o new.obj --planar --offset 0.3,old.obj --support new
+expect 2 "add --offset" grid.obj -o new.obj --planar --support old.obj
+expect 2 "same path" grid.obj -o new.obj --planar --offset 0.3,new.obj
+expect 2 "same path" grid.obj -o new.obj --planar --offset 0.3,old.obj --support old.obj
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --offset 0.3,grid.obj
+expect 2 "would overwrite the input" grid.obj -o new.obj --planar --offset 0.3,old.obj --support grid.obj
+expect 2 "there is no folder" grid.obj -o new.obj --planar --offset 0.3,nowhere/old.obj
+expect 2 "add --planar" grid.obj -o new.obj --conical
+expect 3 "offset vertex" grid.obj --quiet -o new.obj --planar --offset 1e200,old.obj --report new.json
 mkdir -p folder.obj
 expect 2 "is a folder" grid.obj -o folder.obj --planar
 if [ "$(id -u)" -ne 0 ]; then
@@ -329,6 +344,64 @@ for view in iso top bottom front back left right side 30,20 -120.5,-10; do
     [ $status -eq 0 ] && [ "$(grep -c '<path' view.svg)" -ge 64 ] && pass || fail "--view $view"
 done
 
+# ---- offsets ----
+
+moulding() { # moulding N M: an arch of M quads along a bent road of N, with ripples
+    awk -v n="$1" -v m="$2" 'BEGIN {
+        for (i = 0; i <= n; i++) {
+            for (j = 0; j <= m; j++) { v = 2.2 * j / m - 1.1; s = 1 + 0.02 * sin(0.8 * i + 0.9 * j); r = 5 * s * sin(v)
+                printf "v %.17g %.17g %.17g\n", x - r * sin(t), y + r * cos(t), 4 * s * cos(v) }
+            x += cos(t); y += sin(t); t += 0.05 + 0.04 * sin(0.3 * i) }
+        for (i = 0; i < n; i++) for (j = 0; j < m; j++)
+            print "f", i*(m+1)+j+1, (i+1)*(m+1)+j+1, (i+1)*(m+1)+j+2, i*(m+1)+j+2 }'
+}
+# How far V + D * x is from an offset: distances of the corners of its faces (or of the vertices) along the normals.
+distances() { # distances MESH OFFSET faces|vertices: prints the least and the largest
+    awk -v kind="$3" '/^v / { n[FILENAME]++; for (k = 0; k < 3; k++) p[FILENAME, n[FILENAME], k] = $(k + 2) }
+        FNR == NR && /^f / { f++; d[f] = NF - 1; for (k = 1; k < NF; k++) c[f, k - 1] = $(k + 1) }
+        function note(x) { if (low == "" || x < low) low = x; if (high == "" || x > high) high = x }
+        END { a = ARGV[1]; b = ARGV[2]
+            for (i = 1; kind == "vertices" && i <= n[a]; i++) { s = 0
+                for (k = 0; k < 3; k++) s += (p[b, i, k] - p[a, i, k])^2
+                note(sqrt(s)) }
+            for (i = 1; kind == "faces" && i <= f; i++) {
+                for (k = 0; k < 3; k++) { u[k] = p[a, c[i, 2], k] - p[a, c[i, 0], k]; w[k] = p[a, c[i, 3], k] - p[a, c[i, 1], k] }
+                for (k = 0; k < 3; k++) m[k] = u[(k+1)%3] * w[(k+2)%3] - u[(k+2)%3] * w[(k+1)%3]
+                l = sqrt(m[0]^2 + m[1]^2 + m[2]^2)
+                for (j = 0; j < d[i]; j++) { s = 0
+                    for (k = 0; k < 3; k++) s += m[k] / l * (p[b, c[i, j], k] - p[a, c[i, j], k])
+                    note(s) } }
+            printf "%.17g %.17g\n", low, high }' "$1" "$2"
+}
+between() { # between NAME KIND DISTANCE: the offset is exact to 1e-9, the support is planar
+    distances shaped.obj offset.obj "$2" >distances.txt
+    awk -v d="$3" '{ exit !($1 > d - 1e-9 && $2 < d + 1e-9) }' distances.txt && pass ||
+        fail "$1: the distances are $(cat distances.txt)"
+    measure support.obj support.obj
+    want "$1: support" planarity_after 1e-9
+    [ "$(grep -c '^f ' support.obj)" = "$(sed -n 's/.*vertices, \([0-9]*\) edges.*/\1/p' out.txt)" ] && pass ||
+        fail "$1: not one quad an edge in the support"
+    grep -q "^offset  *$2 at distance" out.txt && pass || fail "$1: no sentence about the offset"
+}
+moulding 16 8 >moulding.obj
+run moulding.obj -o shaped.obj --planar --conical --offset 0.25,offset.obj --support support.obj --report offset.json
+[ $status -eq 0 ] && pass || fail "--conical exits with $status: $(tail -n 1 err.txt)"
+between "face offset" faces 0.25
+grep -q '"name": "conicality"' offset.json && grep -q '"kind": "faces"' offset.json && pass || fail "report of the offset"
+awk -F'[:,]' '/"conicality_max"/ { last = $2 } END { exit !(last != "" && last + 0 < 1e-9) }' offset.json && pass ||
+    fail "the report's conicality"
+run moulding.obj -o shaped.obj --planar --conical --offset=-0.25,offset.obj --support support.obj
+between "face offset inwards" faces -0.25
+run moulding.obj -o shaped.obj --planar --circular --offset 0.25,offset.obj --support support.obj
+[ $status -eq 0 ] && pass || fail "--circular exits with $status: $(tail -n 1 err.txt)"
+between "vertex offset" vertices 0.25
+run moulding.obj -o shaped.obj --planar --conical=0 --offset 0.25,offset.off
+[ $status -eq 0 ] && head -n 1 offset.off | grep -q OFF && pass || fail "an offset of a mesh that is not conical, as OFF"
+run moulding.obj -o shaped.obj --planar --conical --offset 30,offset.obj
+grep -q "run backwards" out.txt && pass || fail "edges that run backwards are not told"
+rm -f offset.off support.obj
+[ "$(ls ./*.tmp 2>/dev/null)" = "" ] && pass || fail "temporary files stay"
+
 # ---- little memory: it works or says so, and never leaves half an output ----
 
 if [[ $tool != *coverage* ]] && { (ulimit -v 1000000 && "$tool" --version) >/dev/null; } 2>/dev/null; then
@@ -381,6 +454,7 @@ units() { # units NAME MESH OPTIONS...
 units grid grid.obj --planar
 units "gliding grid" grid.obj --planar --glide boundary --fairness '0.2*0.9'
 units torus torus.obj --planar
+units moulding moulding.obj --planar --conical
 
 # ---- real meshes ----
 
@@ -427,6 +501,11 @@ tubemesh 0.137
 hexagonalminimal 1e-9
 TABLE
     for name in Intersection YasIsland botanic-garden free_negshell; do faired $name; done
+    for name in eyeye_circular formfinding-circular; do
+        run "$data/$name.obj" -o shaped.obj --planar --circular --offset 0.01,offset.obj --support support.obj
+        [ $status -eq 0 ] && pass || fail "$name --circular exits with $status: $(tail -n 1 err.txt)"
+        between "$name" vertices 0.01
+    done
     units "botanic-garden" "$data/botanic-garden.obj" --planar
     for n in 1 2 5; do
         run "$data/Intersection.obj" -o "real$n.obj" --planar --threads $n

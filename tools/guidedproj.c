@@ -95,6 +95,8 @@ enum {
     OUTPUT_REPORT,
     OUTPUT_PICTURE,
     OUTPUT_FORCES,
+    OUTPUT_OFFSET,
+    OUTPUT_SUPPORT,
     OUTPUT_COUNT
 };
 
@@ -102,7 +104,7 @@ typedef struct tool {
     /* what the command line says */
     const char *input;
     tool_output output[OUTPUT_COUNT];
-    tool_weight planar, circular, closeness, fairness, boundary_fairness, tangential, gauss, parallelograms,
+    tool_weight planar, circular, conical, closeness, fairness, boundary_fairness, tangential, gauss, parallelograms,
         equal_areas;
     tool_weight equal_lengths;
     tool_range edge_length, face_area;
@@ -120,6 +122,7 @@ typedef struct tool {
     tool_word reference;
     int32_t iterations, threads;
     double epsilon, tolerance, time_limit;
+    double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
     bool nearest, view_given, quiet, help, version;
     bool seen[MOST_OPTIONS];
@@ -128,16 +131,18 @@ typedef struct tool {
     gproj_host host;
     gprojx_threads *pool;
     gproj_mesh *mesh, *reference_mesh, *probe; /* probe: a copy for measures of intermediate shapes */
+    gproj_mesh *offset, *support;
+    gproj_offset_measures offset_measures;
     gproj_surface *surface;
     gproj_curve **curve;
     int32_t curve_count;
     gproj_form *form;
     gproj_result result;
     double *original, *planarity_before, *planarity;
-    double *point_load;               /* of --loads */
+    double *point_load;                   /* of --loads */
     double *imbalance_before, *imbalance; /* of faces: what the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
-    bool *support;
+    bool *is_support;
     gproj_forces forces;
     gproj_measures before, after;
     tool_record *record;
@@ -273,6 +278,19 @@ static bool set_path(tool *t, void *place, const char *name, const char *value) 
     if (!value[0]) return fail(t, EXIT_USAGE, "--%s needs a path", name);
     ((tool_output *)place)->path = value;
     return true;
+}
+
+/* DISTANCE,FILE */
+static bool set_offset(tool *t, void *place, const char *name, const char *value) {
+    const char *comma = strchr(value, ',');
+    ((tool_output *)place)->path = comma ? comma + 1 : NULL;
+    if (comma && comma[1] && read_number(value, (size_t)(comma - value), &t->offset_distance) &&
+        fabs(t->offset_distance) > 0)
+        return true;
+    return fail(t, EXIT_USAGE,
+                "--%s %s: expected DISTANCE,FILE: a distance other than 0, and where to write (as in "
+                "0.3,offset.obj)",
+                name, value);
 }
 
 /* What must hold: a constant weight. */
@@ -501,6 +519,8 @@ static const tool_option options[] = {
     {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
      PLACE(planar)},
     {0, "circular", "[=W]", false, "faces have a circumcircle (with --planar)", NULL, set_must, PLACE(circular)},
+    {0, "conical", "[=W]", false, "the faces around a vertex touch a cone (with --planar)", NULL, set_must,
+     PLACE(conical)},
     {0, "equal-lengths", "[=W]", false, "all edges have the same length", NULL, set_must, PLACE(equal_lengths)},
     {0, "edge-length", "MIN,MAX[=W]", false, "edges are at least MIN and at most MAX long; one may be left out", NULL,
      set_range, PLACE(edge_length)},
@@ -524,8 +544,7 @@ static const tool_option options[] = {
      NULL, add_glide, 0},
     {0, "move", "I,X,Y,Z[=W]", true, "vertex I goes to X,Y,Z; it is then free of --fix and --glide", NULL, add_move, 0},
 
-    {0, "equilibrium", "[=W]", false,
-     "forces in the edges balance the loads at all vertices without support (z is up)",
+    {0, "equilibrium", "[=W]", false, "forces in the edges balance the loads at all vertices without support (z is up)",
      "statics", set_must, PLACE(equilibrium)},
     {0, "compressive", "[=W]", false, "edges carry compression only", NULL, set_must, PLACE(compressive)},
     {0, "tensile", "[=W]", false, "edges carry tension only", NULL, set_must, PLACE(tensile)},
@@ -588,6 +607,13 @@ static const tool_option options[] = {
     {0, "view", "VIEW", false,
      "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", NULL,
      set_view, PLACE(view)},
+    {0, "offset", "DISTANCE,FILE", false,
+     "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
+     "(exact "
+     "with --conical)",
+     NULL, set_offset, PLACE(output[OUTPUT_OFFSET])},
+    {0, "support", "FILE", false, "the panels between the mesh and its --offset, .obj or .off: one quad an edge", NULL,
+     set_path, PLACE(output[OUTPUT_SUPPORT])},
     {0, "quiet", "", false, "print errors only", NULL, set_flag, PLACE(quiet)},
     {'h', "help", "", false, "print this", NULL, set_flag, PLACE(help)},
     {0, "version", "", false, "print the version", NULL, set_flag, PLACE(version)},
@@ -719,13 +745,15 @@ static bool has_ending(const char *path, const char *ending) {
 static bool anything_asked(const tool *t) {
     return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
-           t->gauss.given || t->circular.given || t->volume.given || t->parallelograms.given || t->equal_areas.given ||
-           t->equilibrium.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given || t->total_area.given || t->cost.given;
+           t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
+           t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
+           t->total_area.given || t->cost.given || t->equilibrium.given;
 }
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
+    int i;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
     if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
     if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
@@ -740,14 +768,22 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
-    if (!t->equilibrium.given &&
-        (t->compressive.given || t->tensile.given || t->stress.given || t->supports.text || t->loads_given ||
-         t->force_fairness.given || t->output[OUTPUT_FORCES].path))
+    if (!t->equilibrium.given && (t->compressive.given || t->tensile.given || t->stress.given || t->supports.text ||
+                                  t->loads_given || t->force_fairness.given || t->output[OUTPUT_FORCES].path))
         return fail(t, EXIT_USAGE,
                     "--compressive, --tensile, --stress, --supports, --density, --area-load, --snow, --loads, "
                     "--force-fairness and --forces are about forces: add --equilibrium");
     if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
+    if (t->output[OUTPUT_SUPPORT].path && !t->output[OUTPUT_OFFSET].path)
+        return fail(t, EXIT_USAGE, "--support is between the mesh and its offset: add --offset DISTANCE,FILE.obj");
+    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
+        output = t->output[i].path;
+        if (output && !has_ending(output, ".obj") && !has_ending(output, ".off"))
+            return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
+    }
+    if (t->conical.weight > 0 && !(t->planar.weight > 0))
+        return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
     if (t->gauss.given && !t->planar.given)
         return fail(t, EXIT_USAGE, "--gauss needs the normals of planar faces: add --planar");
     return true;
@@ -1172,8 +1208,7 @@ static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
         if ((k < 3) != (comma != NULL) || !read_number(line + at, length, &field[k])) break;
         at += length + 1;
     }
-    if (k < 4)
-        return fail(t, EXIT_REFUSED, "%s, line %ld: expected VERTEX,FX,FY,FZ", t->loads, (long)number);
+    if (k < 4) return fail(t, EXIT_REFUSED, "%s, line %ld: expected VERTEX,FX,FY,FZ", t->loads, (long)number);
     if (!(field[0] >= 0) || field[0] >= t->mesh->vertex_count || field[0] != floor(field[0]))
         return fail(t, EXIT_REFUSED, "%s, line %ld: there is no vertex %g; the mesh has %ld, counted from 0", t->loads,
                     (long)number, field[0], (long)t->mesh->vertex_count);
@@ -1205,12 +1240,12 @@ static bool add_equilibrium(tool *t) {
     bool good;
     memset(&loads, 0, sizeof loads);
     memset(&supports, 0, sizeof supports);
-    t->support = (bool *)take(t, vertices, sizeof *t->support);
-    good = list && t->support && (!t->loads || read_loads(t)) &&
-           mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->support);
+    t->is_support = (bool *)take(t, vertices, sizeof *t->is_support);
+    good = list && t->is_support && (!t->loads || read_loads(t)) &&
+           mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support);
     if (good) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
-            if (t->support[i]) list[supports.count++] = i;
+            if (t->is_support[i]) list[supports.count++] = i;
         if (supports.count == 0)
             good = fail(t, EXIT_USAGE, "there is no support: the mesh has no boundary, so name some by --supports");
     }
@@ -1263,6 +1298,7 @@ static bool build_form(tool *t) {
     if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
     if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
     if (!add_statics(t)) return false;
+    if (t->conical.weight > 0) gproj_add_conicality(t->form, t->conical.weight);
     add_sizes(t);
     for (i = 0; i < t->fix_count; ++i)
         if (!add_fixed(t, &t->fix[i])) return false;
@@ -1400,6 +1436,31 @@ static bool solve(tool *t) {
     if (t->result.outcome == GPROJ_FAILED) return fail_library(t, NULL, gproj_form_error(t->form));
     t->after = gproj_measure(t->mesh, t->original, t->planarity);
     return !t->equilibrium.given || measure_forces(t);
+}
+
+/* ---- the offset ---- */
+
+/* The vertices keep the distance where only the faces' circles were asked for, else the faces do. */
+static bool is_vertex_offset(const tool *t) { return t->circular.weight > 0 && !(t->conical.weight > 0); }
+
+static bool make_offset(tool *t) {
+    gproj_error error;
+    if (!t->output[OUTPUT_OFFSET].path) return true;
+    t->offset = is_vertex_offset(t) ? gproj_mesh_vertex_offset(t->mesh, t->offset_distance, &t->host, &error)
+                                    : gproj_mesh_face_offset(t->mesh, t->offset_distance, &t->host, &error);
+    if (!t->offset) return fail_library(t, t->output[OUTPUT_OFFSET].path, &error);
+    t->offset_measures = gproj_measure_offset(t->mesh, t->offset);
+    if (!t->output[OUTPUT_SUPPORT].path) return true;
+    t->support = gproj_mesh_support(t->mesh, t->offset, &t->host, &error);
+    return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
+}
+
+/* How far the distances are from the one that was asked for. */
+static double offset_error(const tool *t) {
+    const gproj_offset_measures *m = &t->offset_measures;
+    double wanted = t->offset_distance, least = m->face_distance_min, most = m->face_distance_max;
+    if (is_vertex_offset(t)) wanted = fabs(wanted), least = m->vertex_distance_min, most = m->vertex_distance_max;
+    return fmax(fabs(least - wanted), fabs(most - wanted));
 }
 
 /* ---- the report ---- */
@@ -1679,6 +1740,7 @@ static void report_measures(json *j, const tool *t, const char *key, const gproj
     json_integer(j, "planarity_face", m->planarity_face);
     json_number(j, "diagonal_distance_max", m->diagonal_max);
     json_number(j, "circularity_max", m->circularity_max);
+    json_number(j, "conicality_max", m->conicality_max);
     json_number(j, "area_spread", m->area_spread);
     json_number(j, "deviation_max", m->deviation_max);
     json_number(j, "deviation_rms", m->deviation_rms);
@@ -1714,6 +1776,22 @@ static void report_forces(json *j, const gproj_forces *m) {
     json_close(j, '}');
 }
 
+static void report_offset(json *j, const tool *t) {
+    const gproj_offset_measures *m = &t->offset_measures;
+    if (!t->offset) return;
+    json_open(j, "offset", '{');
+    json_string(j, "kind", is_vertex_offset(t) ? "vertices" : "faces");
+    json_number(j, "distance", t->offset_distance);
+    json_number(j, "face_distance_min", m->face_distance_min);
+    json_number(j, "face_distance_max", m->face_distance_max);
+    json_number(j, "vertex_distance_min", m->vertex_distance_min);
+    json_number(j, "vertex_distance_max", m->vertex_distance_max);
+    json_number(j, "parallel_max", m->parallel_max);
+    json_number(j, "support_planarity_max", m->support_planarity_max);
+    json_integer(j, "reversed_edges", m->reversed_edges);
+    json_close(j, '}');
+}
+
 static gproj_code write_report(tool *t, FILE *file) {
     json writer = {NULL, 0, false, false}, *j = &writer;
     int32_t i;
@@ -1731,6 +1809,7 @@ static gproj_code write_report(tool *t, FILE *file) {
     report_measures(j, t, "measures_before", &t->before);
     report_measures(j, t, "measures", &t->after);
     if (t->equilibrium.given) report_forces(j, &t->forces);
+    report_offset(j, t);
     json_open(j, "seconds", '{');
     json_number(j, "reading", t->read_seconds);
     json_number(j, "set_up", t->setup_seconds);
@@ -1797,7 +1876,7 @@ static gproj_code write_forces(tool *t, FILE *file) {
         write_number(file, load[3 * (size_t)i + 2], '\n');
     }
     for (i = 0; i < mesh->vertex_count; ++i)
-        if (t->support[i]) fprintf(file, "support,%ld\n", (long)i);
+        if (t->is_support[i]) fprintf(file, "support,%ld\n", (long)i);
     free(load);
     return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
@@ -1806,9 +1885,17 @@ static bool write_piece(void *user, const char *text, size_t size) {
     return fwrite(text, 1, size, (FILE *)user) == size;
 }
 
-static gproj_code write_mesh(tool *t, FILE *file) {
-    gproj_format format = has_ending(t->output[OUTPUT_MESH].path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-    return gproj_mesh_write(t->mesh, format, write_piece, file);
+static gproj_code write_as(const gproj_mesh *mesh, const char *path, FILE *file) {
+    gproj_format format = has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
+    return gproj_mesh_write(mesh, format, write_piece, file);
+}
+
+static gproj_code write_mesh(tool *t, FILE *file) { return write_as(t->mesh, t->output[OUTPUT_MESH].path, file); }
+
+static gproj_code write_offset(tool *t, FILE *file) { return write_as(t->offset, t->output[OUTPUT_OFFSET].path, file); }
+
+static gproj_code write_support(tool *t, FILE *file) {
+    return write_as(t->support, t->output[OUTPUT_SUPPORT].path, file);
 }
 
 /* Opens a new file beside the target, with the mode of an old one there. */
@@ -1854,6 +1941,8 @@ static bool write_outputs(tool *t) {
     if (!write_output(t, &t->output[OUTPUT_PICTURE], write_picture) ||
         !write_output(t, &t->output[OUTPUT_FORCES], write_forces) ||
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
+        !write_output(t, &t->output[OUTPUT_OFFSET], write_offset) ||
+        !write_output(t, &t->output[OUTPUT_SUPPORT], write_support) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
@@ -1881,6 +1970,17 @@ static void print_mesh(const tool *t) {
     if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
 }
 
+static void print_offset(const tool *t) {
+    const gproj_offset_measures *m = &t->offset_measures;
+    printf("offset        %s at distance %g to %.2e, edges parallel to %.2e, supports planar to %.2e (mean edge "
+           "lengths)\n",
+           is_vertex_offset(t) ? "vertices" : "faces", t->offset_distance, offset_error(t) / t->after.mean_edge,
+           m->parallel_max, m->support_planarity_max);
+    if (m->reversed_edges > 0)
+        printf("note: %ld edges of the offset run backwards: the distance is larger than a radius of curvature\n",
+               (long)m->reversed_edges);
+}
+
 static void print_summary(const tool *t) {
     const gproj_measures *b = &t->before, *a = &t->after;
     print_mesh(t);
@@ -1890,6 +1990,11 @@ static void print_summary(const tool *t) {
     if (t->equilibrium.given)
         printf("equilibrium   to %.1e of the largest load, force densities %.3g to %.3g, load path %.4g\n",
                t->forces.residual, t->forces.min_density, t->forces.max_density, t->forces.load_path);
+    if (t->circular.given)
+        printf("circularity   %.2e -> %.2e largest (mean edge lengths)\n", b->circularity_max, a->circularity_max);
+    if (t->conical.given)
+        printf("conicality    %.2e -> %.2e largest (radians)\n", b->conicality_max, a->conicality_max);
+    if (t->offset) print_offset(t);
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
     printf("faces         %ld turned over, %ld -> %ld bow-ties\n", (long)a->turned_faces, (long)b->bow_tie_faces,
@@ -1918,7 +2023,7 @@ static bool run(tool *t) {
     t->read_seconds = mark - t->start;
     if (!build_form(t)) return false;
     t->setup_seconds = now(NULL) - mark;
-    if (!solve(t) || !write_outputs(t)) return false;
+    if (!solve(t) || !make_offset(t) || !write_outputs(t)) return false;
     if (!t->quiet) print_summary(t);
     return true;
 }
@@ -1932,10 +2037,11 @@ static void clean_up(tool *t) {
     gproj_form_destroy(t->form);
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
+    gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
     gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move);
-    free(t->point_load), free(t->support), free(t->density_of_edge), free(t->force_in_edge);
+    free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->record), free(t->group_record);
 }

@@ -1,0 +1,601 @@
+/* test_offset.c - >>offset, and the conicality of >>form: conical meshes, parallel meshes at constant distance. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+enum {
+    GRID = 0,
+    TRIANGLES = 1,
+    HEXAGONS = 3,
+    TORUS = 4,
+    TUBE = 5,
+    CUBE_SPHERE = 6
+};
+
+/* A moulding surface: an arch that follows a bent road in the planes orthogonal to it. Its lines are lines of curvature,
+   so the mesh is nearly circular and nearly conical. */
+static gproj_mesh *gprojt_moulding(int32_t along, int32_t across, double noise, uint64_t seed) {
+    gprojt_soup s;
+    double x = 0, y = 0, turn = 0;
+    int32_t i, j;
+    gproj_mesh *mesh;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i <= along; ++i) {
+        for (j = 0; j <= across; ++j) {
+            double v = 2.2 * j / across - 1.1, r = 5 * sin(v), z = 4 * cos(v);
+            gprojt_add_vertex(&s, x - r * sin(turn), y + r * cos(turn), z);
+        }
+        x += cos(turn);
+        y += sin(turn);
+        turn += 0.05 + 0.04 * sin(0.3 * i);
+    }
+    for (i = 0; i < along; ++i)
+        for (j = 0; j < across; ++j) {
+            int32_t a = i * (across + 1) + j;
+            gprojt_add_quad(&s, a, a + across + 1, a + across + 2, a + 1);
+        }
+    mesh = gprojt_mesh_of(s);
+    if (mesh) gprojt_shake(mesh, noise, seed);
+    return mesh;
+}
+
+/* A surface of revolution with planar trapezoids: circular and conical to rounding. */
+static gproj_mesh *gprojt_revolution(int32_t around, int32_t along) {
+    gprojt_soup s;
+    int32_t i, j;
+    memset(&s, 0, sizeof s);
+    for (j = 0; j <= along; ++j)
+        for (i = 0; i < around; ++i) {
+            double u = 6.283185307179586 * i / around, r = 2 + 0.5 * sin(0.9 * j);
+            gprojt_add_vertex(&s, r * cos(u), r * sin(u), 0.6 * j);
+        }
+    for (j = 0; j < along; ++j)
+        for (i = 0; i < around; ++i) {
+            int32_t a = (i + 1) % around;
+            gprojt_add_quad(&s, j * around + i, j * around + a, (j + 1) * around + a, (j + 1) * around + i);
+        }
+    return gprojt_mesh_of(s);
+}
+
+/* What is asked of a mesh: planar, and circular or conical. */
+static gproj_result gprojt_shape_it(gproj_mesh *mesh, bool circular, bool conical, int32_t iterations) {
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    gproj_add_planarity(form, 1);
+    if (circular) gproj_add_circularity(form, 1);
+    if (conical) gproj_add_conicality(form, 1);
+    result = gproj_solve(form, iterations, NULL);
+    gproj_form_destroy(form);
+    return result;
+}
+
+/* -- conicality -- */
+
+/* The angle of the face on the left of a half-edge at its origin. */
+static double gprojt_corner_angle(const gproj_mesh *mesh, int32_t h) {
+    const double *p = mesh->position + 3 * mesh->origin[h], *a = mesh->position + 3 * mesh->origin[mesh->next[h]],
+                 *b = mesh->position + 3 * mesh->origin[mesh->prev[h]];
+    double u[3], v[3], w[3];
+    int32_t i;
+    for (i = 0; i < 3; ++i) u[i] = a[i] - p[i], v[i] = b[i] - p[i];
+    gproji_cross3(u, v, w);
+    return atan2(gproji_length3(w), gproji_dot3(u, v));
+}
+
+/* A vertex of valence 4 is conical where the angles of its faces have w1 + w3 = w2 + w4 (Wang, Wallner, Liu 2007). The
+   largest difference of the two sums over the mesh. */
+static double gprojt_angle_balance(const gproj_mesh *mesh) {
+    double worst = 0;
+    int32_t v, k;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t h = mesh->vertex_halfedge[v];
+        double sum = 0;
+        if (gproj_mesh_is_boundary_vertex(mesh, v) || gproj_mesh_valence(mesh, v) != 4) continue;
+        for (k = 0; k < 4; ++k, h = mesh->prev[h] ^ 1) sum += (k % 2 ? -1 : 1) * gprojt_corner_angle(mesh, h);
+        worst = fmax(worst, fabs(sum));
+    }
+    return worst;
+}
+
+GPROJT_TEST(conical_meshes) {
+    int i;
+    for (i = 0; i < 5; ++i) {
+        gproj_mesh *mesh = i == 0   ? gprojt_moulding(20, 10, 0.1, 3)
+                           : i == 1 ? gprojt_noisy(TORUS, 8, 0.05, 4)
+                           : i == 2 ? gprojt_noisy(CUBE_SPHERE, 5, 0.03, 5)
+                           : i == 3 ? gprojt_noisy(TUBE, 6, 0.05, 6)
+                                    : gprojt_noisy(TRIANGLES, 4, 0.02, 7);
+        gproj_result result = gprojt_shape_it(mesh, false, true, 20);
+        gproj_measures m = gproj_measure(mesh, NULL, NULL);
+        if (result.outcome != GPROJ_CONVERGED) printf("    mesh %d: %s\n", i, result.message);
+        GPROJT_CHECK(i == 4 || result.outcome == GPROJ_CONVERGED);
+        if (result.outcome == GPROJ_CONVERGED) {
+            GPROJT_CHECK(m.conicality_max < 1e-10 && m.planarity_max < 1e-12);
+            GPROJT_CHECK(gprojt_angle_balance(mesh) < 1e-10);
+            GPROJT_CHECK(m.collapsed_edges == 0 && m.turned_faces == 0);
+        }
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Neighbouring faces that are coplanar must not satisfy the rows with any angles. */
+GPROJT_TEST(conical_where_a_direction_is_flat) {
+    gproj_mesh *mesh = gprojt_moulding(24, 8, 0.1, 8);
+    int32_t i;
+    for (i = 0; i < mesh->vertex_count; ++i) mesh->position[3 * i + 2] += 0.2 * sin(0.7 * (i / 9) + 0.5 * (i % 9));
+    GPROJT_CHECK(gprojt_angle_balance(mesh) > 0.1);
+    GPROJT_CHECK(gprojt_shape_it(mesh, false, true, 12).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_angle_balance(mesh) < 1e-11);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The rows against the determinant that they linearise, to second order; and their derivatives. */
+GPROJT_TEST(conicality_rows_are_tangent) {
+    gproj_mesh *mesh = gprojt_moulding(4, 4, 0.1, 2);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *s = gproj_form_system(form);
+    int32_t group, v, row = 0, n;
+    double *x, size = 1e-4;
+    uint64_t state = 2;
+    gproj_add_planarity(form, 1);
+    group = gproj_add_conicality(form, 1);
+    GPROJT_REQUIRE(group >= 0);
+    x = gproj_system_values(s);
+    n = gproj_system_variable_count(s);
+    GPROJT_CHECK(n == 3 * (mesh->vertex_count + mesh->face_count + 9)); /* 9 interior vertices */
+    GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-7);               /* refreshes the rows */
+    double *before = (double *)malloc((size_t)n * sizeof *before);
+    memcpy(before, x, (size_t)n * sizeof *before);
+    for (v = 0; v < n; ++v) x[v] += size * (2 * gprojt_uniform(&state) - 1);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start;
+        const double *a = x + form->cone[v];
+        if (form->cone[v] < 0) continue;
+        GPROJT_NEAR(gproj_system_row_value(s, group, row++, NULL), gproji_dot3(a, a) - 1, 1e-12);
+        do {
+            double e[3], m[3], frozen[3], cross[3];
+            const double *p = x + 3 * v, *q = x + 3 * mesh->origin[h ^ 1];
+            const double *f = x + form->normal[mesh->face[h]], *g = x + form->normal[mesh->face[h ^ 1]];
+            int32_t i;
+            for (i = 0; i < 3; ++i) e[i] = q[i] - p[i], m[i] = f[i] + g[i];
+            gproji_sub3(before + 3 * mesh->origin[h ^ 1], before + 3 * v, frozen);
+            gproji_cross3(e, m, cross);
+            GPROJT_NEAR(gproj_system_row_value(s, group, row++, NULL),
+                        gproji_dot3(a, cross) / (2 * gproji_length3(frozen)), 30 * size * size);
+            h = mesh->prev[h] ^ 1;
+        } while (h != start);
+    }
+    GPROJT_CHECK(row == gprojt_info(s, group).rows);
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The largest difference of the angles of four normals with an axis. */
+static double gprojt_angle_range(const double n[4][3], const double axis[3]) {
+    double least = 10, most = 0;
+    int32_t k;
+    for (k = 0; k < 4; ++k) {
+        double angle = acos(gproji_dot3(n[k], axis) / gproji_length3(axis));
+        least = fmin(least, angle);
+        most = fmax(most, angle);
+    }
+    return most - least;
+}
+
+/* Pyramids: over a rhombus and over a kite they touch a cone; over others the measure is compared with the best of many
+   axes. */
+GPROJT_TEST(conicality_is_measured) {
+    static const double base[4][4] = {{1, 2, 1, 2}, {1, 2, 3, 2}, {1, 2, 2, 0.6}, {1, 3, 0.7, 1.2}};
+    static const int32_t degree[4] = {3, 3, 3, 3}, corner[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
+    int32_t i, k;
+    for (i = 0; i < 4; ++i) {
+        const double *b = base[i];
+        double p[15] = {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, n[4][3], best = 10, u, v, measured;
+        gproj_mesh *mesh;
+        p[3] = b[0], p[7] = b[1], p[9] = -b[2], p[13] = -b[3];
+        mesh = gproj_mesh_create(5, p, 4, degree, corner, NULL, NULL);
+        for (k = 0; k < 4; ++k) {
+            double length;
+            gproj_mesh_face_area_vector(mesh, k, n[k]);
+            length = gproji_length3(n[k]);
+            n[k][0] /= length, n[k][1] /= length, n[k][2] /= length;
+        }
+        for (u = -1; u <= 1; u += 0.004)
+            for (v = -1; v <= 1; v += 0.004) {
+                double axis[3];
+                axis[0] = u, axis[1] = v, axis[2] = 1;
+                best = fmin(best, gprojt_angle_range((const double(*)[3])n, axis));
+            }
+        measured = gproj_measure(mesh, NULL, NULL).conicality_max;
+        if (i < 2)
+            GPROJT_CHECK(measured < 1e-14 && best < 0.01);
+        else
+            GPROJT_CHECK(best > 0.005 && measured > 0.7 * best && measured < 1.5 * best);
+        gproj_mesh_destroy(mesh);
+    }
+    for (k = 3; k < 9; ++k) {
+        gproj_mesh *mesh = gprojt_revolution(k, 4);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).conicality_max < 1e-12);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+GPROJT_TEST(conicality_begins_anew) {
+    gproj_mesh *mesh = gprojt_moulding(10, 6, 0.1, 5);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    int32_t i;
+    gproj_add_planarity(form, 1);
+    gproj_add_conicality(form, 1);
+    for (i = 0; i < 3; ++i) {
+        result = gproj_solve(form, 16, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_angle_balance(mesh) < 1e-11);
+        for (int32_t k = 0; k < mesh->vertex_count; ++k) { /* upside down */
+            mesh->position[3 * k + 1] *= -1;
+            mesh->position[3 * k + 2] *= -1;
+        }
+        gprojt_shake(mesh, 0.05, 9);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(conicality_refusals_and_weight_0) {
+    gproj_mesh *mesh = gprojt_moulding(4, 4, 0.1, 5);
+    gproj_form *form = gproj_form_create(mesh, NULL), *plain = gproj_form_create(mesh, NULL);
+    double *start = gprojt_keep(mesh), *end;
+    GPROJT_CHECK(gproj_add_conicality(NULL, 1) == -1);
+    GPROJT_CHECK(gproj_add_conicality(form, 1) == -1 && gproj_form_error(form)->code == GPROJ_ERROR_STATE);
+    gproj_form_destroy(form);
+    gproj_add_planarity(plain, 1);
+    gproj_solve(plain, 10, NULL);
+    end = gprojt_keep(mesh);
+    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    GPROJT_CHECK(gproj_add_conicality(form, 0) >= 0);
+    GPROJT_CHECK(gproj_solve(form, 10, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_largest_move(end, mesh->position, mesh->vertex_count) < 1e-9);
+    gproj_form_destroy(form);
+    gproj_form_destroy(plain);
+    gproj_mesh_destroy(mesh);
+    free(start);
+    free(end);
+}
+
+/* -- offsets -- */
+
+/* The largest sine of the angle between an edge and its offset, times the offset's length. */
+static double gprojt_across(const gproj_mesh *a, const gproj_mesh *b) {
+    double worst = 0;
+    int32_t e, i;
+    for (e = 0; e < a->edge_count; ++e) {
+        double u[3], v[3], w[3];
+        for (i = 0; i < 3; ++i) {
+            u[i] = a->position[3 * a->origin[2 * e + 1] + i] - a->position[3 * a->origin[2 * e] + i];
+            v[i] = b->position[3 * a->origin[2 * e + 1] + i] - b->position[3 * a->origin[2 * e] + i];
+        }
+        gproji_cross3(u, v, w);
+        worst = fmax(worst, gproji_length3(w) / gproji_length3(u));
+    }
+    return worst;
+}
+
+/* The point on three planes n_k'x = h_k by Cramer's rule. */
+static void gprojt_three_planes(const double n[3][3], const double h[3], double out[3]) {
+    double c[3], determinant;
+    int32_t k, i;
+    gproji_cross3(n[1], n[2], c);
+    determinant = gproji_dot3(n[0], c);
+    for (i = 0; i < 3; ++i) out[i] = 0;
+    for (k = 0; k < 3; ++k) {
+        gproji_cross3(n[(k + 1) % 3], n[(k + 2) % 3], c);
+        for (i = 0; i < 3; ++i) out[i] += h[k] * c[i] / determinant;
+    }
+}
+
+/* The largest distance of an interior vertex of the offset from the point on three of the moved planes. */
+static double gprojt_off_planes(const gproj_mesh *mesh, const gproj_mesh *offset, double distance) {
+    double worst = 0;
+    int32_t v, k;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t h = mesh->vertex_halfedge[v];
+        double n[3][3], height[3], point[3];
+        if (gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        for (k = 0; k < 3; ++k, h = mesh->prev[h] ^ 1) {
+            double length;
+            gproj_mesh_face_area_vector(mesh, mesh->face[h], n[k]);
+            length = gproji_length3(n[k]);
+            n[k][0] /= length, n[k][1] /= length, n[k][2] /= length;
+            height[k] = gproji_dot3(n[k], mesh->position + 3 * v) + distance;
+        }
+        gprojt_three_planes((const double(*)[3])n, height, point);
+        worst = fmax(worst, gprojt_far(point, offset->position + 3 * v));
+    }
+    return worst;
+}
+
+GPROJT_TEST(face_offsets_of_conical_meshes) {
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_mesh *mesh = i == 0   ? gprojt_moulding(20, 10, 0.1, 3)
+                           : i == 1 ? gprojt_revolution(12, 6)
+                           : i == 2 ? gprojt_noisy(CUBE_SPHERE, 4, 0.03, 5)
+                                    : gprojt_noisy(TORUS, 8, 0.03, 4);
+        double edge = gproj_mesh_mean_edge_length(mesh), distance = (i % 2 ? -0.3 : 0.3) * edge;
+        gproj_mesh *offset, *support;
+        gproj_offset_measures m;
+        GPROJT_CHECK(gprojt_shape_it(mesh, false, true, 12).outcome == GPROJ_CONVERGED);
+        offset = gproj_mesh_face_offset(mesh, distance, NULL, NULL);
+        GPROJT_REQUIRE(offset && gprojt_validate_mesh(offset) == NULL);
+        m = gproj_measure_offset(mesh, offset);
+        GPROJT_NEAR(m.face_distance_min, distance, 1e-11 * edge);
+        GPROJT_NEAR(m.face_distance_max, distance, 1e-11 * edge);
+        GPROJT_CHECK(m.parallel_max < 1e-10 && m.support_planarity_max < 1e-10 && m.reversed_edges == 0);
+        GPROJT_CHECK(m.vertex_distance_min >= fabs(distance) * (1 - 1e-12));
+        GPROJT_CHECK(gprojt_across(mesh, offset) < 1e-10 * edge);
+        GPROJT_CHECK(gprojt_off_planes(mesh, offset, distance) < 1e-9 * edge);
+        support = gproj_mesh_support(mesh, offset, NULL, NULL);
+        GPROJT_REQUIRE(support);
+        GPROJT_CHECK(gproj_measure(support, NULL, NULL).planarity_max < 1e-10);
+        GPROJT_CHECK(gproj_measure(offset, NULL, NULL).conicality_max < 1e-9);
+        gproj_mesh_destroy(support);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+GPROJT_TEST(vertex_offsets_of_circular_meshes) {
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_mesh *mesh = i == 0   ? gprojt_moulding(20, 10, 0.1, 3)
+                           : i == 1 ? gprojt_revolution(12, 6)
+                           : i == 2 ? gprojt_moulding(9, 8, 0.2, 5)
+                                    : gprojt_revolution(9, 5);
+        double edge = gproj_mesh_mean_edge_length(mesh), distance = (i % 2 ? -0.3 : 0.3) * edge;
+        gproj_mesh *offset;
+        gproj_offset_measures m;
+        int32_t v;
+        GPROJT_CHECK(gprojt_shape_it(mesh, true, false, 16).outcome == GPROJ_CONVERGED);
+        offset = gproj_mesh_vertex_offset(mesh, distance, NULL, NULL);
+        GPROJT_REQUIRE(offset && gprojt_validate_mesh(offset) == NULL);
+        m = gproj_measure_offset(mesh, offset);
+        for (v = 0; v < mesh->vertex_count; ++v)
+            GPROJT_NEAR(gprojt_far(mesh->position + 3 * v, offset->position + 3 * v), fabs(distance), 1e-14 * edge);
+        GPROJT_CHECK(m.parallel_max < 1e-10 && m.support_planarity_max < 1e-10);
+        GPROJT_CHECK(gprojt_across(mesh, offset) < 1e-10 * edge);
+        GPROJT_CHECK(m.face_distance_min * distance > 0 && m.face_distance_max * distance > 0);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* The folder of real meshes. */
+GPROJT_TEST(real_circular_meshes) {
+    static const int which[] = {5, 6};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gprojt_load_real_mesh(which[i], NULL, NULL), *offset;
+        gproj_offset_measures m;
+        double distance;
+        if (!mesh) GPROJT_SKIP("the folder of real meshes is not there");
+        distance = 0.3 * gproj_mesh_mean_edge_length(mesh);
+        GPROJT_CHECK(gprojt_shape_it(mesh, true, false, 12).outcome == GPROJ_CONVERGED);
+        offset = gproj_mesh_vertex_offset(mesh, distance, NULL, NULL);
+        m = gproj_measure_offset(mesh, offset);
+        GPROJT_NEAR(m.vertex_distance_min, distance, 1e-12 * distance);
+        GPROJT_NEAR(m.vertex_distance_max, distance, 1e-12 * distance);
+        GPROJT_CHECK(m.parallel_max < 1e-10 && m.support_planarity_max < 1e-10);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Meshes that have no exact offset get one all the same, and the measures say how far off it is. */
+GPROJT_TEST(inexact_offsets_are_told) {
+    static const int shapes[] = {GRID, TRIANGLES, HEXAGONS, TORUS};
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shapes[i], 6, 0.05, 9);
+        double d = 0.2 * gproj_mesh_mean_edge_length(mesh);
+        gproj_mesh *by_vertex = gproj_mesh_vertex_offset(mesh, d, NULL, NULL);
+        gproj_mesh *by_face = gproj_mesh_face_offset(mesh, d, NULL, NULL);
+        gproj_offset_measures m;
+        GPROJT_REQUIRE(by_vertex && by_face);
+        GPROJT_CHECK(gprojt_all_finite(by_vertex->position, 3 * mesh->vertex_count));
+        GPROJT_CHECK(gprojt_all_finite(by_face->position, 3 * mesh->vertex_count));
+        m = gproj_measure_offset(mesh, by_vertex);
+        GPROJT_NEAR(m.vertex_distance_min, d, 1e-13);
+        GPROJT_NEAR(m.vertex_distance_max, d, 1e-13);
+        GPROJT_CHECK(m.parallel_max > 1e-4 && m.parallel_max < 1);
+        m = gproj_measure_offset(mesh, by_face);
+        GPROJT_CHECK(m.face_distance_max - m.face_distance_min > 1e-6 * d);
+        gproj_mesh_destroy(by_vertex);
+        gproj_mesh_destroy(by_face);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Crumpled meshes, and meshes that are one point or a line: everything stays finite. */
+GPROJT_TEST(meshes_without_shape) {
+    int i;
+    for (i = 0; i < 3 * GPROJT_SHAPES; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(i % GPROJT_SHAPES, 3, 2, 3), *a, *b;
+        int32_t k, kind = i / GPROJT_SHAPES, n = 3 * mesh->vertex_count;
+        for (k = 0; k < n; ++k)
+            if (kind == 2 || (kind == 1 && k % 3)) mesh->position[k] = 1;
+        a = gproj_mesh_vertex_offset(mesh, 0.1, NULL, NULL);
+        b = gproj_mesh_face_offset(mesh, 0.1, NULL, NULL);
+        GPROJT_REQUIRE(a && b);
+        GPROJT_CHECK(gprojt_all_finite(a->position, n) && gprojt_all_finite(b->position, n));
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).conicality_max <= 3.2);
+        GPROJT_CHECK(gproj_measure_offset(mesh, b).parallel_max >= 0);
+        gprojt_shape_it(mesh, false, true, 3);
+        GPROJT_CHECK(gprojt_all_finite(mesh->position, n));
+        gproj_mesh_destroy(a);
+        gproj_mesh_destroy(b);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A flat mesh, with a vertex of its own and a second component: offsets are translations along the normals. */
+GPROJT_TEST(flat_pieces) {
+    static const double p[] = {0, 0, 0, 2, 0, 0, 2, 1, 0, 0, 1, 0, 3, 1, 0, 9, 9, 9, 0, 0, 5, 0, 1, 5, 0, 0, 6};
+    static const int32_t degree[] = {4, 3, 3}, corner[] = {0, 1, 2, 3, 1, 4, 2, 6, 7, 8};
+    gproj_mesh *mesh = gproj_mesh_create(9, p, 3, degree, corner, NULL, NULL), *offset;
+    int i, v;
+    GPROJT_REQUIRE(mesh);
+    for (i = 0; i < 2; ++i) {
+        offset = i ? gproj_mesh_face_offset(mesh, 0.5, NULL, NULL) : gproj_mesh_vertex_offset(mesh, 0.5, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        GPROJT_CHECK(memcmp(offset->position + 15, p + 15, 3 * sizeof *p) == 0);
+        for (v = 0; v < 9; ++v) {
+            if (v == 5) continue;
+            GPROJT_NEAR(offset->position[3 * v], p[3 * v] + (v > 5 ? 0.5 : 0), 1e-15);
+            GPROJT_NEAR(offset->position[3 * v + 1], p[3 * v + 1], 1e-15);
+            GPROJT_NEAR(offset->position[3 * v + 2], p[3 * v + 2] + (v < 5 ? 0.5 : 0), 1e-15);
+        }
+        gproj_mesh_destroy(offset);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(offsets_scale_with_the_mesh) {
+    gproj_mesh *mesh = gprojt_moulding(8, 6, 0.1, 4), *large, *a, *b;
+    int32_t i, k;
+    gprojt_shape_it(mesh, false, true, 12);
+    large = gproj_mesh_copy(mesh, NULL, NULL);
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) large->position[i] *= 1000;
+    for (k = 0; k < 2; ++k) {
+        a = k ? gproj_mesh_face_offset(mesh, 0.3, NULL, NULL) : gproj_mesh_vertex_offset(mesh, 0.3, NULL, NULL);
+        b = k ? gproj_mesh_face_offset(large, 300, NULL, NULL) : gproj_mesh_vertex_offset(large, 300, NULL, NULL);
+        for (i = 0; i < 3 * mesh->vertex_count; ++i) GPROJT_NEAR(b->position[i] / 1000, a->position[i], 1e-9);
+        gproj_mesh_destroy(a);
+        gproj_mesh_destroy(b);
+    }
+    gproj_mesh_destroy(large);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- measures, supports, refusals -- */
+
+GPROJT_TEST(offsets_are_measured) {
+    gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 4, 0, 1), *moved = gproj_mesh_copy(mesh, NULL, NULL);
+    double edge = gproj_mesh_mean_edge_length(mesh);
+    gproj_offset_measures m;
+    int32_t i, h;
+    for (i = 0; i < mesh->vertex_count; ++i) moved->position[3 * i] += 0.25; /* a translation */
+    m = gproj_measure_offset(mesh, moved);
+    GPROJT_CHECK(m.parallel_max < 1e-15 && m.support_planarity_max < 1e-15 && m.reversed_edges == 0);
+    GPROJT_NEAR(m.vertex_distance_min, 0.25, 1e-15);
+    GPROJT_NEAR(m.vertex_distance_max, 0.25, 1e-15);
+    GPROJT_CHECK(m.face_distance_max > 0.2 && m.face_distance_max <= 0.25);
+    GPROJT_NEAR(m.face_distance_min, -m.face_distance_max, 1e-14);
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) moved->position[i] = -2 * mesh->position[i];
+    m = gproj_measure_offset(mesh, moved);
+    GPROJT_CHECK(m.reversed_edges == mesh->edge_count && m.parallel_max < 1e-14);
+    memcpy(moved->position, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof(double));
+    h = mesh->vertex_halfedge[7];
+    for (i = 0; i < 3; ++i) /* one vertex out of the way, along an edge and across others */
+        moved->position[3 * 7 + i] += 0.1 * (mesh->position[3 * mesh->origin[h ^ 1] + i] - mesh->position[3 * 7 + i]);
+    m = gproj_measure_offset(mesh, moved);
+    GPROJT_CHECK(m.vertex_distance_min <= 0 && m.vertex_distance_max > 0.05 * edge && m.parallel_max > 0.05);
+    GPROJT_CHECK(m.parallel_max < 0.2);
+    gproj_mesh_destroy(moved);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(supports) {
+    gproj_mesh *mesh = gprojt_noisy(HEXAGONS, 4, 0.05, 1), *offset = gproj_mesh_copy(mesh, NULL, NULL), *support;
+    int32_t e, i;
+    for (i = 0; i < mesh->vertex_count; ++i) offset->position[3 * i + 2] += 0.1;
+    support = gproj_mesh_support(mesh, offset, NULL, NULL);
+    GPROJT_REQUIRE(support && gprojt_validate_mesh(support) == NULL);
+    GPROJT_CHECK(support->vertex_count == 4 * mesh->edge_count && support->face_count == mesh->edge_count);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        int32_t a = mesh->origin[2 * e], b = mesh->origin[2 * e + 1], want[4], k, h = support->face_halfedge[e];
+        want[0] = want[3] = a, want[1] = want[2] = b;
+        for (k = 0; k < 4; ++k, h = support->next[h]) {
+            const gproj_mesh *from = k < 2 ? mesh : offset;
+            GPROJT_CHECK(support->origin[h] == 4 * e + k);
+            GPROJT_CHECK(gprojt_far(support->position + 12 * e + 3 * k, from->position + 3 * want[k]) <= 0);
+        }
+    }
+    gproj_mesh_destroy(support);
+    gproj_mesh_destroy(offset);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(refusals) {
+    gproj_mesh *mesh = gprojt_noisy(GRID, 3, 0.1, 1), *other = gprojt_noisy(TORUS, 3, 0.1, 1);
+    gproj_error error;
+    GPROJT_CHECK(!gproj_mesh_vertex_offset(NULL, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_mesh_face_offset(NULL, 1, NULL, NULL));
+    GPROJT_CHECK(!gproj_mesh_face_offset(mesh, NAN, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, INFINITY, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, 1e300, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(!gproj_mesh_support(mesh, other, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(!gproj_mesh_support(NULL, other, NULL, &error) && !gproj_mesh_support(mesh, NULL, NULL, NULL));
+    GPROJT_CHECK(gproj_measure_offset(mesh, other).parallel_max == HUGE_VAL);
+    GPROJT_CHECK(gproj_measure_offset(NULL, NULL).face_distance_max == HUGE_VAL);
+    mesh->position[4] = NAN;
+    GPROJT_CHECK(!gproj_mesh_face_offset(mesh, 1, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 1);
+    gproj_mesh_destroy(mesh);
+    gproj_mesh_destroy(other);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 2, 0.02, 1);
+    double *before = gprojt_keep(mesh);
+    long fail_at;
+    for (fail_at = 1;; ++fail_at) {
+        gprojt_failing failing;
+        gproj_host host;
+        gproj_form *form;
+        gproj_mesh *a, *b, *support;
+        gproj_result result;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = fail_at;
+        host = gprojt_failing_host(&failing);
+        form = gproj_form_create(mesh, &host);
+        gproj_add_planarity(form, 1);
+        gproj_add_conicality(form, 1);
+        result = gproj_solve(form, 2, NULL);
+        gproj_form_destroy(form);
+        memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+        a = gproj_mesh_vertex_offset(mesh, 0.1, &host, NULL);
+        b = gproj_mesh_face_offset(mesh, 0.1, &host, NULL);
+        support = gproj_mesh_support(mesh, a ? a : b, &host, NULL);
+        GPROJT_CHECK((result.outcome == GPROJ_FAILED) + !a + !b + !support == (failing.calls >= fail_at));
+        gproj_mesh_destroy(a);
+        gproj_mesh_destroy(b);
+        gproj_mesh_destroy(support);
+        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
+        if (failing.calls < fail_at) break;
+    }
+    GPROJT_CHECK(fail_at > 30);
+    free(before);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(conical_meshes);
+    GPROJT_RUN(conical_where_a_direction_is_flat);
+    GPROJT_RUN(conicality_rows_are_tangent);
+    GPROJT_RUN(conicality_is_measured);
+    GPROJT_RUN(conicality_begins_anew);
+    GPROJT_RUN(conicality_refusals_and_weight_0);
+    GPROJT_RUN(face_offsets_of_conical_meshes);
+    GPROJT_RUN(vertex_offsets_of_circular_meshes);
+    GPROJT_RUN(real_circular_meshes);
+    GPROJT_RUN(inexact_offsets_are_told);
+    GPROJT_RUN(meshes_without_shape);
+    GPROJT_RUN(flat_pieces);
+    GPROJT_RUN(offsets_scale_with_the_mesh);
+    GPROJT_RUN(offsets_are_measured);
+    GPROJT_RUN(supports);
+    GPROJT_RUN(refusals);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
