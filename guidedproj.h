@@ -231,7 +231,7 @@ typedef enum gproj_place {
 } gproj_place;
 
 enum {
-    GPROJ_MESSAGE_SIZE = 320
+    GPROJ_MESSAGE_SIZE = 512
 };
 
 typedef struct gproj_error {
@@ -6531,12 +6531,18 @@ GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     return true;
 }
 
+/* Is this clearly better than that: by a tenth in the largest residual or in the sum of squares? */
+GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_standing *b) {
+    return a->residual < 0.9 * b->residual || a->merit < 0.9 * b->merit;
+}
+
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterations) {
     gproj_system *s = loop->system;
-    double best = HUGE_VAL;
+    gproji_standing best;
     int32_t half = iterations / 2 + iterations % 2, waited = 0;
     s->late = 0;
+    best.residual = best.merit = HUGE_VAL;
     gproji_set_weights(s, 1);
     gproji_linearise(loop);
     gproji_start_bounds(s);
@@ -6548,9 +6554,9 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
         if (!gproji_iterate(loop)) return gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
-        if (gproji_see_changes(loop)) best = HUGE_VAL;
-        waited = loop->standing.residual < 0.9 * best || gproji_wishes_are_on(s) ? 0 : waited + 1;
-        best = gproji_fmin(best, loop->standing.residual);
+        if (gproji_see_changes(loop)) best.residual = best.merit = HUGE_VAL;
+        waited = gproji_is_better(&loop->standing, &best) || gproji_wishes_are_on(s) ? 0 : waited + 1;
+        if (waited == 0) best = loop->standing;
         if (waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
@@ -10329,7 +10335,8 @@ typedef struct gproji_part {
 
 /* What the section statics keeps for a form. */
 typedef struct gproji_statics {
-    gproj_loads loads;  /* its arrays are copies */
+    gproj_loads loads; /* its arrays are the two below */
+    double *edge_density, *point_load;
     uint8_t *axes;      /* of each vertex: the axes along which it is in equilibrium; 0: pinned */
     int32_t *force;     /* of each edge, the variable of its force; -1: none */
     int32_t *first_row; /* of each vertex, in the group of equilibrium */
@@ -10382,9 +10389,8 @@ GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
 GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_statics *s = form->statics;
     size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
-    /* the arrays that are not const; their owner is this form */
-    gproji_give(&form->own, (void *)s->loads.edge_density, edges, sizeof *s->loads.edge_density);
-    gproji_give(&form->own, (void *)s->loads.point_load, 3 * vertices, sizeof *s->loads.point_load);
+    gproji_give(&form->own, s->edge_density, edges, sizeof *s->edge_density);
+    gproji_give(&form->own, s->point_load, 3 * vertices, sizeof *s->point_load);
     gproji_give(&form->own, s->load_vertex, s->load_start ? (size_t)s->load_start[vertices] : 0,
                 sizeof *s->load_vertex);
     gproji_give(&form->own, s->axes, vertices, sizeof *s->axes);
@@ -12217,14 +12223,16 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     s->group = s->guidance = -1;
     s->load_scale = 1;
     s->loads = *loads;
-    s->loads.edge_density = loads->edge_density ? gproji_copy_numbers(form, loads->edge_density, edges) : NULL;
-    s->loads.point_load = loads->point_load ? gproji_copy_numbers(form, loads->point_load, 3 * vertices) : NULL;
+    if (loads->edge_density) s->edge_density = gproji_copy_numbers(form, loads->edge_density, edges);
+    if (loads->point_load) s->point_load = gproji_copy_numbers(form, loads->point_load, 3 * vertices);
+    s->loads.edge_density = s->edge_density;
+    s->loads.point_load = s->point_load;
     s->axes = (uint8_t *)gproji_take(&form->own, vertices, sizeof *s->axes);
     s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
     s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
     s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
-    return (s->loads.edge_density || !loads->edge_density) && (s->loads.point_load || !loads->point_load) && s->axes &&
-           s->force && s->first_row && s->load_start;
+    return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
+           s->first_row && s->load_start;
 }
 
 /* Which vertices are in equilibrium along which axes, which edges have a force. */
@@ -12767,7 +12775,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
     gproji_balance p;
     int32_t *work;
     bool uniform = false;
-    if (!s || !(form->system->group[s->group].schedule.weight > 0)) return;
+    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
     if (!s->started) {
         work = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *work);
         if (!work) {
@@ -12929,8 +12937,8 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
 /* ============================================================================================================
    >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
 
-   On the way to planarity a skew face may collapse and come out turned over in its own plane. While the wishes guide,
-   and two iterations longer, a face's area along its normal is bounded: it shall keep 0.4 of what it was,
+   On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
+   a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it shall keep 0.4 of what it was,
    s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = sqrt(a0), and a step that would
    leave less than 0.2 is found again. These bounds act on the steps only: they are no part of residual and verdict. */
 
@@ -13030,12 +13038,22 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     }
 }
 
+GPROJI_INTERNAL bool gproji_is_on(const gproj_form *form, int32_t group) {
+    return group >= 0 && form->system->group[group].schedule.weight > 0;
+}
+
+/* Has the form forces, and a shape that carries, so that its faces need not turn over to do so? */
+GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
+    const gproji_statics *s = form->statics;
+    return s && gproji_is_on(form, s->group) && !gproji_is_on(form, s->guidance);
+}
+
 /* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
    iterations. */
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
     gproj_schedule schedule;
     int32_t i;
-    bool wanted = !skip && form->planarity >= 0 && form->system->group[form->planarity].schedule.weight > 0;
+    bool wanted = !skip && (gproji_is_on(form, form->planarity) || gproji_carries(form));
     form->guard_on = wanted;
     if (wanted && !form->guard) gproji_add_guard(form);
     if (!form->guard || !gproji_form_ready(form)) return;
@@ -13117,6 +13135,72 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
     return others ? half : wanted ? gproji_min(5, half) : 0;
 }
 
+/* How long wishes last that do not say so. In equilibrium they keep the shape away from it, and the longer the farther:
+   then they get 9 iterations at most. */
+GPROJI_INTERNAL int32_t gproji_guided_iterations(const gproj_form *form, int32_t iterations) {
+    bool forces = form->statics && gproji_is_on(form, form->statics->group);
+    return forces ? gproji_min(9, gproji_half(iterations)) : gproji_half(iterations);
+}
+
+/* -- what statics add to the verdict -- */
+
+/* Is equilibrium, or a bound on forces, what does not hold? */
+GPROJI_INTERNAL bool gproji_is_unbalanced(const gproj_form *form, const gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    if (!s || !gproji_is_on(form, s->group)) return false;
+    if (result->outcome != GPROJ_STALLED && result->outcome != GPROJ_ITERATION_LIMIT) return false;
+    return gproj_system_group_info(form->system, s->group).max > 1e-9;
+}
+
+/* The three rows of equilibrium with the largest |phi|, of different vertices; -1 where there are fewer. */
+GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3], double *largest) {
+    const gproji_group *g = &form->system->group[form->statics->group];
+    double phi[3] = {0, 0, 0};
+    int32_t r, k;
+    for (k = 0; k < 3; ++k) vertex[k] = -1;
+    for (r = 0; r < g->row_count; ++r) {
+        double size = fabs(g->row[r].phi);
+        int32_t v = g->row[r].element;
+        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
+        if (k == 3) k = 2;
+        if (!(size > phi[k])) continue;
+        phi[k] = size;
+        vertex[k] = v;
+        for (; k > 0 && phi[k] > phi[k - 1]; --k) {
+            double other = phi[k - 1];
+            int32_t w = vertex[k - 1];
+            phi[k - 1] = phi[k], vertex[k - 1] = vertex[k];
+            phi[k] = other, vertex[k] = w;
+        }
+    }
+    *largest = phi[0];
+}
+
+GPROJI_INTERNAL bool gproji_has_group_on(const gproj_form *form, const char *name) {
+    int32_t g;
+    for (g = 0; g < form->system->group_count; ++g)
+        if (strcmp(form->system->group[g].name, name) == 0 && gproji_is_on(form, g)) return true;
+    return false;
+}
+
+/* Says that no equilibrium was found, which one, and where it is missing. */
+GPROJI_INTERNAL void gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
+    bool up = gproji_has_group_on(form, gproji_compression_name), down = gproji_has_group_on(form, gproji_tension_name);
+    const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
+    const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
+    gproj_forces forces = gproj_measure_forces(form);
+    size_t length = strlen(result->message);
+    char others[48];
+    int32_t vertex[3];
+    double largest;
+    gproji_worst_balanced(form, vertex, &largest);
+    gproji_format(others, sizeof others, "vertex ");
+    if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; no %sequilibrium%s was found near this shape: %s%d out of balance by up to %g of the largest load",
+                  kind, planar, others, vertex[0], forces.residual);
+}
+
 /* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
    them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
 GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
@@ -13167,13 +13251,14 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
         gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
-    form->system->default_last = gproji_half(iterations);
+    form->system->default_last = gproji_guided_iterations(form, iterations);
     result = gproj_system_solve(form->system, iterations, options);
     form->system->default_last = 0;
     if (result.outcome == GPROJ_FAILED) return result;
     gproji_store_positions(form);
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result.message, sizeof result.message, strlen(result.message), shrinks, sizeof shrinks - 1);
+    if (gproji_is_unbalanced(form, &result)) gproji_tell_unbalanced(form, &result);
     return result;
 }
 

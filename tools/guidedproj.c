@@ -564,7 +564,8 @@ static const tool_option options[] = {
      set_wish_or_one, PLACE(force_fairness)},
 
     {0, "reference", "FILE[=W]", false, "stay near the surface of this mesh (W: 0.1 if left out)",
-     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: half of all iterations if "
+     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: half of all iterations, "
+     "with --equilibrium at most 9, if "
      "left out)",
      set_reference, PLACE(reference)},
     {0, "closeness", "W", false,
@@ -1141,6 +1142,7 @@ static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
     schedule.weight = weight->weight;
     schedule.decay = weight->decay;
     schedule.last = weight->last > 0 ? weight->last : t->iterations > 1 ? t->iterations / 2 : 1;
+    if (weight->last == 0 && t->equilibrium.weight > 0 && schedule.last > 9) schedule.last = 9;
     if (t->nearest) schedule.decay = 0, schedule.last = 0;
     if (group >= 0) gproj_set_schedule(t->form, group, schedule);
 }
