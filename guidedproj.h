@@ -46,8 +46,8 @@
      gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
 
    WORDS   A wish is what guides: fairness, closeness. Wishes fade after half of the iterations, so that what must hold
-     can hold exactly. A group is a set of rows of one kind with a common weight. Residuals of a form are in mean edge
-     lengths.
+     can hold exactly: constraints, which are equations, and bounds, which are inequalities. A group is a set of rows of
+     one kind with a common weight. Residuals of a form are in mean edge lengths.
 
    CONTENTS (search for the tag)
      the interface
@@ -6104,12 +6104,17 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx) (with bounds, a
-   piecewise one with a continuous slope). A step that would
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
    in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
    goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
-   needed. */
+   needed.
+
+   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, where a bound's row counts
+   only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
+   with those that are violated by it (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
+   Newton method, 2003). The first guess is what is violated at x and what acted on the last step. The merit is then
+   piecewise of degree 4 with a continuous slope. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
