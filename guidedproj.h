@@ -6412,13 +6412,16 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     }
 }
 
-/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`; where it acts
-   already, as long as it does not hold the step back. The guard looks where the full step leads, and keeps its rows. */
+/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`, in itself and
+   linearised (of a convex row the tangent alone would say so too early); where it acts already, as long as it does not
+   hold the step back. The guard looks where the full step leads, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
     const gproji_row *row = &g->row[r];
+    double ahead;
     if (!(row->weight > 0)) return false;
     if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
-    return row->phi + gproji_row_times(g, row, s->step) < (row->active ? 0 : -slack);
+    ahead = row->phi + gproji_row_times(g, row, s->step);
+    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x, NULL) < -slack;
 }
 
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
