@@ -395,8 +395,8 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
 
    The row of a bound counts by its violation, min(phi, 0), in residual and merit. It has a part in the sums where it is
-   violated; and where a step would violate it, by phi + g'dx, the step is found again with it, and without rows that
-   would only hold the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
+   violated; and where a step would violate it, the step is found again with it, and without rows that would only hold
+   the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
    iterations, and nothing where they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
