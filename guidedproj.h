@@ -46,8 +46,8 @@
      gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
 
    WORDS   A wish is what guides: fairness, closeness. Wishes fade after half of the iterations, so that what must hold
-     can hold exactly. A group is a set of rows of one kind with a common weight. Residuals of a form are in mean edge
-     lengths.
+     can hold exactly: constraints, which are equations, and bounds, which are inequalities. A group is a set of rows of
+     one kind with a common weight. Residuals of a form are in mean edge lengths.
 
    CONTENTS (search for the tag)
      the interface
@@ -395,8 +395,8 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
 
    The row of a bound counts by its violation, min(phi, 0), in residual and merit. It has a part in the sums where it is
-   violated; and where a step would violate it, by phi + g'dx, the step is found again with it, and without rows that
-   would only hold the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
+   violated; and where a step would violate it, the step is found again with it, and without rows that would only hold
+   the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
    iterations, and nothing where they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
@@ -6104,12 +6104,17 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx) (with bounds, a
-   piecewise one with a continuous slope). A step that would
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
    in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
    goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
-   needed. */
+   needed.
+
+   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, where a bound's row counts
+   only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
+   with those that are violated by it (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
+   Newton method, 2003). The first guess is what is violated at x and what acted on the last step. The merit is then
+   piecewise of degree 4 with a continuous slope. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
@@ -6407,13 +6412,16 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     }
 }
 
-/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`; where it acts
-   already, as long as it does not hold the step back. The guard looks where the full step leads, and keeps its rows. */
+/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`, in itself and
+   linearised (of a convex row the tangent alone would say so too early); where it acts already, as long as it does not
+   hold the step back. The guard looks where the full step leads, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
     const gproji_row *row = &g->row[r];
+    double ahead;
     if (!(row->weight > 0)) return false;
     if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
-    return row->phi + gproji_row_times(g, row, s->step) < (row->active ? 0 : -slack);
+    ahead = row->phi + gproji_row_times(g, row, s->step);
+    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x, NULL) < -slack;
 }
 
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say

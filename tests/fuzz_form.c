@@ -27,6 +27,7 @@ typedef struct gprojt_ask {
     int32_t group, count;
     int32_t vertex[GPROJT_LIST];
     double position[3 * GPROJT_LIST];
+    double min, max; /* of lengths, areas, a cost; 0: none */
 } gprojt_ask;
 
 typedef struct gprojt_case {
@@ -119,6 +120,9 @@ enum {
     GPROJT_FAIR_BOUNDARY,
     GPROJT_FAIR_TANGENTIAL,
     GPROJT_FAIR_GAUSS,
+    GPROJT_LENGTHS,
+    GPROJT_AREAS,
+    GPROJT_COST,
     GPROJT_OWN,
     GPROJT_WHATS
 };
@@ -159,6 +163,9 @@ static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     case GPROJT_FAIR_BOUNDARY: return gproj_add_boundary_fairness(c->form, weight);
     case GPROJT_FAIR_TANGENTIAL: return gproj_add_tangential_fairness(c->form, weight);
     case GPROJT_FAIR_GAUSS: return gproj_add_gauss_fairness(c->form, weight);
+    case GPROJT_LENGTHS: return gproj_add_length_bounds(c->form, c->mesh->edge_count, NULL, a->min, a->max, weight);
+    case GPROJT_AREAS: return gproj_add_area_bounds(c->form, c->mesh->face_count, NULL, a->min, a->max, weight);
+    case GPROJT_COST: return gproj_add_cost_bounds(c->form, 1, 0.5, a->min, a->max, weight);
     default: return gprojt_own_rows(c->form, c->mesh->vertex_count, weight);
     }
 }
@@ -173,6 +180,14 @@ static void gprojt_schedule_of_bytes(gprojt_case *c, int32_t group) {
     gproj_set_schedule(c->form, group, schedule);
 }
 
+static void gprojt_bounds_of_bytes(gprojt_case *c, gprojt_ask *a) {
+    static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {0, 1, 1.3, 4};
+    double edge = gproj_mesh_mean_edge_length(c->mesh), unit = edge;
+    if (a->what == GPROJT_AREAS) unit = edge * edge;
+    if (a->what == GPROJT_COST) unit = c->mesh->edge_count * edge + 0.5 * c->mesh->face_count * edge * edge;
+    a->min = mins[gprojt_choose(c, 4)] * unit, a->max = maxs[gprojt_choose(c, 4)] * unit;
+}
+
 static void gprojt_add_ask(gprojt_case *c) {
     gprojt_ask *a = &c->ask[c->asks];
     double weight;
@@ -185,6 +200,7 @@ static void gprojt_add_ask(gprojt_case *c) {
         a->vertex[i] = gprojt_choose(c, c->mesh->vertex_count);
         if (a->what == GPROJT_TARGET) gprojt_point_of_bytes(c, a->position + 3 * i);
     }
+    if (a->what == GPROJT_LENGTHS || a->what == GPROJT_AREAS || a->what == GPROJT_COST) gprojt_bounds_of_bytes(c, a);
     if ((a->what == GPROJT_GLIDE && !c->curve) || (a->what == GPROJT_REFER && !c->surface)) return;
     a->group = gprojt_ask_for(c, a, weight);
     if (a->group >= 0 && gprojt_choose(c, 4) == 0) gprojt_schedule_of_bytes(c, a->group);
@@ -254,6 +270,19 @@ static double gprojt_off(const gprojt_case *c, const gprojt_ask *a) {
     return off;
 }
 
+/* How far edges are from their bounds, as the rows of gproj_add_length_bounds say it, in the mesh's units. */
+static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
+    double off = 0;
+    int32_t e;
+    for (e = 0; a->what == GPROJT_LENGTHS && e < mesh->edge_count; ++e) {
+        double length =
+            gprojt_far(mesh->position + 3 * mesh->origin[2 * e], mesh->position + 3 * mesh->origin[2 * e + 1]);
+        if (a->min > 0) off = fmax(off, (a->min - length) * (a->min + length) / (2 * a->min));
+        if (a->max > 0) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
+    }
+    return off;
+}
+
 /* "All constraints hold", in the form's units, to the tolerance and the rounding of the coordinates. */
 static void gprojt_check_converged(const gprojt_case *c, const gproj_result *result) {
     double centre[3], scale, size = 1, slack, *planarity, edge = gproj_mesh_mean_edge_length(c->mesh);
@@ -266,6 +295,7 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
     for (i = 0; i < c->asks; ++i) { /* a group that has no weight at the end is not asked for */
         if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
+        GPROJT_MUST(scale * gprojt_off_bounds(c->mesh, &c->ask[i]) <= slack * (1 + size));
         if (c->ask[i].what != GPROJT_PLANAR) continue;
         planarity = (double *)malloc(((size_t)c->mesh->face_count + 1) * sizeof *planarity);
         gproj_measure(c->mesh, NULL, planarity);

@@ -276,6 +276,24 @@ GPROJT_TEST(distant_bounds_do_nothing) {
     gproj_system_destroy(without);
 }
 
+/* The tangent of a convex row says "violated" long before the row does: |x| >= 0.01 on the way from 1 to 0.1. */
+GPROJT_TEST(tangents_of_convex_rows) {
+    static const double x[2] = {1, 0};
+    gproj_system *s = gprojt_system(NULL, 2, x);
+    gproj_term square[2];
+    gproj_result result;
+    int32_t k;
+    for (k = 0; k < 2; ++k) square[k] = gprojt_term(k, k, 50);
+    gprojt_add_group(s, "away", GPROJ_BOUND, 1);
+    gproj_system_add_row(s, 0, 2, square, -0.005, 0);
+    gprojt_add_group(s, "place", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 1, 0, 1, -0.1, 0);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped == 0);
+    GPROJT_NEAR(gproj_system_values(s)[0], 0.1, 1e-13);
+    gproj_system_destroy(s);
+}
+
 /* A bound lets go of what it has held: first the wish draws against it, then away. */
 static bool gprojt_turn_round(void *user, gproj_system *s, const gproj_iteration *iteration) {
     (void)user;
@@ -534,6 +552,7 @@ int main(void) {
     GPROJT_RUN(least_squares_of_positive_numbers);
     GPROJT_RUN(bounds_meet_constraints);
     GPROJT_RUN(distant_bounds_do_nothing);
+    GPROJT_RUN(tangents_of_convex_rows);
     GPROJT_RUN(bounds_let_go);
     GPROJT_RUN(wide_bounds);
     GPROJT_RUN(violations_are_what_counts);

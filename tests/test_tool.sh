@@ -127,6 +127,16 @@ expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move 3,1,2
 expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move 3,1,2,3,4
 expect 2 "expected I,X,Y,Z" grid.obj -o new.obj --move -3,1,2,3
 expect 2 "moved twice" grid.obj -o new.obj --move 3,1,2,3 --move 3,1,2,4
+for range in 1 2,1 , =2 a,2 1,b -1,2 0.9,1.1=x 1,2,3 0.5,1.5=1*0.9; do
+    expect 2 "expected MIN,MAX" grid.obj -o new.obj --planar --edge-length "$range"
+    expect 2 "expected MIN,MAX" grid.obj -o new.obj --face-area="$range"
+done
+for cost in 1 1,2 1,2, 0,0,5 -1,2,5 1,2,x0 1,2,3,4 1,2,x; do
+    expect 2 "expected LENGTHPRICE,AREAPRICE,MAX" grid.obj -o new.obj --planar --cost "$cost"
+done
+expect 2 "expected an area" grid.obj -o new.obj --planar --total-area 0
+expect 2 "expected an area" grid.obj -o new.obj --planar --total-area xx
+expect 2 "the weight must be a number" grid.obj -o new.obj --planar --equal-lengths=-1
 expect 2 "--move: there is no vertex 81" grid.obj -o new.obj --planar --move 81,1,2,3
 expect 2 "--fix: there is no vertex 99" grid.obj -o new.obj --planar --fix 0,99
 expect 2 "runs backwards" grid.obj -o new.obj --planar --fix 9-7
@@ -336,6 +346,54 @@ run grid.obj -o curve-out.obj --planar --glide curve.obj=1 --fairness '0.1*0.9'
 measure grid.obj curve-out.obj
 want "--glide CURVE" boundary 1e-9
 want "--glide CURVE" corners 1e-9
+# sizes FILE: shortest and longest edge, smallest and largest face, length of all edges, area of all faces
+sizes() {
+    awk 'function far(a, b) { return sqrt((x[a]-x[b])^2 + (y[a]-y[b])^2 + (z[a]-z[b])^2) }
+        $1 == "v" { n++; x[n] = $2; y[n] = $3; z[n] = $4 }
+        $1 == "f" {
+            u = v = w = 0
+            for (i = 2; i <= NF; i++) {
+                a = $i; b = i < NF ? $(i+1) : $2; key = a < b ? a " " b : b " " a
+                u += (y[a]*z[b] - z[a]*y[b]) / 2; v += (z[a]*x[b] - x[a]*z[b]) / 2; w += (x[a]*y[b] - y[a]*x[b]) / 2
+                if (key in seen) continue
+                seen[key] = 1; e = far(a, b); sum += e
+                if (emin == "" || e < emin) emin = e
+                if (e > emax) emax = e
+            }
+            f = sqrt(u*u + v*v + w*w); area += f
+            if (fmin == "" || f < fmin) fmin = f
+            if (f > fmax) fmax = f
+        }
+        END { printf "%.12g %.12g %.12g %.12g %.12g %.12g\n", emin, emax, fmin, fmax, sum, area }' "$1"
+}
+holds() { # holds WHAT CONDITION FILE: the condition on e0 e1 (edges), f0 f1 (faces), l, a (totals), t = 1e-9
+    sizes "$3" | awk '{ e0 = $1; e1 = $2; f0 = $3; f1 = $4; l = $5; a = $6; t = 1e-9; exit !('"$2"') }' && pass ||
+        fail "$1: $(sizes "$3")"
+}
+run grid.obj -o sized.obj --planar --edge-length 0.98,1.12
+[ $status -eq 0 ] && pass || fail "--edge-length exits with $status: $(tail -n 1 err.txt)"
+holds "--edge-length 0.98,1.12" 'e0 > 0.98 - t && e1 < 1.12 + t' sized.obj
+run grid.obj -o sized.obj --planar --edge-length ,1.05=2 --face-area 0.9, --iterations 30
+[ $status -eq 0 ] && pass || fail "--edge-length and --face-area exit with $status: $(tail -n 1 err.txt)"
+holds "--edge-length and --face-area" 'e1 < 1.05 + t && f0 > 0.9 - t' sized.obj
+run grid.obj -o sized.obj --planar --equal-lengths --iterations 30
+[ $status -eq 0 ] && pass || fail "--equal-lengths exits with $status: $(tail -n 1 err.txt)"
+holds "--equal-lengths" 'e1 - e0 < t && e0 > 0.5' sized.obj
+run grid.obj -o sized.obj --planar --total-area 70
+[ $status -eq 0 ] && pass || fail "--total-area exits with $status: $(tail -n 1 err.txt)"
+holds "--total-area" 'a > 70 - t && a < 70 + t' sized.obj
+before=$(sizes grid.obj)
+run grid.obj -o sized.obj --planar --total-area x1.1
+holds "--total-area x1.1" 'a > 1.1 * '"${before##* }"' - 1e-8 && a < 1.1 * '"${before##* }"' + 1e-8' sized.obj
+run grid.obj -o sized.obj --planar --cost 2,3,450 --report cost.json
+[ $status -eq 0 ] && pass || fail "--cost exits with $status: $(tail -n 1 err.txt)"
+holds "--cost" '2 * l + 3 * a < 450 + 1e-8 && 2 * l + 3 * a > 440' sized.obj
+grep -q '"cost": 4[45]' cost.json && pass || fail "the report does not tell the cost"
+run grid.obj -o sized.obj --planar --cost 2,3,x0.95
+[ $status -eq 0 ] && pass || fail "--cost x0.95 exits with $status: $(tail -n 1 err.txt)"
+run grid.obj -o sized.obj --fix boundary --edge-length 3,
+[ $status -eq 1 ] && grep -q 'length bounds\|fixed' err.txt out.txt && pass || fail "bounds that cannot hold: $status"
+
 run grid.obj -o all.obj --planar --glide boundary --fairness 0.1 --tangential '0.01*0.9:5' --gauss 0.01 \
     --boundary-fairness=0.01 --closeness 0.01 --epsilon 1e-3 --iterations 40 --tolerance 1e-9
 [ $status -eq 0 ] && pass || fail "all wishes together exit with $status: $(tail -n 1 err.txt)"
