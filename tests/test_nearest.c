@@ -485,8 +485,8 @@ GPROJT_TEST(real_meshes) {
     static const struct {
         const char *name;
         double rms;
-    } known[] = {{"Intersection", 7.6e-4}, {"botanic-garden", 1.25e-3}, {"M2_eq_quad2", 4.3e-3}, {"heart", 7.6e-3},
-                 {"eyeye_circular", 3.6e-3}, {"tubemesh", 5.2e-3}, {"YasIsland", 7.4e-6}, {"hypar", 7.8e-2}};
+    } known[] = {{"Intersection", 7.6e-4},   {"botanic-garden", 1.25e-3}, {"M2_eq_quad2", 4.3e-3}, {"heart", 7.6e-3},
+                 {"eyeye_circular", 3.6e-3}, {"tubemesh", 5.2e-3},        {"YasIsland", 7.4e-6},   {"hypar", 7.8e-2}};
     int i;
     for (i = 0; i < 8; ++i) {
         char path[512];
