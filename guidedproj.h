@@ -6975,8 +6975,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* How far (1) is from holding at x, for y as it is: the norm of the left side over that of its wishes' part, row by row. The smallest
-   over all y would be the norm of the gradient projected to the tangent space of the constraints. */
+/* How far (1) is from holding at x, for y as it is: the norm of the left side over that of its wishes' part, row by
+   row. The smallest over all y would be the norm of the gradient projected to the tangent space of what must hold. */
 GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     double wishes = 0, left = 0;
     int64_t l;
