@@ -11,7 +11,8 @@
 
    WHAT IT DOES NOT DO
      - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
-     - minimise: wishes guide the way to a mesh that satisfies the constraints, they do not find the one that is best;
+     - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
+       one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
      - treat meshes that are no orientable manifolds: they are refused with a sentence that names the place.
 
@@ -918,7 +919,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
    face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
    the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
-   gproj_measure. */
+   gproj_measure.
+
+   For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
+   gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
+   face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -6653,23 +6658,25 @@ GPROJI_INTERNAL bool gproji_options_are_valid(const gproj_system *s, int32_t ite
 
 /* -- the nearest point -- */
 
-/* With options.nearest the loop minimises the wishes on the set where the constraints hold. It looks for x and
-   multipliers y of the constraint rows with
-       s^2 sum_wishes w^2 phi g + sum_constraints w^2 y g = 0,    phi = 0 for constraints             (1)
+/* With options.nearest the loop minimises the wishes on the set where everything holds that must. It looks for x and
+   multipliers y of the rows that must hold with
+       s^2 sum_wishes w^2 phi g + sum_others w^2 y g = 0,    phi = 0    (bounds: phi >= 0, y <= 0, y phi = 0)        (1)
    by the method of multipliers (Hestenes 1969; Powell 1969; Bertsekas: Constrained Optimization and Lagrange Multiplier
-   Methods, 1982). A slide from x along the constraint set:
+   Methods, 1982). A slide from x along that set:
    - the step minimises the model s^2 |wishes|^2 + |phi + G dx + y|^2 of the augmented Lagrangian; y += phi + G dx, and
      again with the same factor until G dx = -phi;
-   - near a solution the matrix also has the curvature sum y (Hessian of phi), as in Newton's method for (1), and a shift
-     of the diagonal where it is not positive definite. Farther away Gauss and Newton's matrix is calmer;
-   - x + t dx is led back to phi = 0 by steps orthogonal to it, with the same factor;
+   - near a solution (small optimality) the matrix also has the curvature sum w^2 y (Hessian of phi), as in Newton's
+     method for (1), and a shift of the diagonal where it is not positive definite. Farther away Gauss and Newton's
+     matrix is calmer. Rows that a refresh linearises have no curvature that is known here;
+   - bounds act by the signs of their multipliers, and are switched by the step that was found;
+   - x + t dx is led back to phi = 0 by steps orthogonal to that set, with the same factor;
    - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian and turns no face over.
-   The first iterations are guided projections and the last ones plain projections, so that the constraints hold however
-   far the slides came. A small s keeps x close to the constraints, a large one lets it go farther in a step. */
+   The first iteration is a guided projection and the last ones are plain projections, so that everything holds however
+   far the slides came. A small s keeps x close to the set, a large one lets a step go farther. */
 
-static const double gproji_nearest_scale = 0.03;   /* s, for the wish with the largest weight */
-static const double gproji_nearest_epsilon = 3e-5; /* the smallest eps: as in other steps it follows the residual */
-static const double gproji_nearest_optimal = 1e-6;
+static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
+static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
+static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
@@ -6930,13 +6937,15 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
    does, x is as before. */
 GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     gproj_system *s = loop->system;
-    double slope, before = gproji_lagrangian(s, s->saved, &slope), t = 1;
+    double slope, before = gproji_lagrangian(s, s->saved, &slope), after, t = 1;
     int32_t i, r;
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
         if (!(loop->iteration.step <= DBL_MAX)) break;
         gproji_retract(s);
-        if (loop->iteration.step > 1e-7 && !(gproji_lagrangian(s, s->x, NULL) <= before + 0.1 * t * slope)) continue;
+        after = gproji_lagrangian(s, s->x, NULL);
+        if (!(after <= DBL_MAX)) continue;
+        if (loop->iteration.step > 1e-7 && after > before + 0.1 * t * slope) continue; /* below, rounding decides */
         if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
@@ -6980,8 +6989,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* How far (1) is from holding at x: the norm of the left side over that of its wishes' part, row by row. The smallest
-   over all y would be the norm of the gradient projected to the tangent space of the constraints. */
+/* How far (1) is from holding at x, for y as it is: the norm of the left side over that of its wishes' part, row by
+   row. The smallest over all y would be the norm of the gradient projected to the tangent space of what must hold. */
 GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     double wishes = 0, left = 0;
     int64_t l;
@@ -7001,6 +7010,7 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     }
     for (i = 0; i < s->variable_count; ++i) left += s->gradient[i] * s->gradient[i];
     if (rows == 0) return 0;
+    if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX)) return HUGE_VAL;
     return sqrt(left / gproji_fmax(wishes, 1e-12 * gproji_nearest_scale * gproji_nearest_scale * gproji_nearest_scale *
                                                gproji_nearest_scale * (1 + (double)rows)));
 }

@@ -101,8 +101,7 @@ expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
 expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
-for later in --equilibrium --compressive --supports=boundary \
-    --subdivide=1 --nearest --forces=a.csv --density=1; do
+for later in --subdivide=1; do
     expect 2 "there is no option $(echo "$later" | sed 's/=.*//')" grid.obj -o new.obj --planar $later
 done
 expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
@@ -315,6 +314,19 @@ run grid.obj -o loose.obj --planar --tolerance 0.25e-3 --report loose.json
     fail "the report does not tell the tolerance that was asked for"
 run big.obj -o late.obj --planar --time-limit 1e-9 --report late.json
 [ $status -eq 1 ] && grep -q '"time out"' late.json && pass || fail "--time-limit: exits with $status"
+run grid.obj -o flat.obj --planar
+measure grid.obj flat.obj
+far=$(value deviation_rms)
+run grid.obj -o near.obj --planar --nearest --report near.json
+[ $status -eq 0 ] && pass || fail "--planar --nearest exits with $status: $(cat err.txt)"
+measure grid.obj near.obj
+want "--planar --nearest" planarity_after 1e-12
+want "--planar --nearest" turned 0
+want "--planar --nearest, less than by default" deviation_rms "$far"
+[ "$(grep -c '"optimality": ' near.json)" -gt 3 ] && pass || fail "the report does not tell how near the nearest is"
+expect 2 "nothing to be near to" grid.obj -o new.obj --planar --closeness 0 --nearest
+run grid.obj -o near.obj --planar --closeness 0 --fairness 0.2*0.5:3 --fix boundary --nearest
+[ $status -eq 0 ] && grep -q "projected gradient" out.txt && pass || fail "--fairness --nearest exits with $status"
 run grid.obj -o wish.obj --fairness 0.2
 { [ $status -eq 0 ] || [ $status -eq 1 ]; } && pass || fail "wishes alone exit with $status"
 

@@ -751,6 +751,12 @@ static bool anything_asked(const tool *t) {
            t->total_area.given || t->cost.given || t->equilibrium.given;
 }
 
+static bool anything_wished(const tool *t) {
+    return t->reference.text || t->closeness.weight > 0 || t->fairness.weight > 0 || t->boundary_fairness.weight > 0 ||
+           t->tangential.weight > 0 || t->gauss.weight > 0 || t->parallelograms.weight > 0 ||
+           t->equal_areas.weight > 0 || t->force_fairness.weight > 0;
+}
+
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
@@ -785,6 +791,8 @@ static bool check_options(tool *t) {
     }
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
+    if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
+        return fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
     if (t->gauss.given && !t->planar.given)
         return fail(t, EXIT_USAGE, "--gauss needs the normals of planar faces: add --planar");
     return true;
