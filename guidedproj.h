@@ -6544,9 +6544,9 @@ GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     return true;
 }
 
-/* Is this clearly better than that: by a tenth in the largest residual or in the sum of squares? */
+/* Is this clearly better than that: by a tenth in the largest residual, or by two fifths in the sum of squares? */
 GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_standing *b) {
-    return a->residual < 0.9 * b->residual || a->merit < 0.9 * b->merit;
+    return a->residual < 0.9 * b->residual || a->merit < 0.6 * b->merit;
 }
 
 /* The iterations; returns how they ended. */
