@@ -974,6 +974,9 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
 /* Sets them as the start of the next solve; NULL: the next solve finds its own start. */
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
+/* The variable of an edge's force in the form's system, for rows of your own: the density in the form's units, which are
+   chosen at the first solve so that the mean square is 1. -1: the edge has none. */
+GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
 /* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), zero along axes without support. */
@@ -12849,6 +12852,11 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
         if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / rms;
     form->statics->started = true;
     return GPROJ_OK;
+}
+
+GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
+    if (!form || !form->statics || edge < 0 || edge >= form->mesh->edge_count) return -1;
+    return form->statics->force[edge];
 }
 
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
