@@ -414,6 +414,84 @@ for view in iso top bottom front back left right side 30,20 -120.5,-10; do
     [ $status -eq 0 ] && [ "$(grep -c '<path' view.svg)" -ge 64 ] && pass || fail "--view $view"
 done
 
+# ---- statics ----
+
+vault() { # vault N H: a noisy vault of N x N quads over a square, its edges on the ground
+    awk -v n="$1" -v h="$2" 'BEGIN {
+        for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) { x = 2 * i / n - 1; y = 2 * j / n - 1
+            printf "v %.17g %.17g %.17g\n", i, j, h * (1 - x * x) * (1 - y * y) * (1 + 0.1 * sin(5 * i + 3 * j)) }
+        for (i = 0; i < n; i++) for (j = 0; j < n; j++)
+            print "f", i*(n+1)+j+1, (i+1)*(n+1)+j+1, (i+1)*(n+1)+j+2, i*(n+1)+j+2 }'
+}
+# From mesh and forces alone: the largest |sum w (v_i - v_j) + load| over the largest load, least and largest w, supports.
+statics() { # statics MESH.obj FORCES.csv
+    awk -F'[ ,]' 'FNR == NR { if ($1 == "v") { for (k = 0; k < 3; k++) p[n + 0, k] = $(k + 2); n++ } next }
+        $1 == "edge" { if (!edges++ || $4 < low) low = $4; if (edges == 1 || $4 > high) high = $4
+            for (k = 0; k < 3; k++) { d = $4 * (p[$2, k] - p[$3, k]); s[$2, k] += d; s[$3, k] -= d } }
+        $1 == "load" { for (k = 0; k < 3; k++) { s[$2, k] += $(k + 3); m += $(k + 3)^2 }
+            if (m > most) most = m; m = 0 }
+        $1 == "support" { held[$2] = 1; supports++ }
+        END { for (i = 0; i < n; i++) if (!(i in held)) { m = s[i, 0]^2 + s[i, 1]^2 + s[i, 2]^2; if (m > worst) worst = m }
+            printf "%.3g %.17g %.17g %d %d\n", sqrt(worst / most), low, high, supports, edges }' "$1" "$2"
+}
+balanced() { # balanced NAME CONDITION: of r (residual), low, high, supports, edges
+    statics new.obj forces.csv >statics.txt
+    [ $status -eq 0 ] && awk '{ r = $1; low = $2; high = $3; supports = $4; edges = $5; exit !(r <= 1e-9 && ('"$2"')) }' \
+        statics.txt && pass || fail "$1: status $status, $(cat statics.txt), $(tail -n 1 err.txt)"
+}
+vault 8 3 >vault.obj
+run vault.obj -o new.obj --planar --equilibrium --compressive --forces forces.csv --report new.json --picture new.svg
+balanced "own weight" 'low >= -1e-9 * high && high > 0 && supports == 32 && edges == 144'
+measure vault.obj new.obj
+want "own weight" planarity_after 1e-9
+head -n 1 forces.csv | grep -q '^kind,' && pass || fail "the forces have no heading"
+grep -q '"equilibrium_residual"' new.json && grep -q '"load_path"' new.json && pass || fail "the report has no forces"
+grep -q 'stroke-width' new.svg && grep -q '^equilibrium' out.txt && pass || fail "picture and summary of forces"
+run vault.obj -o new.obj --equilibrium --compressive --area-load 2 --fix boundary --forces forces.csv --picture new.svg
+balanced "area load" 'low >= -1e-9 * high'
+grep -q 'best forces' new.svg && pass || fail "the picture does not tell how self-supporting the mesh is"
+run vault.obj -o new.obj --equilibrium --compressive --snow 1 --density 0.2 --glide boundary --forces forces.csv
+balanced "snow" 'low >= -1e-9 * high'
+run vault.obj -o new.obj --equilibrium --forces forces.csv --supports corners --fix corners
+balanced "four supports" 'supports == 4'
+awk '/^v / { $4 = -$4 } { print }' vault.obj >net.obj
+run net.obj -o new.obj --equilibrium --tensile --fix boundary --forces forces.csv
+balanced "hanging net" 'high <= -1e-9 * low'
+printf 'vertex,fx,fy,fz\n40,0,0,-5 # the middle\n\n20,1,0,-1\n' >loads.csv
+run vault.obj -o new.obj --equilibrium --density 1 --loads loads.csv --fix boundary --forces forces.csv
+balanced "point loads" 'edges == 144'
+grep -q '^load,20,1,0,' forces.csv && pass || fail "the load on vertex 20: $(grep '^load,20,' forces.csv)"
+run vault.obj -o new.obj --equilibrium --stress 0.4,6 --fix boundary --forces forces.csv --force-fairness=0.1
+balanced "bounds on forces" '1'
+awk -F'[ ,]' 'FNR == NR { if ($1 == "v") { for (k = 0; k < 3; k++) p[n + 0, k] = $(k + 2); n++ } next }
+    $1 == "support" { held[$2] = 1 } $1 == "edge" { a[++c] = $2; b[c] = $3; w[c] = $4 }
+    END { for (i = 1; i <= c; i++) { if (a[i] in held && b[i] in held) continue; l = 0
+        for (k = 0; k < 3; k++) l += (p[a[i], k] - p[b[i], k])^2
+        f = w[i] * sqrt(l); if (f < 0.4 - 1e-8 || f > 6 + 1e-8) bad++ } exit bad > 0 }' new.obj forces.csv && pass ||
+    fail "--stress 0.4,6 is not kept"
+awk '/^v / { printf "v %.17g %.17g %.17g\n", 1000 * $2, 1000 * $3, 1000 * $4; next } { print }' vault.obj >mm.obj
+run vault.obj -o m.obj --planar --equilibrium --compressive --density 1
+run mm.obj -o mm_new.obj --planar --equilibrium --compressive --density 7.5
+awk 'FNR == NR { if ($1 == "v") { for (k = 2; k < 5; k++) p[n + 0, k] = $k; n++ } next }
+    $1 == "v" { for (k = 2; k < 5; k++) { d = $k / 1000 - p[m + 0, k]; if (d < 0) d = -d; if (d > worst) worst = d }; m++ }
+    END { exit !(worst < 1e-8) }' m.obj mm_new.obj && pass || fail "mm and other weights give another shape"
+awk '/^v / { $4 = 0 } { print }' vault.obj >flat.obj
+run flat.obj -o new.obj --equilibrium --fix 0-80
+[ $status -eq 1 ] && grep -q 'no equilibrium was found near this shape: vert' out.txt && pass ||
+    fail "a fixed plate: status $status, $(cat out.txt)"
+rm -f new.obj new.json new.svg
+expect 2 "add --equilibrium" vault.obj -o new.obj --planar --compressive
+expect 2 "add --equilibrium" vault.obj -o new.obj --planar --forces new.json
+expect 2 "expected MIN,MAX" vault.obj -o new.obj --equilibrium --stress 3,1
+expect 2 "expected a number" vault.obj -o new.obj --equilibrium --density heavy
+expect 2 "there is no vertex 81" vault.obj -o new.obj --equilibrium --supports 81
+expect 2 "there is no support" torus.obj -o new.obj --equilibrium
+printf '3,0,0,-1\n99,0,0,-1\n' >bad.csv
+expect 3 "bad.csv, line 2: there is no vertex 99" vault.obj -o new.obj --equilibrium --loads bad.csv
+printf '3,0,0\n' >bad.csv
+expect 3 "bad.csv, line 1: expected VERTEX,FX,FY,FZ" vault.obj -o new.obj --equilibrium --loads bad.csv
+expect 2 "would overwrite the input" vault.obj -o new.obj --equilibrium --loads loads.csv --forces loads.csv
+
 # ---- offsets ----
 
 moulding() { # moulding N M: an arch of M quads along a bent road of N, with ripples
