@@ -13264,6 +13264,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_begin_forces(form);
+    if (form->statics && options && options->nearest) gproji_set_force_guidance(form, false); /* forces are free */
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
     guided =
         gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
