@@ -12964,9 +12964,11 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
    >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
-   a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it shall keep 0.4 of what it was,
-   s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s = sqrt(a0), and a step that would
-   leave less than 0.2 is found again. These bounds act on the steps only: they are no part of residual and verdict. */
+   a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it
+   shall keep 0.4 of what it was, s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration,
+   s = sqrt(a0), and a step that would leave less than 0.2 is found again. These bounds act on the steps only: they are
+   no part of residual and verdict. Where the mesh slides to the nearest one they ask for 0.1, and a step is refused that
+   takes 3/4 of a face's area. */
 
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_slack = 0.2,
                     gproji_guard_small = 0.1, gproji_guard_kept = 0.25, gproji_guard_area = 1e-4;
@@ -13272,6 +13274,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_begin_forces(form);
+    if (form->statics && options && options->nearest) gproji_set_force_guidance(form, false); /* forces are free */
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
     guided =
         gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
