@@ -11996,7 +11996,7 @@ enum {
 
 /* Initial forces are drawn a little to this one, so that among equally good ones those of a dome of half its radius are
    found; a shape that leaves more than `lost` of its load unbalanced starts from uniform forces. */
-static const double gproji_force_damping = 0.03, gproji_force_lost = 0.95;
+static const double gproji_force_damping = 0.03, gproji_force_lost = 0.75;
 
 /* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
 static const double gproji_least_force = 1e-4;
