@@ -12349,6 +12349,8 @@ GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     return form->statics != NULL;
 }
 
+static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
+
 /* sign w >= 0. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
@@ -12365,11 +12367,11 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, doub
 }
 
 GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    return gproji_add_sign(form, "compression", 1, count, edges, weight);
+    return gproji_add_sign(form, gproji_compression_name, 1, count, edges, weight);
 }
 
 GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    return gproji_add_sign(form, "tension", -1, count, edges, weight);
+    return gproji_add_sign(form, gproji_tension_name, -1, count, edges, weight);
 }
 
 /* The terms s y l of the force in an edge: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
