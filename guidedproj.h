@@ -11999,7 +11999,10 @@ enum {
 
 /* Initial forces are drawn a little to this one, so that among equally good ones those of a dome of half its radius are
    found; a shape that leaves more than `lost` of its load unbalanced starts from uniform forces. */
-static const double gproji_force_damping = 0.03, gproji_force_lost = 0.95;
+static const double gproji_force_damping = 0.03, gproji_force_lost = 0.75;
+
+/* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
+static const double gproji_least_force = 1e-4;
 
 /* The factors from the caller's loads to other units. */
 typedef struct gproji_load_units {
@@ -12416,7 +12419,7 @@ GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, con
                                             const double *sections, double min, double max) {
     int32_t k;
     if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
-    if (!(min <= max)) {
+    if (!(min <= max) || min == HUGE_VAL || max == -HUGE_VAL) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "stress bounds: the least, %g, is not below the greatest, %g", min, max);
         return false;
@@ -12503,21 +12506,34 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* -- the forces that balance a given shape best -- */
 
+/* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
+GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
+    int32_t count, edge = form->system->group[group].row[row].element;
+    const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
+    if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
+    if (count != 1 || term->j >= 0 || term->i != form->statics->force[edge]) return -1;
+    if (form->system->group[group].row[row].constant != 0) return -1;
+    *sign = term->a;
+    return edge;
+}
+
 /* May the force of an edge be negative or positive? Bounds with weight 0 do not count. */
 GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
+    double sign;
     for (e = 0; e < form->mesh->edge_count; ++e) {
         lower[e] = -HUGE_VAL;
         upper[e] = HUGE_VAL;
     }
     for (g = 0; g < form->system->group_count; ++g) {
         const gproji_group *group = &form->system->group[g];
-        double *limit = strcmp(group->name, gproji_compression_name) == 0 ? lower
-                        : strcmp(group->name, gproji_tension_name) == 0   ? upper
-                                                                          : NULL;
-        if (!limit || group->kind != GPROJ_BOUND || !(group->schedule.weight > 0)) continue;
-        for (r = 0; r < group->row_count; ++r)
-            if (group->row[r].weight > 0) limit[group->row[r].element] = 0;
+        if (group->kind != GPROJ_BOUND || group->place != GPROJ_PLACE_EDGE || !(group->schedule.weight > 0)) continue;
+        for (r = 0; r < group->row_count; ++r) {
+            if (!(group->row[r].weight > 0)) continue;
+            e = gproji_bounded_force(form, g, r, &sign);
+            if (e >= 0 && sign > 0) lower[e] = 0;
+            if (e >= 0 && sign < 0) upper[e] = 0;
+        }
     }
 }
 
@@ -12830,30 +12846,6 @@ GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities)
     return GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
-    double *x, rms = 0;
-    int32_t e, carrying = 0;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
-    form->statics->started = false;
-    if (!densities) return GPROJ_OK;
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        if (form->statics->force[e] < 0) continue;
-        rms += densities[e] * densities[e];
-        ++carrying;
-        if (gproji_is_finite(densities[e])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                           "set forces: the density of edge %d is not a finite number", e);
-    }
-    rms = rms > 0 ? sqrt(rms / carrying) : 1;
-    x = gproj_system_values(form->system);
-    form->statics->load_scale = form->scale / rms;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / rms;
-    form->statics->started = true;
-    return GPROJ_OK;
-}
-
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
     if (!form || !form->statics || edge < 0 || edge >= form->mesh->edge_count) return -1;
     return form->statics->force[edge];
@@ -12861,8 +12853,65 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
 
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
     static const gproji_load_units units = {1, 1, 1};
-    if (!form || !form->statics || !loads) return GPROJ_ERROR_ARGUMENT;
+    if (!form || !loads) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    if (!form->statics) return GPROJ_ERROR_STATE;
     gproji_loads_at(form->mesh, &form->statics->loads, units, form->mesh->position, loads);
+    return GPROJ_OK;
+}
+
+/* Root of the mean square of the densities of edges with a force; without overflow. */
+GPROJI_INTERNAL double gproji_mean_density(const gproj_form *form, const double *densities) {
+    double largest = 0, sum = 0;
+    int32_t e, carrying = 0;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (form->statics->force[e] >= 0) largest = gproji_fmax(largest, fabs(densities[e]));
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        double part = largest > 0 ? densities[e] / largest : 0;
+        if (form->statics->force[e] < 0) continue;
+        sum += part * part;
+        ++carrying;
+    }
+    return carrying ? largest * sqrt(sum / carrying) : 0;
+}
+
+/* The density that balances the mean load at an angle of 45 degrees in a mean edge. -1 after an error. */
+GPROJI_INTERNAL double gproji_density_of_loads(gproj_form *form) {
+    size_t count = 3 * (size_t)form->mesh->vertex_count;
+    double density, *load = (double *)gproji_take(&form->own, count, sizeof *load);
+    if (!load) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    gproj_get_loads(form, load);
+    density = gproji_mean_load(form, load) * form->scale;
+    gproji_give(&form->own, load, count, sizeof *load);
+    return gproji_is_finite(density) ? density : 0;
+}
+
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
+    double *x, mean, of_loads;
+    int32_t e;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
+    form->statics->started = false;
+    if (!densities) return GPROJ_OK;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        if (form->statics->force[e] < 0 || gproji_is_finite(densities[e])) continue;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                           "set forces: the density of edge %d is not a finite number", e);
+    }
+    of_loads = gproji_density_of_loads(form);
+    if (of_loads < 0) return gproj_form_error(form)->code;
+    mean = gproji_mean_density(form, densities);
+    /* forces that are next to nothing must not make the loads huge */
+    if (mean < gproji_least_force * of_loads) mean = of_loads;
+    if (!(mean > DBL_MIN)) mean = 1;
+    x = gproj_system_values(form->system);
+    form->statics->load_scale = form->scale / mean;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / mean;
+    form->statics->started = true;
     return GPROJ_OK;
 }
 
@@ -12935,6 +12984,7 @@ GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, g
             given[c] = balanced ? 0 : sum[3 * (size_t)v + (size_t)c];
         }
         m->max_reaction = gproji_fmax(m->max_reaction, gproji_length3(given));
+        if (!form->statics->axes[v]) continue;
         if (!(gproji_length3(left) > m->residual) && m->residual_vertex >= 0) continue;
         m->residual = gproji_length3(left);
         m->residual_vertex = v;

@@ -28,6 +28,7 @@ typedef struct gprojt_ask {
     int32_t vertex[GPROJT_LIST];
     double position[3 * GPROJT_LIST];
     double min, max; /* of lengths, areas, a cost; 0: none */
+    bool partly;     /* some of its elements have other weights */
 } gprojt_ask;
 
 typedef struct gprojt_case {
@@ -42,6 +43,8 @@ typedef struct gprojt_case {
     gprojt_ask ask[GPROJT_ASKS];
     int asks;
     bool cancel;
+    gproj_loads loads;
+    double *density, *point_load, *forces; /* as many as edges, coordinates, edges */
 } gprojt_case;
 
 static int gprojt_byte(gprojt_case *c) { return c->at < c->size ? c->data[c->at++] : 0; }
@@ -123,6 +126,19 @@ enum {
     GPROJT_LENGTHS,
     GPROJT_AREAS,
     GPROJT_COST,
+    GPROJT_TOTAL_AREA,
+    GPROJT_TOTAL_COST,
+    GPROJT_TOTAL_AREA_BOUNDS,
+    GPROJT_VOLUME,
+    GPROJT_EQUAL_LENGTHS,
+    GPROJT_EQUAL_AREAS,
+    GPROJT_CIRCULAR,
+    GPROJT_CONICAL,
+    GPROJT_EQUILIBRIUM,
+    GPROJT_COMPRESSION,
+    GPROJT_TENSION,
+    GPROJT_STRESS,
+    GPROJT_FAIR_FORCES,
     GPROJT_OWN,
     GPROJT_WHATS
 };
@@ -148,7 +164,108 @@ static int32_t gprojt_own_rows(gproj_form *form, int32_t vertices, double weight
     return number;
 }
 
+/* -- forces -- */
+
+static double *gprojt_random_numbers(gprojt_case *c, int32_t count, double size) {
+    double *numbers = (double *)malloc(((size_t)count + 1) * sizeof *numbers);
+    uint64_t seed = (uint64_t)gprojt_byte(c);
+    int32_t i;
+    if (!numbers) abort();
+    for (i = 0; i < count; ++i) numbers[i] = size * (2 * gprojt_uniform(&seed) - 1);
+    return numbers;
+}
+
+/* Loads of up to about 1 a vertex, or of another size; some vertices are supports, some of these slide. */
+static int32_t gprojt_add_equilibrium(gprojt_case *c, gprojt_ask *a, double weight) {
+    static const double sizes[5] = {1, 1, 1e3, 1e-20, 1e20};
+    double edge = gproj_mesh_mean_edge_length(c->mesh), unit, size = sizes[gprojt_choose(c, 5)];
+    uint8_t slides[GPROJT_LIST];
+    gproj_supports supports;
+    int32_t i, kinds = gprojt_byte(c);
+    if (c->form && c->form->statics) return -1;
+    unit = edge > 0 ? edge : 1;
+    free(c->density), free(c->point_load);
+    memset(&c->loads, 0, sizeof c->loads);
+    c->density = gprojt_random_numbers(c, c->mesh->edge_count, size / unit);
+    c->point_load = gprojt_random_numbers(c, 3 * c->mesh->vertex_count, size);
+    if (kinds & 1) c->loads.density = size / unit;
+    if (kinds & 2) c->loads.area_load = size / (unit * unit);
+    if (kinds & 4) c->loads.snow = (kinds & 8 ? -1 : 1) * size / (unit * unit);
+    if (kinds & 16) c->loads.edge_density = c->density;
+    if (kinds & 32) c->loads.point_load = c->point_load;
+    for (i = 0; i < a->count; ++i) slides[i] = (uint8_t)gprojt_choose(c, 8);
+    supports.count = a->count, supports.vertex = a->vertex, supports.slides = kinds & 64 ? slides : NULL;
+    return gproj_add_equilibrium(c->form, &c->loads, &supports, weight);
+}
+
+static int32_t gprojt_add_stress(gprojt_case *c, double weight) {
+    static const double mins[4] = {-INFINITY, -1, 0, 0.1}, maxs[4] = {0.1, 1, 100, INFINITY};
+    double min = mins[gprojt_choose(c, 4)], max = maxs[gprojt_choose(c, 4)];
+    return gproj_add_stress_bounds(c->form, c->mesh->edge_count, NULL, NULL, min, max, weight);
+}
+
+/* What is asked of forces; nothing before there are any. */
+static int32_t gprojt_ask_of_forces(gprojt_case *c, const gprojt_ask *a, double weight) {
+    int32_t edges[GPROJT_LIST], i;
+    if (!c->form || !c->form->statics) return -1;
+    for (i = 0; i < a->count; ++i) edges[i] = c->mesh->edge_count ? gprojt_choose(c, c->mesh->edge_count) : 0;
+    if (a->what == GPROJT_STRESS) return gprojt_add_stress(c, weight);
+    if (a->what == GPROJT_FAIR_FORCES) return gproj_add_force_fairness(c->form, weight);
+    if (a->what == GPROJT_TENSION) return gproj_add_tension(c->form, c->mesh->edge_count ? a->count : 0, edges, weight);
+    return gproj_add_compression(c->form, c->mesh->edge_count, NULL, weight);
+}
+
+/* What may be asked and given before and after a solve. */
+static void gprojt_ask_forces(gprojt_case *c) {
+    int32_t n = c->mesh->vertex_count, e;
+    double *loads, *residuals;
+    gproj_forces m;
+    int way = gprojt_byte(c);
+    if (!c->form || !c->form->statics || gproj_form_error(c->form)->code != GPROJ_OK) return;
+    loads = gprojt_random_numbers(c, 3 * n, 1);
+    residuals = gprojt_random_numbers(c, n, 1);
+    free(c->forces);
+    c->forces = gprojt_random_numbers(c, c->mesh->edge_count, way & 4 ? 1e3 : 1);
+    if (way & 1 && gproj_find_forces(c->form, c->forces, residuals) == GPROJ_OK)
+        GPROJT_MUST(gprojt_all_finite(c->forces, c->mesh->edge_count) && gprojt_all_finite(residuals, n));
+    if (way & 2) gproj_set_forces(c->form, way & 8 ? NULL : c->forces);
+    if (gproj_get_reactions(c->form, loads) == GPROJ_OK) {
+        m = gproj_measure_forces(c->form);
+        GPROJT_MUST(gprojt_all_finite(loads, 3 * n) && m.residual >= 0 && m.residual < HUGE_VAL);
+        GPROJT_MUST(m.load_path >= 0 && m.max_reaction >= 0 && m.min_force <= m.max_force);
+        GPROJT_MUST(gproj_get_forces(c->form, c->forces) == GPROJ_OK);
+        for (e = 0; e < c->mesh->edge_count; ++e) GPROJT_MUST(fabs(c->forces[e]) < HUGE_VAL);
+    }
+    free(loads), free(residuals);
+}
+
+/* The largest component of an unbalanced force, computed from positions, forces and loads; beyond rounding. */
+static double gprojt_off_balance(const gprojt_case *c) {
+    int32_t n = 3 * c->mesh->vertex_count, e, k;
+    double *sum = (double *)malloc(((size_t)n + 1) * sizeof *sum),
+           *size = (double *)calloc((size_t)n + 1, sizeof *size);
+    double *w = (double *)malloc(((size_t)c->mesh->edge_count + 1) * sizeof *w), off = 0;
+    if (!sum || !size || !w) abort();
+    GPROJT_MUST(gproj_get_loads(c->form, sum) == GPROJ_OK && gproj_get_forces(c->form, w) == GPROJ_OK);
+    for (e = 0; e < n; ++e) size[e] = fabs(sum[e]);
+    for (e = 0; e < c->mesh->edge_count; ++e) {
+        for (k = 0; k < 3; ++k) {
+            int32_t i = 3 * c->mesh->origin[2 * e] + k, j = 3 * c->mesh->origin[2 * e + 1] + k;
+            double force = w[e] * (c->mesh->position[i] - c->mesh->position[j]);
+            double about = fabs(w[e]) * (fabs(c->mesh->position[i]) + fabs(c->mesh->position[j]));
+            sum[i] += force, sum[j] -= force;
+            size[i] += about, size[j] += about;
+        }
+    }
+    for (e = 0; e < n; ++e)
+        if (c->form->statics->axes[e / 3] >> (e % 3) & 1) off = fmax(off, fabs(sum[e]) - 256 * DBL_EPSILON * size[e]);
+    free(sum), free(size), free(w);
+    return off;
+}
+
 static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
+    static const double parts[4] = {0.7, 1, 1.2, 3};
+    double part = parts[a->count % 4];
     switch (a->what) {
     case GPROJT_PLANAR: return gproj_add_planarity(c->form, weight);
     case GPROJT_FIX: return gproj_add_fixed(c->form, a->count, a->vertex, weight);
@@ -166,6 +283,19 @@ static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     case GPROJT_LENGTHS: return gproj_add_length_bounds(c->form, c->mesh->edge_count, NULL, a->min, a->max, weight);
     case GPROJT_AREAS: return gproj_add_area_bounds(c->form, c->mesh->face_count, NULL, a->min, a->max, weight);
     case GPROJT_COST: return gproj_add_cost_bounds(c->form, 1, 0.5, a->min, a->max, weight);
+    case GPROJT_TOTAL_AREA: return gproj_add_total_area(c->form, part * a->max, weight);
+    case GPROJT_TOTAL_COST: return gproj_add_cost(c->form, 0.3, a->count % 2, part * a->max, weight);
+    case GPROJT_TOTAL_AREA_BOUNDS: return gproj_add_total_area_bounds(c->form, a->min, a->max, weight);
+    case GPROJT_VOLUME: return gproj_add_volume(c->form, part * gproj_volume(c->mesh), weight);
+    case GPROJT_EQUAL_LENGTHS: return gproj_add_equal_lengths(c->form, c->mesh->edge_count, NULL, weight);
+    case GPROJT_EQUAL_AREAS: return gproj_add_equal_areas(c->form, weight);
+    case GPROJT_CIRCULAR: return gproj_add_circularity(c->form, weight);
+    case GPROJT_CONICAL: return gproj_add_conicality(c->form, weight);
+    case GPROJT_EQUILIBRIUM: return gprojt_add_equilibrium(c, a, weight);
+    case GPROJT_COMPRESSION:
+    case GPROJT_TENSION:
+    case GPROJT_STRESS:
+    case GPROJT_FAIR_FORCES: return gprojt_ask_of_forces(c, a, weight);
     default: return gprojt_own_rows(c->form, c->mesh->vertex_count, weight);
     }
 }
@@ -184,26 +314,46 @@ static void gprojt_bounds_of_bytes(gprojt_case *c, gprojt_ask *a) {
     static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {0, 1, 1.3, 4};
     double edge = gproj_mesh_mean_edge_length(c->mesh), unit = edge;
     if (a->what == GPROJT_AREAS) unit = edge * edge;
-    if (a->what == GPROJT_COST) unit = c->mesh->edge_count * edge + 0.5 * c->mesh->face_count * edge * edge;
+    if (a->what == GPROJT_TOTAL_AREA || a->what == GPROJT_TOTAL_AREA_BOUNDS) unit = c->mesh->face_count * edge * edge;
+    if (a->what == GPROJT_COST || a->what == GPROJT_TOTAL_COST)
+        unit = c->mesh->edge_count * edge + 0.5 * c->mesh->face_count * edge * edge;
     a->min = mins[gprojt_choose(c, 4)] * unit, a->max = maxs[gprojt_choose(c, 4)] * unit;
+}
+
+/* Other weights for some elements of a group. */
+static void gprojt_weigh_elements(gprojt_case *c, gprojt_ask *a) {
+    static const double weights[5] = {0, 0, 1, 0.5, 1e3};
+    int32_t element[GPROJT_LIST], i, count = 1 + gprojt_choose(c, GPROJT_LIST), have;
+    gproj_group_info info = gproj_form_group_info(c->form, a->group);
+    double weight[GPROJT_LIST];
+    have = info.place == GPROJ_PLACE_EDGE ? c->mesh->edge_count : c->mesh->vertex_count;
+    if (info.place == GPROJ_PLACE_FACE) have = c->mesh->face_count;
+    if (info.place == GPROJ_PLACE_NONE || have == 0) return;
+    for (i = 0; i < count; ++i) element[i] = gprojt_choose(c, have), weight[i] = weights[gprojt_choose(c, 5)];
+    a->partly = true;
+    gproj_set_element_weights(c->form, a->group, count, element, weight);
 }
 
 static void gprojt_add_ask(gprojt_case *c) {
     gprojt_ask *a = &c->ask[c->asks];
     double weight;
+    bool listed;
     int32_t i;
     memset(a, 0, sizeof *a);
     a->what = gprojt_choose(c, GPROJT_WHATS);
     weight = gprojt_weight_of_bytes(c);
     a->count = gprojt_choose(c, GPROJT_LIST + 1);
-    for (i = 0; (a->what == GPROJT_FIX || a->what == GPROJT_TARGET || a->what == GPROJT_GLIDE) && i < a->count; ++i) {
+    listed =
+        a->what == GPROJT_FIX || a->what == GPROJT_TARGET || a->what == GPROJT_GLIDE || a->what == GPROJT_EQUILIBRIUM;
+    for (i = 0; listed && i < a->count; ++i) {
         a->vertex[i] = gprojt_choose(c, c->mesh->vertex_count);
         if (a->what == GPROJT_TARGET) gprojt_point_of_bytes(c, a->position + 3 * i);
     }
-    if (a->what == GPROJT_LENGTHS || a->what == GPROJT_AREAS || a->what == GPROJT_COST) gprojt_bounds_of_bytes(c, a);
+    if (a->what >= GPROJT_LENGTHS && a->what <= GPROJT_TOTAL_AREA_BOUNDS) gprojt_bounds_of_bytes(c, a);
     if ((a->what == GPROJT_GLIDE && !c->curve) || (a->what == GPROJT_REFER && !c->surface)) return;
     a->group = gprojt_ask_for(c, a, weight);
     if (a->group >= 0 && gprojt_choose(c, 4) == 0) gprojt_schedule_of_bytes(c, a->group);
+    if (a->group >= 0 && gprojt_choose(c, 8) == 1) gprojt_weigh_elements(c, a);
     c->asks++;
 }
 
@@ -294,7 +444,10 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
     slack = 2 * result->tolerance + 64 * DBL_EPSILON * size;
     for (i = 0; i < c->asks; ++i) { /* a group that has no weight at the end is not asked for */
         if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
+        if (c->ask[i].partly) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
+        if (c->ask[i].what == GPROJT_EQUILIBRIUM && c->form->statics->started)
+            GPROJT_MUST(c->form->statics->load_scale * gprojt_off_balance(c) <= slack * (1 + size));
         GPROJT_MUST(scale * gprojt_off_bounds(c->mesh, &c->ask[i]) <= slack * (1 + size));
         if (c->ask[i].what != GPROJT_PLANAR) continue;
         planarity = (double *)malloc(((size_t)c->mesh->face_count + 1) * sizeof *planarity);
@@ -313,6 +466,14 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     if (what < 16 && c->asks) gprojt_schedule_of_bytes(c, c->ask[what % c->asks].group);
     if (what == 16) return false;
     return gproj_system_error(s)->code == GPROJ_OK;
+}
+
+/* What may be refused: a state (the Gauss image before planarity), areas and costs that are not > 0 (a mesh without
+   extent), numbers beyond all (loads per length of a tiny or huge mesh). */
+static void gprojt_check_refusal(const gproj_error *error) {
+    bool known = error->code == GPROJ_ERROR_STATE;
+    if (!known) fprintf(stderr, "%s\n", error->message);
+    GPROJT_MUST(known);
 }
 
 static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
@@ -342,8 +503,7 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
         GPROJT_MUST(!wrong && gproj_form_error(c->form)->code == GPROJ_OK && !strstr(result.message, "nan"));
         GPROJT_MUST(result.residual >= 0 && result.step >= 0 && result.step < HUGE_VAL);
     }
-    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK)
-        GPROJT_MUST(gproj_form_error(c->form)->code == GPROJ_ERROR_STATE); /* the Gauss image before planarity */
+    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(gproj_form_error(c->form));
     GPROJT_MUST(result.outcome != GPROJ_CONVERGED || (result.residual <= result.tolerance));
     if (result.outcome == GPROJ_CONVERGED) gprojt_check_converged(c, &result);
     free(before);
@@ -386,7 +546,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     c.form = gproj_form_create(c.mesh, &host);
     for (asks = 1 + gprojt_choose(&c, GPROJT_ASKS - 1); asks > 0; --asks) gprojt_add_ask(&c);
     for (solves = 1 + gprojt_choose(&c, 3); c.form && solves > 0; --solves) {
+        gprojt_ask_forces(&c);
         gprojt_solve_once(&c, failing.fail_at > 0);
+        gprojt_ask_forces(&c);
         gprojt_move_on(&c);
     }
     gproj_form_destroy(c.form);
@@ -395,5 +557,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     gproj_surface_destroy(c.surface);
     gproj_mesh_destroy(c.first);
     gproj_mesh_destroy(c.mesh);
+    free(c.density), free(c.point_load), free(c.forces);
     return 0;
 }

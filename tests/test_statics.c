@@ -1,0 +1,1391 @@
+/* test_statics.c - >>statics: equilibrium, bounds on forces, loads, supports; all checked from outside. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_form.h"
+
+enum {
+    QUADS,
+    TRIANGLES,
+    HYBRID,
+    HEXAGONS
+};
+
+/* -- meshes -- */
+
+/* A patch of the shape over a square of side `size`, with the height `rise` at its middle and 0 along its boundary. */
+static gproj_mesh *gprojt_vault(int shape, int32_t n, double size, double rise) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, n));
+    int32_t v;
+    for (v = 0; mesh && v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v, x = 2 * p[0] - 1, y = 2 * p[1] - 1;
+        bool boundary = gproj_mesh_is_boundary_vertex(mesh, v);
+        p[0] = size / 2 * x;
+        p[1] = size / 2 * y;
+        p[2] = boundary ? 0 : rise * (1 - x * x) * (1 - y * y);
+    }
+    return mesh;
+}
+
+/* The same over a paraboloid, whose boundary is not plane: with flat faces and a flat fixed boundary all would be flat. */
+static gproj_mesh *gprojt_hill(int shape, int32_t n, double size, double rise) {
+    gproj_mesh *mesh = gprojt_vault(shape, n, size, rise);
+    int32_t v;
+    for (v = 0; mesh && v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v;
+        p[2] = rise * (1 - 2 * (p[0] * p[0] + p[1] * p[1]) / (size * size));
+    }
+    return mesh;
+}
+
+typedef struct gprojt_list {
+    int32_t count, *item;
+} gprojt_list;
+
+static gprojt_list gprojt_boundary(const gproj_mesh *mesh) {
+    gprojt_list list;
+    int32_t v;
+    list.count = 0;
+    list.item = (int32_t *)malloc(((size_t)mesh->vertex_count + 1) * sizeof(int32_t));
+    if (!list.item) abort();
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (mesh->vertex_halfedge[v] >= 0 && gproj_mesh_is_boundary_vertex(mesh, v)) list.item[list.count++] = v;
+    return list;
+}
+
+static double *gprojt_numbers(int32_t count) {
+    double *numbers = (double *)calloc((size_t)count + 1, sizeof *numbers);
+    if (!numbers) abort();
+    return numbers;
+}
+
+static gproj_loads gprojt_no_loads(void) {
+    gproj_loads loads;
+    memset(&loads, 0, sizeof loads);
+    return loads;
+}
+
+static gproj_supports gprojt_pins(gprojt_list list) {
+    gproj_supports supports;
+    supports.count = list.count, supports.vertex = list.item, supports.slides = NULL;
+    return supports;
+}
+
+/* A form in equilibrium with its boundary pinned and fixed. */
+static gproj_form *gprojt_pinned_form(gproj_mesh *mesh, const gproj_host *host, const gproj_loads *loads) {
+    gproj_form *form = gproj_form_create(mesh, host);
+    gprojt_list list = gprojt_boundary(mesh);
+    gproj_supports supports = gprojt_pins(list);
+    gproj_add_equilibrium(form, loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    free(list.item);
+    return form;
+}
+
+static double gprojt_edge_length(const gproj_mesh *mesh, int32_t edge) {
+    return gprojt_far(mesh->position + 3 * mesh->origin[2 * edge], mesh->position + 3 * mesh->origin[2 * edge + 1]);
+}
+
+/* -- loads and equilibrium computed apart from the library -- */
+
+/* Twice the vectorial area as the sum of triangles about the first corner. */
+static void gprojt_double_area(const gproj_mesh *mesh, int32_t face, double out[3]) {
+    int32_t first = mesh->face_halfedge[face], h = mesh->next[first], k;
+    const double *o = mesh->position + 3 * mesh->origin[first];
+    out[0] = out[1] = out[2] = 0;
+    for (; mesh->next[h] != first; h = mesh->next[h]) {
+        const double *p = mesh->position + 3 * mesh->origin[h], *q = mesh->position + 3 * mesh->origin[mesh->next[h]];
+        for (k = 0; k < 3; ++k) {
+            int32_t a = (k + 1) % 3, b = (k + 2) % 3;
+            out[k] += (p[a] - o[a]) * (q[b] - o[b]) - (p[b] - o[b]) * (q[a] - o[a]);
+        }
+    }
+}
+
+static double *gprojt_true_loads(const gproj_mesh *mesh, const gproj_loads *loads) {
+    double *f = gprojt_numbers(3 * mesh->vertex_count);
+    int32_t i, h;
+    for (i = 0; loads->point_load && i < 3 * mesh->vertex_count; ++i) f[i] = loads->point_load[i];
+    for (i = 0; i < mesh->edge_count; ++i) {
+        double half =
+            0.5 * gprojt_edge_length(mesh, i) * (loads->edge_density ? loads->edge_density[i] : loads->density);
+        f[3 * mesh->origin[2 * i] + 2] -= half;
+        f[3 * mesh->origin[2 * i + 1] + 2] -= half;
+    }
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        double a[3];
+        if (mesh->face[h] < 0) continue;
+        gprojt_double_area(mesh, mesh->face[h], a);
+        f[3 * mesh->origin[h] + 2] -=
+            0.5 * (loads->area_load * sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) + loads->snow * fabs(a[2])) /
+            mesh->face_degree[mesh->face[h]];
+    }
+    return f;
+}
+
+/* f + sum_j w_ij (v_i - v_j), 3 numbers a vertex. */
+static double *gprojt_sums(const gproj_mesh *mesh, const double *w, const double *f) {
+    double *sum = gprojt_numbers(3 * mesh->vertex_count);
+    int32_t h, k;
+    for (k = 0; k < 3 * mesh->vertex_count; ++k) sum[k] = f[k];
+    for (h = 0; h < mesh->halfedge_count; ++h)
+        for (k = 0; k < 3; ++k)
+            sum[3 * mesh->origin[h] + k] +=
+                w[h / 2] * (mesh->position[3 * mesh->origin[h] + k] - mesh->position[3 * mesh->origin[h ^ 1] + k]);
+    return sum;
+}
+
+static bool gprojt_listed(const int32_t *list, int32_t count, int32_t item) {
+    int32_t i;
+    for (i = 0; i < count; ++i)
+        if (list[i] == item) return true;
+    return false;
+}
+
+/* The largest unbalanced force in vertices that are not listed, over the largest load (1 without loads). */
+static double gprojt_unbalance(const gproj_mesh *mesh, const double *w, const double *f, const int32_t *pins,
+                               int32_t count) {
+    static const double zero[3] = {0, 0, 0};
+    double *sum = gprojt_sums(mesh, w, f), worst = 0, load = 0;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        load = fmax(load, gprojt_far(f + 3 * v, zero));
+        if (!gprojt_listed(pins, count, v)) worst = fmax(worst, gprojt_far(sum + 3 * v, zero));
+    }
+    free(sum);
+    return load > 0 ? worst / load : worst;
+}
+
+/* Checks a solved form with its boundary pinned: the loads are what they should be, every vertex is in equilibrium, and
+   loads and reactions balance with their moments. Returns the unbalance. */
+static double gprojt_check_balance(gproj_form *form, const gproj_loads *loads, double tolerance) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t n = 3 * mesh->vertex_count, i, k;
+    double *w = gprojt_numbers(mesh->edge_count), *f = gprojt_numbers(n), *r = gprojt_numbers(n);
+    double *truth = gprojt_true_loads(mesh, loads), unbalance, size = 0, sum[6] = {0};
+    gprojt_list pins = gprojt_boundary(mesh);
+    GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && gproj_get_loads(form, f) == GPROJ_OK);
+    GPROJT_CHECK(gproj_get_reactions(form, r) == GPROJ_OK);
+    for (i = 0; i < n; ++i) size = fmax(size, fabs(truth[i]));
+    if (size == 0) size = 1;
+    for (i = 0; i < n; ++i) GPROJT_NEAR(f[i], truth[i], 1e-12 * size);
+    unbalance = gprojt_unbalance(mesh, w, truth, pins.item, pins.count);
+    if (!(unbalance <= tolerance)) printf("    unbalance %g\n", unbalance);
+    GPROJT_CHECK(unbalance <= tolerance);
+    GPROJT_NEAR(gproj_measure_forces(form).residual, unbalance, 1e-12 + 1e-6 * unbalance);
+    for (i = 0; unbalance <= tolerance && i < mesh->vertex_count; ++i) {
+        const double *p = mesh->position + 3 * i;
+        double both[3];
+        for (k = 0; k < 3; ++k) both[k] = r[3 * i + k] + f[3 * i + k];
+        for (k = 0; k < 3; ++k) sum[k] += both[k];
+        for (k = 0; k < 3; ++k) sum[3 + k] += p[(k + 1) % 3] * both[(k + 2) % 3] - p[(k + 2) % 3] * both[(k + 1) % 3];
+    }
+    for (k = 0; k < 6; ++k) GPROJT_NEAR(sum[k], 0, mesh->vertex_count * size * (tolerance + 1e-12) * 10);
+    free(w), free(f), free(r), free(truth), free(pins.item);
+    return unbalance;
+}
+
+/* The least and the largest force density of the edges that have one. */
+static void gprojt_range(const gproj_form *form, double range[2]) {
+    double *w = gprojt_numbers(form->mesh->edge_count);
+    gproj_get_forces(form, w);
+    range[0] = HUGE_VAL, range[1] = -HUGE_VAL;
+    for (int32_t e = 0; e < form->mesh->edge_count; ++e) {
+        if (form->statics->force[e] < 0) continue;
+        range[0] = fmin(range[0], w[e]);
+        range[1] = fmax(range[1], w[e]);
+    }
+    free(w);
+}
+
+/* -- gradients -- */
+
+/* Loads of all kinds, some of them upwards. */
+static gproj_loads gprojt_mixed_loads(int mix, double *density, double *point, const gproj_mesh *mesh) {
+    gproj_loads loads = gprojt_no_loads();
+    uint64_t seed = 5;
+    int32_t i;
+    for (i = 0; i < mesh->edge_count; ++i) density[i] = gprojt_uniform(&seed);
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) point[i] = 2 * gprojt_uniform(&seed) - 1;
+    if (mix & 1) loads.density = 0.7;
+    if (mix & 2) loads.edge_density = density;
+    if (mix & 4) loads.area_load = 1.3;
+    if (mix & 8) loads.snow = -0.4;
+    if (mix & 16) loads.point_load = point;
+    return loads;
+}
+
+GPROJT_TEST(gradients) {
+    int shape;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        static const uint8_t slides[4] = {0, 1, 6, 7};
+        int32_t pins[4] = {0, 3, 4, 7}, e;
+        gproj_mesh *mesh = gprojt_noisy(shape, 3, 0.1, 7);
+        double *w = gprojt_numbers(mesh->edge_count), *point = gprojt_numbers(3 * mesh->vertex_count);
+        double *sections = gprojt_numbers(mesh->edge_count);
+        gproj_loads loads = gprojt_mixed_loads(31, w, point, mesh);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_supports supports;
+        uint64_t seed = 2;
+        supports.count = 4, supports.vertex = pins, supports.slides = slides;
+        for (e = 0; e < mesh->edge_count; ++e) sections[e] = 0.5 + gprojt_uniform(&seed);
+        GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+        GPROJT_CHECK(gproj_add_compression(form, mesh->edge_count, NULL, 1) >= 0);
+        GPROJT_CHECK(gproj_add_tension(form, 4, pins, 1) >= 0);
+        GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, sections, -1, 2, 1) >= 0);
+        GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
+        for (e = 0; e < mesh->edge_count; ++e) w[e] = 4 * gprojt_uniform(&seed) - 2;
+        GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+        GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(w), free(point), free(sections);
+    }
+}
+
+/* The loads in the rows of equilibrium (all forces are 0): the right ones where they were linearised, and with the right
+   derivative along a random direction, by central differences of the true loads. */
+GPROJT_TEST(load_rows_are_tangent) {
+    int shape, mix;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        for (mix = 1; mix < 32; mix += shape ? 3 : 1) {
+            int32_t pins[3] = {0, 2, 5}, i, v, c;
+            static const uint8_t slides[3] = {0, 3, 4};
+            gproj_mesh *mesh = gprojt_noisy(shape, 3, 0.2, 3 + (uint64_t)mix);
+            int32_t n = 3 * mesh->vertex_count, group;
+            double *w = gprojt_numbers(mesh->edge_count), *point = gprojt_numbers(n), *kept = gprojt_keep(mesh);
+            double *d = gprojt_numbers(n), *x, *f[3], *row[2], centre[3], scale, h = 1e-4;
+            gproj_loads loads = gprojt_mixed_loads(mix, w, point, mesh);
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_supports supports;
+            uint64_t seed = 2;
+            supports.count = 3, supports.vertex = pins, supports.slides = slides;
+            group = gproj_add_equilibrium(form, &loads, &supports, 1);
+            GPROJT_REQUIRE(group >= 0);
+            gproj_form_units(form, centre, &scale);
+            gproj_system_check_gradients(gproj_form_system(form)); /* refreshes the rows */
+            x = gproj_system_values(gproj_form_system(form));
+            for (i = 0; i < n; ++i) d[i] = (2 * gprojt_uniform(&seed) - 1) / scale;
+            f[0] = gprojt_true_loads(mesh, &loads);
+            row[0] = gprojt_numbers(n), row[1] = gprojt_numbers(n);
+            for (i = 1; i <= 2; ++i) {
+                for (v = 0; v < n; ++v) mesh->position[v] = kept[v] + (i == 1 ? h : -h) * d[v];
+                f[i] = gprojt_true_loads(mesh, &loads);
+            }
+            for (i = 0; i < 2; ++i) {
+                for (v = 0; v < n; ++v) x[v] += (i ? h : 0) * d[v] * scale;
+                for (v = 0, c = 0; v < mesh->vertex_count; ++v)
+                    for (int k = 0; k < 3; ++k)
+                        if (form->statics->axes[v] >> k & 1)
+                            row[i][3 * v + k] = gproj_system_row_value(form->system, group, c++, NULL);
+            }
+            for (v = 0; v < n; ++v) {
+                if (!(form->statics->axes[v / 3] >> (v % 3) & 1)) continue;
+                GPROJT_NEAR(row[0][v], f[0][v], 1e-12);
+                GPROJT_NEAR((row[1][v] - row[0][v]) / h, (f[1][v] - f[2][v]) / (2 * h), 2e-6);
+            }
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            free(w), free(point), free(kept), free(d), free(row[0]), free(row[1]);
+            for (i = 0; i < 3; ++i) free(f[i]);
+        }
+    }
+}
+
+/* -- force density method: given forces, the positions solve a linear system -- */
+
+/* Solves a z = b for 3 right-hand sides by elimination with pivots; a and b are destroyed, z comes in b. */
+static bool gprojt_eliminate(int32_t n, double *a, double *b) {
+    int32_t i, j, k;
+    for (i = 0; i < n; ++i) {
+        int32_t best = i;
+        double swap;
+        for (j = i + 1; j < n; ++j)
+            if (fabs(a[j * n + i]) > fabs(a[best * n + i])) best = j;
+        if (!(fabs(a[best * n + i]) > 1e-12)) return false;
+        for (k = 0; k < n; ++k) swap = a[i * n + k], a[i * n + k] = a[best * n + k], a[best * n + k] = swap;
+        for (k = 0; k < 3; ++k) swap = b[3 * i + k], b[3 * i + k] = b[3 * best + k], b[3 * best + k] = swap;
+        for (j = 0; j < n; ++j) {
+            double factor = a[j * n + i] / a[i * n + i];
+            if (j == i || factor == 0) continue;
+            for (k = i; k < n; ++k) a[j * n + k] -= factor * a[i * n + k];
+            for (k = 0; k < 3; ++k) b[3 * j + k] -= factor * b[3 * i + k];
+        }
+    }
+    for (i = 0; i < n; ++i)
+        for (k = 0; k < 3; ++k) b[3 * i + k] /= a[i * n + i];
+    return true;
+}
+
+/* Moves the vertices inside so that the densities w and the forces f are in equilibrium (Schek 1974). */
+static bool gprojt_force_density_method(gproj_mesh *mesh, const double *w, const double *f) {
+    int32_t n = mesh->vertex_count, h, k, v;
+    double *a = gprojt_numbers(n * n), *b = gprojt_numbers(3 * n);
+    bool solved;
+    for (v = 0; v < n; ++v) {
+        bool fixed = gproj_mesh_is_boundary_vertex(mesh, v);
+        for (k = 0; k < 3; ++k) b[3 * v + k] = fixed ? mesh->position[3 * v + k] : -f[3 * v + k];
+        if (fixed) a[v * n + v] = 1;
+    }
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        v = mesh->origin[h];
+        if (gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        a[v * n + v] += w[h / 2];
+        a[v * n + mesh->origin[h ^ 1]] -= w[h / 2];
+    }
+    solved = gprojt_eliminate(n, a, b);
+    if (solved) memcpy(mesh->position, b, 3 * (size_t)n * sizeof *b);
+    free(a), free(b);
+    return solved;
+}
+
+/* Fixes the forces where they are: rows y - y0 = 0. */
+static void gprojt_freeze_forces(gproj_form *form) {
+    int32_t group = gprojt_add_group(form->system, "given forces", GPROJ_CONSTRAINT, 1), e;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        int32_t i = form->statics->force[e];
+        if (i >= 0) gprojt_add_linear(form->system, group, i, 1, -gproj_system_values(form->system)[i], e);
+    }
+}
+
+GPROJT_TEST(force_density_method) {
+    int shape, way;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        for (way = 0; way < 2; ++way) { /* uniform compression under a weight; random tension under any forces */
+            gproj_mesh *mesh = gprojt_vault(shape, 5, 10, 1), *other = gproj_mesh_copy(mesh, NULL, NULL);
+            double *w = gprojt_numbers(mesh->edge_count), *f = gprojt_numbers(3 * mesh->vertex_count);
+            gproj_loads loads = gprojt_no_loads();
+            uint64_t seed = 8;
+            gproj_form *form;
+            gproj_result result;
+            int32_t i;
+            for (i = 0; i < mesh->edge_count; ++i) w[i] = way ? -(1 + gprojt_uniform(&seed)) : 3;
+            for (i = 0; i < 3 * mesh->vertex_count; ++i)
+                f[i] = way ? 2 * gprojt_uniform(&seed) - 1 : i % 3 == 2 ? -2 : 0;
+            loads.point_load = f;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+            gprojt_freeze_forces(form);
+            result = gproj_solve(form, 20, NULL);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            GPROJT_REQUIRE(gprojt_force_density_method(other, w, f));
+            GPROJT_CHECK(gprojt_largest_move(mesh->position, other->position, mesh->vertex_count) < 1e-10);
+            gprojt_check_balance(form, &loads, 1e-11);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            gproj_mesh_destroy(other);
+            free(w), free(f);
+        }
+    }
+}
+
+/* -- shapes that stand and hang -- */
+
+GPROJT_TEST(domes_stand_by_compression) {
+    int shape, mix;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        for (mix = 0; mix < 4; ++mix) {
+            gproj_mesh *mesh = gprojt_vault(shape, 7, 10, 2.5);
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            gproj_result result;
+            double range[2];
+            if (mix == 0 || mix == 3) loads.density = 2;
+            if (mix == 1 || mix == 3) loads.area_load = 0.3;
+            if (mix == 2 || mix == 3) loads.snow = 5;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            GPROJT_CHECK(gproj_add_compression(form, mesh->edge_count, NULL, 1) >= 0);
+            result = gproj_solve(form, 30, NULL);
+            if (result.outcome != GPROJ_CONVERGED) printf("    shape %d, loads %d: %s\n", shape, mix, result.message);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+            gprojt_check_balance(form, &loads, 1e-10);
+            gprojt_range(form, range);
+            GPROJT_CHECK(range[0] >= -1e-9 * range[1] && range[1] > 0);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
+GPROJT_TEST(nets_hang_by_tension) {
+    int shape, flat;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        for (flat = 0; flat < 2; ++flat) {
+            gproj_mesh *mesh = gprojt_vault(shape, 6, 10, flat ? 0 : -2);
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            gproj_result result;
+            double range[2], lowest = 0;
+            int32_t v;
+            loads.density = 1;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            GPROJT_CHECK(gproj_add_tension(form, mesh->edge_count, NULL, 1) >= 0);
+            result = gproj_solve(form, 40, NULL);
+            if (result.outcome != GPROJ_CONVERGED) printf("    shape %d, flat %d: %s\n", shape, flat, result.message);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            gprojt_check_balance(form, &loads, 1e-10);
+            gprojt_range(form, range);
+            for (v = 0; v < mesh->vertex_count; ++v) lowest = fmin(lowest, mesh->position[3 * v + 2]);
+            GPROJT_CHECK(range[1] <= -1e-9 * range[0] && range[0] < 0 && lowest < -0.1);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
+/* -- bars whose forces are known -- */
+
+/* `legs` pinned feet on a circle of radius r, the apex h above (it hangs where h < 0). */
+static gproj_mesh *gprojt_tent(int32_t legs, double r, double h) {
+    gprojt_soup s;
+    int32_t i;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < legs; ++i)
+        gprojt_add_vertex(&s, r * cos(6.283185307179586 * i / legs), r * sin(6.283185307179586 * i / legs), 0);
+    gprojt_add_vertex(&s, 0, 0, h);
+    for (i = 0; i < legs; ++i) gprojt_add_triangle(&s, i, (i + 1) % legs, legs);
+    return gprojt_mesh_of(s);
+}
+
+/* Feet in a circle, a load on the apex: each leg has the density P / (legs h), and the force P / (legs sin). */
+GPROJT_TEST(tents) {
+    int32_t legs, e, k;
+    for (legs = 3; legs < 8; ++legs) {
+        for (k = 0; k < 2; ++k) {
+            double h = k ? -2 : 1.5, r = 3, load = 12, f[27] = {0}, w[32], residual[9], reaction[27];
+            double density = load / (legs * h), length = sqrt(r * r + h * h), close = legs == 3 ? 1e-9 : 5e-3;
+            gproj_mesh *mesh = gprojt_tent(legs, r, h);
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            gproj_forces m;
+            f[3 * legs + 2] = -load;
+            loads.point_load = f;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK && residual[legs] < 1e-9);
+            for (e = 0; e < mesh->edge_count; ++e) {
+                bool leg = mesh->origin[2 * e] == legs || mesh->origin[2 * e + 1] == legs;
+                GPROJT_NEAR(w[e], leg ? density : 0, legs == 3 ? 1e-9 : 1e-3); /* more legs: one of many solutions */
+            }
+            GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && w[0] == 0);
+            gprojt_add_group(form->system, "stay", GPROJ_CONSTRAINT, 1);
+            gproj_add_fixed(form, 1, &legs, 1);
+            GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
+            gproj_get_reactions(form, reaction);
+            GPROJT_NEAR(reaction[2], load / legs, close);
+            GPROJT_NEAR(reaction[0], -load / legs / h * r, close); /* the thrust goes out, the support holds it in */
+            m = gproj_measure_forces(form);
+            GPROJT_CHECK(m.residual < 1e-11 && m.residual_vertex == legs);
+            GPROJT_NEAR(m.min_density, density, close);
+            GPROJT_NEAR(m.max_density, density, close);
+            GPROJT_NEAR(m.max_force, density * length, close);
+            GPROJT_NEAR(m.load_path, fabs(density) * length * length * legs, 9 * close);
+            GPROJT_NEAR(m.total_load, load, 1e-9);
+            GPROJT_NEAR(m.max_reaction, fabs(density) * length, close);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
+/* A tripod with any feet under any force: its three densities solve 3 equations, and nothing else does. */
+GPROJT_TEST(tripods) {
+    uint64_t seed = 4;
+    int i, k, e;
+    for (i = 0; i < 20; ++i) {
+        gproj_mesh *mesh = gprojt_tent(3, 2, 2);
+        double f[12] = {0}, w[6], a[9], b[9] = {0};
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gprojt_shake(mesh, 0.7, 20 + (uint64_t)i);
+        for (k = 0; k < 3; ++k) f[9 + k] = 2 * gprojt_uniform(&seed) - 1;
+        loads.point_load = f;
+        for (k = 0; k < 9; ++k) a[k] = mesh->position[9 + k / 3] - mesh->position[3 * (k % 3) + k / 3];
+        for (k = 0; k < 3; ++k) b[3 * k] = -f[9 + k];
+        GPROJT_REQUIRE(gprojt_eliminate(3, a, b));
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK);
+        for (e = 0; e < mesh->edge_count; ++e) {
+            int32_t foot = mesh->origin[2 * e] + mesh->origin[2 * e + 1] - 3;
+            if (mesh->origin[2 * e] == 3 || mesh->origin[2 * e + 1] == 3)
+                GPROJT_NEAR(w[e], b[3 * foot], 1e-8 * (1 + fabs(b[3 * foot])));
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* -- bounds of stresses, fairness of forces -- */
+
+static void gprojt_stress_range(const gproj_form *form, const double *sections, double range[2]) {
+    const gproj_mesh *mesh = form->mesh;
+    double *w = gprojt_numbers(mesh->edge_count);
+    int32_t e;
+    gproj_get_forces(form, w);
+    range[0] = HUGE_VAL, range[1] = -HUGE_VAL;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double stress = w[e] * gprojt_edge_length(mesh, e) / (sections ? sections[e] : 1);
+        if (form->statics->force[e] < 0) continue;
+        range[0] = fmin(range[0], stress);
+        range[1] = fmax(range[1], stress);
+    }
+    free(w);
+}
+
+GPROJT_TEST(stresses_stay_within_bounds) {
+    int way;
+    for (way = 0; way < 4; ++way) { /* above; both; both with sections; below only */
+        gproj_mesh *mesh = gprojt_vault(way % 2 ? TRIANGLES : QUADS, 7, 10, 3);
+        gproj_loads loads = gprojt_no_loads();
+        double *sections = gprojt_numbers(mesh->edge_count), free_range[2], range[2], min, max,
+               *kept = gprojt_keep(mesh);
+        uint64_t seed = 3;
+        gproj_form *form;
+        gproj_result result;
+        int32_t e;
+        for (e = 0; e < mesh->edge_count; ++e) sections[e] = way == 2 ? 0.01 * (1 + 0.5 * gprojt_uniform(&seed)) : 1;
+        loads.density = 25;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+        gprojt_stress_range(form, sections, free_range);
+        gproj_form_destroy(form);
+        memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        max = way == 3 ? INFINITY : 0.9 * free_range[1];
+        min = way == 0   ? -INFINITY
+              : way == 3 ? free_range[0] + 0.05 * (free_range[1] - free_range[0])
+                         : free_range[0] * (free_range[0] < 0 ? 0.9 : 1.1);
+        GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, way == 2 ? sections : NULL, min, max, 1) >=
+                     0);
+        result = gproj_solve(form, 60, NULL);
+        gprojt_stress_range(form, sections, range);
+        if (result.outcome != GPROJ_CONVERGED)
+            printf("    %d: free %g to %g, within %g to %g: %s\n", way, free_range[0], free_range[1], min, max,
+                   result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(range[0] >= min - 1e-9 * free_range[1] && range[1] <= max + 1e-9 * free_range[1]);
+        gprojt_check_balance(form, &loads, 1e-10);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(sections), free(kept);
+    }
+}
+
+/* The root of the mean squared difference of forces in opposite edges of quads, over the root of their mean square. */
+static double gprojt_force_spread(const gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    double *w = gprojt_numbers(mesh->edge_count), differences = 0, squares = 0;
+    int32_t h;
+    gproj_get_forces(form, w);
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        int32_t opposite = mesh->next[mesh->next[h]];
+        double a = w[h / 2] * gprojt_edge_length(mesh, h / 2);
+        double b = w[opposite / 2] * gprojt_edge_length(mesh, opposite / 2);
+        if (mesh->face[h] < 0 || form->statics->force[h / 2] < 0 || form->statics->force[opposite / 2] < 0) continue;
+        differences += (a - b) * (a - b);
+        squares += a * a;
+    }
+    free(w);
+    return sqrt(differences / squares);
+}
+
+GPROJT_TEST(fair_forces) {
+    double spread[2];
+    int fair;
+    for (fair = 0; fair < 2; ++fair) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 8, 10, 3);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        uint64_t seed = 2;
+        double *w = gprojt_numbers(mesh->edge_count);
+        int32_t e;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (e = 0; e < mesh->edge_count; ++e) w[e] = 3 * (0.7 + 0.6 * gprojt_uniform(&seed));
+        gproj_set_forces(form, w);
+        if (fair) GPROJT_CHECK(gproj_add_force_fairness(form, 0.3) >= 0);
+        GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+        gprojt_check_balance(form, &loads, 1e-10);
+        spread[fair] = gprojt_force_spread(form);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(w);
+    }
+    if (!(spread[1] < 0.7 * spread[0])) printf("    spread %g, then %g\n", spread[0], spread[1]);
+    GPROJT_CHECK(spread[1] < 0.7 * spread[0]);
+}
+
+/* -- rollers -- */
+
+/* A vault on walls along which its supports slide, and pinned at the corners: the edges along the walls are ties. */
+GPROJT_TEST(rollers_take_nothing_along_their_slides) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 6, 10, 3);
+    gprojt_list walls = gprojt_boundary(mesh);
+    uint8_t *slides = (uint8_t *)calloc((size_t)walls.count, 1);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_supports supports = gprojt_pins(walls);
+    double *w = gprojt_numbers(mesh->edge_count), *sum, *f, *r = gprojt_numbers(3 * mesh->vertex_count), worst = 0;
+    gproj_result result;
+    int32_t i, k, ties = 0;
+    GPROJT_REQUIRE(slides);
+    for (i = 0; i < walls.count; ++i) {
+        const double *p = mesh->position + 3 * walls.item[i];
+        slides[i] = gproj_form_is_corner(form, walls.item[i]) ? 0 : fabs(p[0]) > fabs(p[1]) ? 2 : 1;
+    }
+    supports.slides = slides;
+    loads.density = 1;
+    GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+    gproj_add_gliding_boundary(form, 1);
+    result = gproj_solve(form, 40, NULL);
+    if (result.outcome != GPROJ_CONVERGED) printf("    %s\n", result.message);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    gproj_get_forces(form, w);
+    gproj_get_reactions(form, r);
+    f = gprojt_true_loads(mesh, &loads);
+    sum = gprojt_sums(mesh, w, f);
+    for (i = 0; i < walls.count; ++i)
+        for (k = 0; k < 3; ++k)
+            if (slides[i] >> k & 1) worst = fmax(worst, fabs(sum[3 * walls.item[i] + k]));
+    for (i = 0; i < mesh->vertex_count; ++i)
+        for (k = 0; k < 3; ++k) {
+            bool inside = !gprojt_listed(walls.item, walls.count, i);
+            if (inside) worst = fmax(worst, fabs(sum[3 * i + k]));
+            GPROJT_NEAR(r[3 * i + k], -sum[3 * i + k], 1e-9);
+        }
+    for (i = 0; i < walls.count; ++i)
+        if (slides[i]) GPROJT_CHECK(r[3 * walls.item[i] + slides[i] - 1] == 0);
+    GPROJT_CHECK(worst < 1e-10);
+    for (i = 0; i < mesh->edge_count; ++i) ties += w[i] != 0 && (mesh->face[2 * i] < 0 || mesh->face[2 * i + 1] < 0);
+    GPROJT_CHECK(ties > 4 && gproj_measure_forces(form).residual < 1e-10);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(walls.item), free(slides), free(w), free(sum), free(f), free(r);
+}
+
+/* -- units and places -- */
+
+/* The shape that a dome finds when it is given in other units, turned about z and elsewhere; back in the first ones. */
+static void gprojt_solve_moved(double length, double force, double turn, double shift, double epsilon, double *out) {
+    gproj_mesh *mesh = gprojt_hill(HYBRID, 6, 10, 2.5);
+    gproj_loads loads = gprojt_no_loads();
+    double c = cos(turn), s = sin(turn);
+    gproj_form *form;
+    gproj_solve_options options;
+    gproj_result result;
+    int32_t v, k;
+    loads.density = 2 * force / length, loads.snow = 0.5 * force / (length * length);
+    loads.area_load = 0.2 * force / (length * length);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v, x = p[0];
+        p[0] = c * x - s * p[1];
+        p[1] = s * x + c * p[1];
+        for (k = 0; k < 3; ++k) p[k] = length * (p[k] + shift);
+    }
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, -INFINITY, 60 * force, 1);
+    gproj_add_planarity(form, 1);
+    memset(&options, 0, sizeof options);
+    options.epsilon = epsilon;
+    result = gproj_solve(form, 30, &options);
+    if (result.outcome != GPROJ_CONVERGED) printf("    %g %g %g %g: %s\n", length, force, turn, shift, result.message);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    gprojt_check_balance(form, &loads, 1e-9);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v, x;
+        for (k = 0; k < 3; ++k) p[k] = p[k] / length - shift;
+        x = p[0];
+        out[3 * v] = c * x + s * p[1];
+        out[3 * v + 1] = c * p[1] - s * x;
+        out[3 * v + 2] = p[2];
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(units_do_not_matter) {
+    static const double way[6][4] = {{1, 1e3, 0, 0},      {1e3, 1, 0, 0}, {1e-6, 1e7, 0, 0},
+                                     {1e3, 1e-3, 0.7, 3}, {1, 1, 2, 0},   {1, 1, 0, 100}};
+    double first[3 * 64], other[3 * 64];
+    int i;
+    for (i = 0; i < 6; ++i) {
+        double off, epsilon = way[i][2] != 0 ? 1e-3 : 0; /* by default it depends on the largest coordinate of rows */
+        gprojt_solve_moved(1, 1, 0, 0, epsilon, first);
+        gprojt_solve_moved(way[i][0], way[i][1], way[i][2], way[i][3], epsilon, other);
+        off = gprojt_largest_move(first, other, 56);
+        if (!(off < 1e-8)) printf("    %d: off by %g\n", i, off);
+        GPROJT_CHECK(off < 1e-8);
+    }
+}
+
+/* -- the best forces of a given shape -- */
+
+/* The gradient of the sum of squares for the density of each edge is 0, or points out of the allowed. */
+static void gprojt_check_optimal(gproj_form *form, const gproj_loads *loads, int sign) {
+    const gproj_mesh *mesh = form->mesh;
+    double *w = gprojt_numbers(mesh->edge_count), *residual = gprojt_numbers(mesh->vertex_count), *sum, *f, mean = 0;
+    double size = 0;
+    gprojt_list pins = gprojt_boundary(mesh);
+    int32_t v, e, k;
+    GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK);
+    f = gprojt_true_loads(mesh, loads);
+    sum = gprojt_sums(mesh, w, f);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        static const double zero[3] = {0, 0, 0};
+        if (gprojt_listed(pins.item, pins.count, v))
+            memset(sum + 3 * v, 0, 3 * sizeof *sum);
+        else
+            mean += gprojt_far(f + 3 * v, zero) / (mesh->vertex_count - pins.count);
+    }
+    for (v = 0; v < mesh->vertex_count; ++v)
+        GPROJT_NEAR(residual[v] * mean, sqrt(gproji_dot3(sum + 3 * v, sum + 3 * v)), 1e-9 * mean);
+    for (e = 0; e < mesh->edge_count; ++e) size = fmax(size, mean * gprojt_edge_length(mesh, e));
+    for (e = 0; e < mesh->edge_count; ++e) {
+        int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
+        double g = 0;
+        bool carries = !gprojt_listed(pins.item, pins.count, i) || !gprojt_listed(pins.item, pins.count, j);
+        for (k = 0; k < 3; ++k)
+            g += (sum[3 * i + k] - sum[3 * j + k]) * (mesh->position[3 * i + k] - mesh->position[3 * j + k]);
+        if (!carries) GPROJT_CHECK(w[e] == 0);
+        GPROJT_CHECK(sign * w[e] >= 0);
+        if (w[e] == 0)
+            GPROJT_CHECK(!carries || sign * g >= -1e-8 * size);
+        else
+            GPROJT_NEAR(g, 0, 1e-8 * size);
+    }
+    free(w), free(residual), free(sum), free(f), free(pins.item);
+}
+
+GPROJT_TEST(best_forces) {
+    int shape, sign;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        for (sign = -1; sign <= 1; ++sign) {
+            gproj_mesh *mesh = gprojt_vault(shape, 7, 10, sign < 0 ? -3 : 3);
+            double *kept;
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            gprojt_shake(mesh, 0.2, 3);
+            kept = gprojt_keep(mesh);
+            loads.density = 1, loads.snow = 0.2;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            if (sign > 0) gproj_add_compression(form, mesh->edge_count, NULL, 1);
+            if (sign < 0) gproj_add_tension(form, mesh->edge_count, NULL, 1);
+            gprojt_check_optimal(form, &loads, sign);
+            GPROJT_CHECK(!memcmp(kept, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *kept));
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            free(kept);
+        }
+    }
+}
+
+/* A bound without weight does not count, and one of some edges only for these; a bound of one's own is another matter. */
+GPROJT_TEST(best_forces_within_active_bounds) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 4, 10, 3);
+    gproj_loads loads = gprojt_no_loads();
+    double *w = gprojt_numbers(mesh->edge_count), none = 0;
+    int32_t e, group, own, least = -1;
+    gproj_form *form;
+    gproj_schedule schedule = {0, 1, 0};
+    gprojt_shake(mesh, 0.5, 3);
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    own = gprojt_add_group(form->system, "compression", GPROJ_BOUND, 1);
+    gprojt_add_linear(form->system, own, 0, 1, 100, 1000000);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK);
+    for (e = 0; e < mesh->edge_count; ++e)
+        if (least < 0 || w[e] < w[least]) least = e;
+    GPROJT_REQUIRE(w[least] < -0.1);
+    group = gproj_add_compression(form, 1, &least, 1);
+    GPROJT_CHECK(group >= 0 && gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] >= 0);
+    gproj_set_element_weights(form, group, 1, &least, &none);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] < -0.1);
+    none = 1;
+    gproj_set_element_weights(form, group, 1, &least, &none);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] >= 0);
+    gproj_set_schedule(form, group, schedule);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] < -0.1);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w);
+}
+
+/* What the force density method finds carries its loads without rest; a flat plate carries nothing. */
+GPROJT_TEST(funicular_shapes_and_plates) {
+    int shape, flat;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        for (flat = 0; flat < 2; ++flat) {
+            gproj_mesh *mesh = gprojt_vault(shape, 6, 10, 0);
+            double *w = gprojt_numbers(mesh->edge_count), *f = gprojt_numbers(3 * mesh->vertex_count);
+            double *residual = gprojt_numbers(mesh->vertex_count);
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            int32_t i;
+            for (i = 0; i < mesh->edge_count; ++i) w[i] = 2;
+            for (i = 0; i < mesh->vertex_count; ++i) f[3 * i + 2] = -1;
+            if (!flat) GPROJT_REQUIRE(gprojt_force_density_method(mesh, w, f));
+            loads.point_load = f;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            gproj_add_compression(form, mesh->edge_count, NULL, 1);
+            GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK);
+            for (i = 0; i < mesh->vertex_count; ++i) {
+                bool carried = !flat || gproj_mesh_is_boundary_vertex(mesh, i);
+                GPROJT_NEAR(residual[i], carried ? 0 : 1, 1e-7);
+            }
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            free(w), free(f), free(residual);
+        }
+    }
+}
+
+GPROJT_TEST(plates_are_infeasible) {
+    int shape;
+    for (shape = QUADS; shape <= HEXAGONS; ++shape) {
+        gproj_mesh *mesh = gprojt_vault(shape, 5, 10, 0);
+        double *kept = gprojt_keep(mesh), *w = gprojt_numbers(mesh->edge_count), *f, *sum, unbalance, residual = 0;
+        gprojt_list pins = gprojt_boundary(mesh);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_result result;
+        int32_t v, all[128];
+        GPROJT_REQUIRE(mesh->vertex_count <= 128);
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (v = 0; v < mesh->vertex_count; ++v) all[v] = v;
+        gproj_add_fixed(form, mesh->vertex_count, all, 1);
+        result = gproj_solve(form, 30, NULL);
+        gproj_get_forces(form, w);
+        f = gprojt_true_loads(mesh, &loads);
+        unbalance = gprojt_unbalance(mesh, w, f, pins.item, pins.count);
+        /* the residual, from outside: how far a coordinate is off, or a force, in the form's units */
+        sum = gprojt_sums(mesh, w, f);
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) {
+            residual = fmax(residual, fabs(mesh->position[v] - kept[v]) * form->scale);
+            if (!gprojt_listed(pins.item, pins.count, v / 3))
+                residual = fmax(residual, fabs(sum[v]) * form->statics->load_scale);
+        }
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && result.outcome != GPROJ_FAILED && result.residual > 1e-3);
+        GPROJT_NEAR(result.residual, residual, 1e-6 * residual);
+        GPROJT_NEAR(gproj_measure_forces(form).residual, unbalance, 1e-9 + 1e-9 * unbalance);
+        GPROJT_CHECK(unbalance > 1e-6 && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(kept), free(w), free(f), free(sum), free(pins.item);
+    }
+}
+
+/* -- the start of forces -- */
+
+GPROJT_TEST(forces_are_kept_and_set) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 6, 10, 3);
+    double *w = gprojt_numbers(mesh->edge_count), *again = gprojt_numbers(mesh->edge_count);
+    double *kept = gprojt_keep(mesh), *solved, size = 0;
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    gproj_result result;
+    uint64_t seed = 3;
+    int32_t e;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == 0);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = form->statics->force[e] < 0 ? 0 : 1e3 * gprojt_uniform(&seed);
+    GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK && gproj_get_forces(form, again) == GPROJ_OK);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-12 * 1e3);
+    GPROJT_CHECK(gproj_set_forces(form, NULL) == GPROJ_OK && gproj_get_forces(form, again) == GPROJ_OK);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(again[e] == 0);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    solved = gprojt_keep(mesh);
+    gproj_get_forces(form, w);
+    for (e = 0; e < mesh->edge_count; ++e) size = fmax(size, fabs(w[e]));
+
+    /* a second solve goes on from there: nothing is left to do */
+    result = gproj_solve(form, 30, NULL);
+    gproj_get_forces(form, again);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 1);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-10 * size);
+    GPROJT_CHECK(gprojt_largest_move(mesh->position, solved, mesh->vertex_count) < 1e-9);
+
+    /* the forces that were found, given to another form of the solved mesh: nothing is left to do either */
+    gproj_form_destroy(form);
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    gproj_set_forces(form, w);
+    result = gproj_solve(form, 30, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 1);
+    gproj_form_destroy(form);
+
+    /* NULL and the first positions: all again */
+    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    gproj_solve(form, 30, NULL);
+    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    gproj_set_forces(form, NULL);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_largest_move(mesh->position, solved, mesh->vertex_count) < 1e-9);
+    gproj_get_forces(form, again);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-8 * size);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w), free(again), free(kept), free(solved);
+}
+
+/* Forces of any size are a start: none at all, tiny, and as large as numbers are. */
+GPROJT_TEST(forces_of_any_size_are_set) {
+    static const double sizes[] = {0, 1e-300, 1e-12, 1e12, 1e200, 1e300};
+    int i;
+    for (i = 0; i < 6; ++i) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 4, 10, 3);
+        double *w = gprojt_numbers(mesh->edge_count);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_result result;
+        int32_t e;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (e = 0; e < mesh->edge_count; ++e) w[e] = sizes[i];
+        GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+        gproj_get_forces(form, w);
+        for (e = 0; e < mesh->edge_count; ++e)
+            if (form->statics->force[e] >= 0) GPROJT_NEAR(w[e], sizes[i], 1e-12 * sizes[i]);
+        result = gproj_solve(form, 5, NULL);
+        GPROJT_CHECK(gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+        if (result.outcome == GPROJ_FAILED) printf("    size %g: %s\n", sizes[i], result.message);
+        GPROJT_CHECK(result.outcome != GPROJ_FAILED && !strstr(result.message, "nan"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(w);
+    }
+}
+
+/* -- with planar faces -- */
+
+GPROJT_TEST(planar_faces_and_compression) {
+    int shape, load;
+    for (shape = QUADS; shape <= HYBRID; ++shape) {
+        for (load = 0; load < 2; ++load) {
+            gproj_mesh *mesh = gprojt_hill(shape, 8, 10, 3);
+            double *kept = gprojt_keep(mesh), range[2];
+            gproj_loads loads = gprojt_no_loads();
+            gproj_form *form;
+            gproj_result result;
+            gproj_measures m;
+            loads.density = 1, loads.area_load = load;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            gproj_add_compression(form, mesh->edge_count, NULL, 1);
+            gproj_add_planarity(form, 1);
+            result = gproj_solve(form, 20, NULL);
+            if (result.outcome != GPROJ_CONVERGED) printf("    shape %d: %s\n", shape, result.message);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            gprojt_check_balance(form, &loads, 1e-10);
+            gprojt_range(form, range);
+            GPROJT_CHECK(range[0] >= -1e-9 * range[1]);
+            m = gproj_measure(mesh, kept, NULL);
+            GPROJT_CHECK(m.planarity_max < 1e-12 && m.turned_faces == 0);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            free(kept);
+        }
+    }
+}
+
+/* -- groups on and off -- */
+
+GPROJT_TEST(weights_switch_groups_off_and_on) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 6, 10, 3);
+    gprojt_list pins = gprojt_boundary(mesh);
+    gproj_supports supports = gprojt_pins(pins);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *kept = gprojt_keep(mesh), *w = gprojt_numbers(mesh->edge_count), range[2];
+    gproj_schedule on = {1, 1, 0}, off = {0, 1, 0};
+    int32_t equilibrium, compression, stress, e;
+    loads.density = 1;
+    equilibrium = gproj_add_equilibrium(form, &loads, &supports, 0);
+    compression = gproj_add_compression(form, mesh->edge_count, NULL, 0);
+    stress = gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, 1000, 2000, 0);
+    gproj_add_force_fairness(form, 0);
+    gproj_add_fixed_boundary(form, 1);
+    GPROJT_CHECK(equilibrium >= 0 && compression >= 0 && stress >= 0);
+    /* off: nothing moves, there are no forces */
+    GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
+    gproj_get_forces(form, w);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == 0);
+    /* equilibrium, then compression as well */
+    gproj_set_schedule(form, equilibrium, on);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    gprojt_check_balance(form, &loads, 1e-10);
+    gproj_set_schedule(form, compression, on);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    gprojt_check_balance(form, &loads, 1e-10);
+    gprojt_range(form, range);
+    GPROJT_CHECK(range[0] >= -1e-9 * range[1]);
+    /* stresses that this load cannot give, and off again */
+    gproj_set_schedule(form, stress, on);
+    GPROJT_CHECK(gproj_solve(form, 10, NULL).outcome != GPROJ_CONVERGED);
+    gproj_set_schedule(form, stress, off);
+    gproj_set_schedule(form, equilibrium, off);
+    gproj_set_schedule(form, compression, off);
+    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(pins.item), free(kept), free(w);
+}
+
+/* -- borders -- */
+
+/* A square of four quads and two vertices without faces, one of them with a load. */
+GPROJT_TEST(isolated_vertices) {
+    gprojt_soup soup = gprojt_quad_grid(3, 3);
+    gproj_mesh *mesh;
+    double f[3 * 18] = {0}, residual[18], reaction[3 * 18];
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    gproj_forces m;
+    int32_t v;
+    gprojt_add_vertex(&soup, 5, 5, 5);
+    gprojt_add_vertex(&soup, 6, 5, 5);
+    mesh = gprojt_mesh_of(soup);
+    GPROJT_REQUIRE(mesh && mesh->isolated_count == 2 && mesh->vertex_count == 18);
+    for (v = 0; v < mesh->vertex_count; ++v) f[3 * v + 2] = v == 16 ? -100 : -1;
+    loads.point_load = f, loads.snow = 1, loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    GPROJT_CHECK(gproj_find_forces(form, NULL, residual) == GPROJ_OK && residual[16] == 0);
+    GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_get_reactions(form, reaction) == GPROJ_OK && reaction[3 * 16 + 2] == 0);
+    m = gproj_measure_forces(form);
+    GPROJT_CHECK(m.residual < 1e-10 && m.residual_vertex < 16);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(supports_only) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 3, 10, 2);
+    gprojt_list all;
+    gproj_supports supports;
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *w = gprojt_numbers(mesh->edge_count), *f, *r = gprojt_numbers(3 * mesh->vertex_count),
+           *kept = gprojt_keep(mesh);
+    gproj_forces m;
+    int32_t v;
+    all.count = mesh->vertex_count;
+    all.item = (int32_t *)malloc((size_t)all.count * sizeof *all.item);
+    GPROJT_REQUIRE(all.item);
+    for (v = 0; v < all.count; ++v) all.item[v] = v;
+    supports = gprojt_pins(all);
+    loads.density = 1;
+    GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+    GPROJT_CHECK(gproj_add_compression(form, mesh->edge_count, NULL, 1) >= 0);
+    GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, 0, 1, 1) >= 0);
+    GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
+    GPROJT_CHECK(gproj_find_forces(form, w, r) == GPROJ_OK && w[0] == 0 && r[0] == 0);
+    GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
+    GPROJT_CHECK(gproj_get_reactions(form, r) == GPROJ_OK);
+    f = gprojt_true_loads(mesh, &loads);
+    for (v = 0; v < 3 * mesh->vertex_count; ++v) GPROJT_NEAR(r[v], -f[v], 1e-12);
+    m = gproj_measure_forces(form);
+    GPROJT_CHECK(m.residual == 0 && m.residual_vertex == -1 && m.max_force == 0 && m.load_path == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(all.item), free(w), free(f), free(r), free(kept);
+}
+
+/* No supports at all: what is free to fall has no equilibrium, and without loads it has. */
+GPROJT_TEST(no_supports) {
+    int loaded;
+    for (loaded = 0; loaded < 2; ++loaded) {
+        gproj_mesh *mesh = gprojt_noisy(GPROJT_SHAPES - 1, 3, 0.02, 3);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_supports supports = {0, NULL, NULL};
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        double *f = gprojt_numbers(3 * mesh->vertex_count);
+        if (loaded) f[2] = -1;
+        loads.point_load = f;
+        GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+        gproj_add_closeness(form, 0.1);
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK(result.outcome != GPROJ_FAILED && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+        if (loaded) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(f);
+    }
+}
+
+/* A cable net without loads between fixed rails, saddled: it is prestressed, not slack. */
+GPROJT_TEST(prestressed_net) {
+    int shape;
+    for (shape = QUADS; shape <= HYBRID; ++shape) {
+        gproj_mesh *mesh = gprojt_vault(shape, 6, 10, 0);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_result result;
+        double range[2];
+        int32_t v;
+        for (v = 0; v < mesh->vertex_count; ++v)
+            mesh->position[3 * v + 2] = 0.06 * mesh->position[3 * v] * mesh->position[3 * v] -
+                                        0.06 * mesh->position[3 * v + 1] * mesh->position[3 * v + 1];
+        gprojt_shake(mesh, 0.05, 2);
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        gproj_add_tension(form, mesh->edge_count, NULL, 1);
+        result = gproj_solve(form, 30, NULL);
+        if (result.outcome != GPROJ_CONVERGED) printf("    shape %d: %s\n", shape, result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        gprojt_range(form, range);
+        GPROJT_CHECK(range[0] < 0 && range[1] <= -1e-9 * range[0]);
+        gprojt_check_balance(form, &loads, 1e-10 * fmax(1, fabs(range[0])));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* -- refusals -- */
+
+static gproj_form *gprojt_form_with_equilibrium(gproj_mesh *mesh) {
+    gproj_loads loads = gprojt_no_loads();
+    loads.density = 1;
+    return gprojt_pinned_form(mesh, NULL, &loads);
+}
+
+static void gprojt_check_refused(gproj_form *form, bool refused, gproj_code code, gproj_place place, int64_t index) {
+    const gproj_error *error = gproj_form_error(form);
+    if (error->code != code || error->place != place || error->index != index)
+        printf("    %d %d %d: %s\n", (int)error->code, (int)error->place, (int)error->index, error->message);
+    GPROJT_CHECK(refused && error->code == code && error->place == place && error->index == index);
+    GPROJT_CHECK(error->message[0] && !strchr(error->message, '\n'));
+    GPROJT_CHECK(gproj_solve(form, 3, NULL).outcome == GPROJ_FAILED);
+    gproj_form_destroy(form);
+}
+
+GPROJT_TEST(refusals_of_equilibrium) {
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
+    double *density = gprojt_numbers(mesh->edge_count), *point = gprojt_numbers(3 * mesh->vertex_count);
+    static const int32_t far[2] = {0, 1000}, near[2] = {0, 1};
+    gproj_supports supports = {2, near, NULL};
+    int i;
+    density[7] = NAN, point[3 * 5 + 1] = INFINITY;
+    for (i = 0; i < 9; ++i) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_supports s = supports;
+        gproj_place place = i == 4 ? GPROJ_PLACE_EDGE : i == 5 || i == 6 ? GPROJ_PLACE_VERTEX : GPROJ_PLACE_NONE;
+        gproj_code code = i == 4 || i == 5 ? GPROJ_ERROR_NUMBER : i == 6 ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT;
+        if (i == 1) loads.density = NAN;
+        if (i == 2) loads.area_load = INFINITY;
+        if (i == 3) loads.snow = -INFINITY;
+        if (i == 4) loads.edge_density = density;
+        if (i == 5) loads.point_load = point;
+        if (i == 6) s.vertex = far;
+        if (i == 7) s.count = -1;
+        if (i == 8) s.vertex = NULL;
+        gprojt_check_refused(form, gproj_add_equilibrium(form, i ? &loads : NULL, &s, 1) == -1, code, place,
+                             i == 4   ? 7
+                             : i == 5 ? 5
+                             : i == 6 ? 1000
+                                      : -1);
+    }
+    {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads = gprojt_no_loads();
+        gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, NULL, 1) == -1, GPROJ_ERROR_ARGUMENT,
+                             GPROJ_PLACE_NONE, -1);
+        form = gprojt_form_with_equilibrium(mesh);
+        gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, 1) == -1, GPROJ_ERROR_STATE,
+                             GPROJ_PLACE_NONE, -1);
+        form = gproj_form_create(mesh, NULL);
+        gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, -1) == -1, GPROJ_ERROR_ARGUMENT,
+                             GPROJ_PLACE_NONE, -1);
+    }
+    gproj_mesh_destroy(mesh);
+    free(density), free(point);
+}
+
+GPROJT_TEST(refusals_without_equilibrium) {
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
+    double *w = gprojt_numbers(3 * mesh->vertex_count + mesh->edge_count);
+    int i;
+    for (i = 0; i < 7; ++i) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        bool refused = i == 0   ? gproj_add_compression(form, 1, NULL, 1) == -1
+                       : i == 1 ? gproj_add_tension(form, 1, NULL, 1) == -1
+                       : i == 2 ? gproj_add_stress_bounds(form, 1, NULL, NULL, 0, 1, 1) == -1
+                       : i == 3 ? gproj_add_force_fairness(form, 1) == -1
+                       : i == 4 ? gproj_set_forces(form, w) == GPROJ_ERROR_STATE
+                       : i == 5 ? gproj_find_forces(form, w, w) == GPROJ_ERROR_STATE
+                                : gproj_measure_forces(form).residual_vertex == -1;
+        gprojt_check_refused(form, refused, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1);
+    }
+    {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        w[0] = 1;
+        GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && w[0] == 0);
+        GPROJT_CHECK(gproj_get_loads(form, w) == GPROJ_ERROR_STATE &&
+                     gproj_get_reactions(form, w) == GPROJ_ERROR_STATE);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+    free(w);
+}
+
+GPROJT_TEST(refusals_of_bounds) {
+    static const int32_t far[2] = {0, 100000};
+    static const double none[2] = {1, 0}, infinite[2] = {INFINITY, 1};
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
+    double *w = gprojt_numbers(mesh->edge_count);
+    int i;
+    w[6] = NAN;
+    for (i = 0; i < 13; ++i) {
+        gproj_form *form = gprojt_form_with_equilibrium(mesh);
+        bool refused = false, edge = i < 2 || i == 5 || i == 6 || i == 10 || i == 12;
+        int64_t index = i < 2 || i == 10 ? 100000 : i == 5 ? 1 : i == 6 ? 0 : i == 12 ? 6 : -1;
+        gproj_code code = i < 2 || i == 10 ? GPROJ_ERROR_INDEX : i == 12 ? GPROJ_ERROR_NUMBER : GPROJ_ERROR_ARGUMENT;
+        if (i == 0) refused = gproj_add_compression(form, 2, far, 1) == -1;
+        if (i == 1) refused = gproj_add_tension(form, 2, far, 1) == -1;
+        if (i == 2) refused = gproj_add_compression(form, -1, far, 1) == -1;
+        if (i == 3) refused = gproj_add_tension(form, mesh->edge_count + 1, NULL, 1) == -1;
+        if (i == 4) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, 2, 1, 1) == -1;
+        if (i == 5) refused = gproj_add_stress_bounds(form, 2, NULL, none, 0, 1, 1) == -1;
+        if (i == 6) refused = gproj_add_stress_bounds(form, 2, NULL, infinite, 0, 1, 1) == -1;
+        if (i == 7) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, NAN, 1, 1) == -1;
+        if (i == 8) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, INFINITY, INFINITY, 1) == -1;
+        if (i == 9) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, -INFINITY, -INFINITY, 1) == -1;
+        if (i == 10) refused = gproj_add_stress_bounds(form, 2, far, NULL, 0, 1, 1) == -1;
+        if (i == 11) refused = gproj_add_stress_bounds(form, -2, far, NULL, 0, 1, 1) == -1;
+        if (i == 12) refused = gproj_set_forces(form, w) == GPROJ_ERROR_NUMBER;
+        if (!refused || gproj_form_error(form)->code != code) printf("    refusal %d\n", i);
+        gprojt_check_refused(form, refused, code, edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_NONE, index);
+    }
+    gproj_mesh_destroy(mesh);
+    free(w);
+}
+
+GPROJT_TEST(no_form) {
+    gproj_loads loads = gprojt_no_loads();
+    gproj_supports supports = {0, NULL, NULL};
+    double w[3];
+    GPROJT_CHECK(gproj_add_equilibrium(NULL, &loads, &supports, 1) == -1 &&
+                 gproj_add_compression(NULL, 0, NULL, 1) == -1);
+    GPROJT_CHECK(gproj_add_tension(NULL, 0, NULL, 1) == -1 && gproj_add_force_fairness(NULL, 1) == -1);
+    GPROJT_CHECK(gproj_add_stress_bounds(NULL, 0, NULL, NULL, 0, 1, 1) == -1);
+    GPROJT_CHECK(gproj_get_forces(NULL, w) == GPROJ_ERROR_ARGUMENT &&
+                 gproj_set_forces(NULL, w) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_get_loads(NULL, w) == GPROJ_ERROR_ARGUMENT &&
+                 gproj_get_reactions(NULL, w) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_find_forces(NULL, w, w) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_measure_forces(NULL).residual_vertex == -1);
+}
+
+/* -- memory, workers -- */
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_vault(HYBRID, 3, 10, 0); /* flat: with guidance of forces */
+    double *before = gprojt_keep(mesh), *w = gprojt_numbers(mesh->edge_count),
+           *f = gprojt_numbers(3 * mesh->vertex_count);
+    double *density = gprojt_numbers(mesh->edge_count), *r = gprojt_numbers(3 * mesh->vertex_count);
+    long fail_at;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) f[3 * v + 2] = -1;
+    for (v = 0; v < mesh->edge_count; ++v) density[v] = 1;
+    for (fail_at = 1;; ++fail_at) {
+        gprojt_failing failing;
+        gproj_host host;
+        gproj_form *form;
+        gproj_result result;
+        gproj_loads loads = gprojt_no_loads();
+        bool measured;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = fail_at;
+        host = gprojt_failing_host(&failing);
+        loads.edge_density = density, loads.point_load = f, loads.snow = 1, loads.area_load = 1;
+        form = gprojt_pinned_form(mesh, &host, &loads);
+        gproj_add_compression(form, mesh->edge_count, NULL, 1);
+        gproj_add_tension(form, 0, NULL, 1);
+        gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
+        gproj_add_force_fairness(form, 0.1);
+        gproj_find_forces(form, w, NULL);
+        if (form) gproj_get_reactions(form, r);
+        result = gproj_solve(form, 3, NULL);
+        if (form) gproj_get_reactions(form, r);
+        measured = gproj_measure_forces(form).residual_vertex >= 0;
+        if (failing.calls >= fail_at) {
+            GPROJT_CHECK(!measured && (!form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY));
+            GPROJT_REQUIRE(result.outcome == GPROJ_FAILED || failing.calls == fail_at);
+        }
+        gproj_form_destroy(form);
+        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
+        if (failing.calls < fail_at) break;
+        if (result.outcome == GPROJ_FAILED)
+            GPROJT_REQUIRE(memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before) == 0);
+        memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    }
+    GPROJT_CHECK(fail_at > 60);
+    gproj_mesh_destroy(mesh);
+    free(before), free(w), free(f), free(density), free(r);
+}
+
+GPROJT_TEST(same_bits_for_all_workers) {
+    double *first[2] = {NULL, NULL};
+    int crew;
+    for (crew = 0; crew < GPROJT_CREWS; ++crew) {
+        gproj_host host = gprojt_crew(crew);
+        gproj_mesh *mesh = gprojt_vault(QUADS, 9, 10, 3);
+        double *w = gprojt_numbers(mesh->edge_count);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        loads.density = 1, loads.snow = 1;
+        form = gprojt_pinned_form(mesh, &host, &loads);
+        gproj_add_compression(form, mesh->edge_count, NULL, 1);
+        gproj_add_planarity(form, 1);
+        gproj_solve(form, 8, NULL);
+        gproj_get_forces(form, w);
+        if (crew == 0) first[0] = gprojt_keep(mesh), first[1] = w;
+        GPROJT_CHECK(!memcmp(first[0], mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *w));
+        GPROJT_CHECK(!memcmp(first[1], w, (size_t)mesh->edge_count * sizeof *w));
+        if (crew) free(w);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    free(first[0]), free(first[1]);
+}
+
+int main(void) {
+    GPROJT_RUN(gradients);
+    GPROJT_RUN(load_rows_are_tangent);
+    GPROJT_RUN(force_density_method);
+    GPROJT_RUN(domes_stand_by_compression);
+    GPROJT_RUN(nets_hang_by_tension);
+    GPROJT_RUN(tents);
+    GPROJT_RUN(tripods);
+    GPROJT_RUN(stresses_stay_within_bounds);
+    GPROJT_RUN(fair_forces);
+    GPROJT_RUN(rollers_take_nothing_along_their_slides);
+    GPROJT_RUN(units_do_not_matter);
+    GPROJT_RUN(best_forces);
+    GPROJT_RUN(best_forces_within_active_bounds);
+    GPROJT_RUN(funicular_shapes_and_plates);
+    GPROJT_RUN(plates_are_infeasible);
+    GPROJT_RUN(forces_are_kept_and_set);
+    GPROJT_RUN(forces_of_any_size_are_set);
+    GPROJT_RUN(planar_faces_and_compression);
+    GPROJT_RUN(weights_switch_groups_off_and_on);
+    GPROJT_RUN(isolated_vertices);
+    GPROJT_RUN(supports_only);
+    GPROJT_RUN(no_supports);
+    GPROJT_RUN(prestressed_net);
+    GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(refusals_without_equilibrium);
+    GPROJT_RUN(refusals_of_bounds);
+    GPROJT_RUN(no_form);
+    GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(same_bits_for_all_workers);
+    return gprojt_report();
+}
