@@ -249,7 +249,7 @@ static int edit_distance(const char *a, size_t size, const char *b) {
     enum {
         MOST = 24
     };
-    int d[MOST + 1][MOST + 1], rows = (int)size, columns = (int)strlen(b), i, j;
+    int d[MOST + 1][MOST + 1] = {{0}}, rows = (int)size, columns = (int)strlen(b), i, j;
     if (rows > MOST || columns > MOST) return MOST;
     for (i = 0; i <= rows; ++i)
         for (j = 0; j <= columns; ++j) {
