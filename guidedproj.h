@@ -841,6 +841,27 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
    edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+/* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the least-squares
+   plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
+GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
+/* These vertices are on one unknown line: on two unknown planes with orthogonal normals. Nothing for 2 vertices and
+   fewer. */
+GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
+/* Each part of the boundary from corner to corner (gproj_form_is_corner), both with it, is on one unknown plane; a loop
+   without corners as a whole. */
+GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight);
+/* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Where faces are
+   planar quads, all those along a straight part lie in one plane. */
+GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
+/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, of any length > 0:
+   u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
+GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
+                                             const int32_t *edges, double weight);
+/* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the line
+   through the neighbours p and q: (t - b)'(q - p) / 2 = 0 (paper, Figure 13: right angles at the ground). */
+GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight);
+/* All vertices keep the x and y of their originals and move in z only (paper, Figure 13: lifting a flat mesh). */
+GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
 /* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
    positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
@@ -10352,6 +10373,8 @@ typedef struct gproji_part {
     double unit;       /* of the cost: by how much it changes per mean edge length of the mesh's size */
     int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
     double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
+    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: none of it */
+    int32_t *plane;    /* of each vertex (`capacity`), the first variable of its plane or planes; -1: none */
 } gproji_part;
 
 /* What the section statics keeps for a form. */
@@ -10403,6 +10426,7 @@ GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
     gproji_give(&form->own, part->gradient, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
     gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
     gproji_give(&form->own, part->factor, (size_t)part->capacity, sizeof *part->factor);
+    gproji_give(&form->own, part->plane, (size_t)part->capacity, sizeof *part->plane);
     gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
     gproji_give(&form->own, part, 1, sizeof *part);
 }
@@ -11433,6 +11457,260 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
         gproji_set_length_terms(form->mesh, edge, 0.5, term);
         gproji_set_term(&term[9], common, common, -0.5);
         gproj_system_add_row(form->system, group, 10, term, 0, edge);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* -- vertices on unknown planes and lines -- */
+
+/* The mean of points x[3 v] for `count` vertices v, and unit vectors along, across, flat in the directions in which they
+   scatter most, less and least. */
+GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int32_t *vertices, double mean[3],
+                                       double along[3], double across[3], double flat[3]) {
+    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
+    int32_t k, i, j;
+    gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, x + 3 * (size_t)vertices[k], mean);
+    for (k = 0; k < count; ++k) {
+        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
+    }
+    gproji_largest_eigenvector3(scatter, along);
+    gproji_tangents3(along, u, v);
+    for (k = 0; k < count; ++k) {
+        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
+        uu += gproji_dot3(d, u) * gproji_dot3(d, u);
+        uv += gproji_dot3(d, u) * gproji_dot3(d, v);
+        vv += gproji_dot3(d, v) * gproji_dot3(d, v);
+    }
+    angle = 0.5 * atan2(2 * uv, uu - vv);
+    for (k = 0; k < 3; ++k) {
+        across[k] = cos(angle) * u[k] + sin(angle) * v[k];
+        flat[k] = cos(angle) * v[k] - sin(angle) * u[k];
+    }
+}
+
+/* The mean of the originals of `count` vertices. */
+GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
+                                          double mean[3]) {
+    int32_t k;
+    gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
+}
+
+/* The planes n'(v - m) = d through the points x[3 v] of these vertices that fit best, 4 numbers each: n, d; m is the
+   mean of their originals. One plane, or two at right angles whose line fits best. */
+GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
+                                       double plane[8]) {
+    const double *x = gproj_system_values(form->system);
+    double mean[3], middle[3], along[3], across[3], flat[3];
+    int32_t p;
+    gproji_fit_points(x, count, vertices, mean, along, across, flat);
+    gproji_original_mean(form, count, vertices, middle);
+    gproji_sub3(mean, middle, mean);
+    for (p = 0; p < planes; ++p) {
+        gproji_copy3(p ? across : flat, plane + 4 * p);
+        plane[4 * p + 3] = gproji_dot3(plane + 4 * p, mean);
+    }
+}
+
+/* The rows n_p'n_q = 1 or 0 of the planes whose variables begin at `first`. */
+GPROJI_INTERNAL void gproji_add_plane_normals(gproj_form *form, int32_t group, int32_t planes, int32_t first,
+                                              int32_t vertex) {
+    int32_t p, q, k;
+    for (p = 0; p < planes; ++p) {
+        for (q = 0; q <= p; ++q) {
+            gproj_term term[3];
+            for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
+            gproj_system_add_row(form->system, group, 3, term, p == q ? -1 : 0, vertex);
+        }
+    }
+}
+
+/* The vertices from..part->count-1 of the part get their plane or planes: variables, and the rows n'(v - m) - d = 0.
+   Those of a set too small to leave a plane, or a line, get none. */
+GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, int32_t from) {
+    const int32_t *vertex = part->vertex + from;
+    int32_t count = part->count - from, first = -1, i, p, k;
+    double plane[8], middle[3];
+    if (count > (part->planes == 1 ? 3 : 2)) {
+        gproji_fit_planes(form, part->planes, count, vertex, plane);
+        gproji_original_mean(form, count, vertex, middle);
+        first = gproj_system_add_variables(form->system, 4 * part->planes, 4, plane);
+    }
+    for (i = 0; i < count; ++i) part->plane[from + i] = first;
+    if (first < 0) return;
+    gproji_add_plane_normals(form, part->group, part->planes, first, vertex[0]);
+    for (i = 0; i < count; ++i) {
+        for (p = 0; p < part->planes; ++p) {
+            gproj_term term[7];
+            for (k = 0; k < 3; ++k) {
+                gproji_set_term(&term[2 * k], 3 * vertex[i] + k, first + 4 * p + k, 1);
+                gproji_set_term(&term[2 * k + 1], first + 4 * p + k, -1, -middle[k]);
+            }
+            gproji_set_term(&term[6], first + 4 * p + 3, -1, -1);
+            gproj_system_add_row(form->system, part->group, 7, term, 0, vertex[i]);
+        }
+    }
+}
+
+/* Planes and lines begin a solve where they fit the vertices best. */
+GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
+    gproji_part *part;
+    int32_t from, to;
+    for (part = form->part; part; part = part->next) {
+        for (from = 0; part->plane && from < part->count; from = to) {
+            double plane[8];
+            for (to = from + 1; to < part->count && part->plane[to] == part->plane[from]; ++to) continue;
+            if (part->plane[from] < 0) continue;
+            gproji_fit_planes(form, part->planes, to - from, part->vertex + from, plane);
+            memcpy(gproj_system_values(form->system) + part->plane[from], plane,
+                   4 * (size_t)part->planes * sizeof *plane);
+        }
+    }
+}
+
+/* Makes a part one of planes (1) or lines (2) with a group that has no rows yet. */
+GPROJI_INTERNAL bool gproji_begin_planes(gproj_form *form, gproji_part *part, int32_t planes, const char *name,
+                                         double weight) {
+    if (!part) return false;
+    part->plane = (int32_t *)gproji_take(&form->own, (size_t)part->capacity, sizeof *part->plane);
+    if (!part->plane) {
+        gproji_fail_memory(&form->error);
+        return false;
+    }
+    part->planes = planes;
+    part->group = gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    return gproji_form_ready(form);
+}
+
+GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
+    gproji_part *part = gproji_new_vertex_part(form, "coplanar", count, vertices);
+    if (!gproji_begin_planes(form, part, 1, "coplanar", weight)) return -1;
+    gproji_add_plane_set(form, part, 0);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
+    gproji_part *part = gproji_new_vertex_part(form, "collinear", count, vertices);
+    if (!gproji_begin_planes(form, part, 2, "collinear", weight)) return -1;
+    gproji_add_plane_set(form, part, 0);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* The corners of a boundary loop; with any, *start becomes the half-edge that leaves one of them. */
+GPROJI_INTERNAL int32_t gproji_loop_corners(const gproj_form *form, int32_t loop, int32_t *start) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t h = mesh->loop_halfedge[loop], corners = 0;
+    *start = h;
+    do {
+        if (gproj_form_is_corner(form, mesh->origin[h])) *start = h, ++corners;
+        h = mesh->next[h];
+    } while (h != mesh->loop_halfedge[loop]);
+    return corners;
+}
+
+/* The sets of a boundary loop: from corner to corner, or the whole loop where there is none. */
+GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, int32_t loop) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t start, corners = gproji_loop_corners(form, loop, &start), h = start, from = part->count;
+    if (part->planes == 2 && corners < 3) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
+                    "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
+                    "between them",
+                    mesh->origin[h], corners);
+        return;
+    }
+    do {
+        part->vertex[part->count++] = mesh->origin[h];
+        h = mesh->next[h];
+        if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
+            part->vertex[part->count++] = mesh->origin[h];
+            gproji_add_plane_set(form, part, from);
+            from = part->count;
+        }
+    } while (h != start);
+    if (corners == 0) gproji_add_plane_set(form, part, from);
+}
+
+GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, int32_t planes, const char *name, double weight) {
+    gproji_part *part;
+    int32_t v, most = 0, loop;
+    if (!gproji_form_ready(form)) return -1;
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
+    part = gproji_new_part(form, most);
+    if (!gproji_begin_planes(form, part, planes, name, weight)) return -1;
+    part->count = 0;
+    for (loop = 0; loop < form->mesh->loop_count && gproji_form_ready(form); ++loop)
+        gproji_add_loop_sets(form, part, loop);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight) {
+    return gproji_add_boundary_sets(form, 1, "planar boundary", weight);
+}
+
+GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
+    return gproji_add_boundary_sets(form, 2, "straight boundary", weight);
+}
+
+/* -- directions of edges, lifting -- */
+
+GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
+                                             const int32_t *edges, double weight) {
+    static const double none[3] = {0, 0, 0};
+    double n[3] = {0, 0, 0}, across[2][3];
+    int32_t group, i, k, c;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "orthogonal edges", count, edges)) return -1;
+    if (normal) gproji_copy3(normal, n);
+    if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n))) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "orthogonal edges: the normal has no direction");
+        return -1;
+    }
+    gproji_tangents3(n, across[0], across[1]);
+    group = gproji_new_group(form, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    for (i = 0; i < 2 * count && gproji_form_ready(form); ++i) {
+        int32_t edge = edges ? edges[i / 2] : i / 2;
+        gproj_term term[6];
+        for (k = 0; k < 2; ++k)
+            for (c = 0; c < 3; ++c)
+                gproji_set_term(&term[3 * k + c], 3 * form->mesh->origin[2 * edge + k] + c, -1,
+                                k ? across[i % 2][c] : -across[i % 2][c]);
+        gproj_system_add_row(form->system, group, 6, term, 0, edge);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
+    int32_t group, v, k, ring[3];
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
+        gproj_term term[12]; /* ring: along the boundary the first and the last */
+        if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
+        for (k = 0; k < 3; ++k) {
+            gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
+            gproji_set_term(&term[4 * k + 1], 3 * ring[1] + k, 3 * ring[0] + k, -0.5);
+            gproji_set_term(&term[4 * k + 2], 3 * v + k, 3 * ring[2] + k, -0.5);
+            gproji_set_term(&term[4 * k + 3], 3 * v + k, 3 * ring[0] + k, 0.5);
+        }
+        gproj_system_add_row(form->system, group, 12, term, 0, v);
+    }
+    return gproji_form_ready(form) ? group : -1;
+}
+
+GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
+    int32_t group, i;
+    if (!gproji_form_ready(form)) return -1;
+    group = gproji_new_group(form, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
+        gproj_term term;
+        if (i % 3 == 2) continue;
+        gproji_set_term(&term, i, -1, 1);
+        gproj_system_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
     }
     return gproji_form_ready(form) ? group : -1;
 }
@@ -13326,6 +13604,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     gproji_begin_forces(form);
     if (form->statics && options && options->nearest) gproji_set_force_guidance(form, false); /* forces are free */
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    gproji_restart_planes(form);
     guided =
         gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);

@@ -2,7 +2,8 @@
 
    A roof of triangles and quads (a flying carpet) with planar panels that look restless: the normals jump from panel
    to panel. Keeping every panel planar, the boundary on its curve and the roof near its shape, the tangential fairness
-   of the mesh and of its Gauss image (the mesh of the normals) make it calm. Writes hybrid_fairing.obj.
+   of the mesh and of its Gauss image (the mesh of the normals) make it calm. Writes hybrid_fairing_before.obj and
+   hybrid_fairing.obj.
 
    Build and run:   cc -O2 hybrid_fairing.c -lm -o hybrid_fairing && ./hybrid_fairing
    Prints:          how much the variation of the Gauss map fell */
@@ -70,6 +71,7 @@ int main(void) {
     gproj_surface *carpet = gproj_surface_create(mesh, NULL, &error);
     gproj_result flat = shape(mesh, carpet, false), fair;
     gproj_measures before = gproj_measure(mesh, NULL, NULL), after;
+    gproj_mesh_save(mesh, "hybrid_fairing_before.obj", NULL);
     fair = shape(mesh, carpet, true);
     after = gproj_measure(mesh, NULL, NULL);
     if (flat.outcome != GPROJ_CONVERGED || fair.outcome != GPROJ_CONVERGED) {

@@ -1,5 +1,6 @@
 #!/bin/bash
-# check_examples.sh - every example builds, runs, prints what tests/expected/NAME.txt says, and is short.
+# check_examples.sh - every example builds, runs, prints what tests/expected/NAME.txt says, is short, and is shown in
+# examples/README.md.
 . "$(dirname "$0")/checks.sh"
 
 ls "$root"/examples/*.c >/dev/null 2>&1 || { fail 'no examples'; report; }
@@ -7,7 +8,7 @@ ${MAKE:-make} --no-print-directory -k -C "$root/examples" build >"$work/make.txt
 clean 'the examples compile with warnings' "$(grep -E 'warning:|error:' "$work/make.txt")"
 for source in "$root"/examples/*.c; do
     name=$(basename "$source" .c) expected=$root/tests/expected/$(basename "$source" .c).txt
-    [ "$(wc -l <"$source")" -lt 100 ] && pass || fail "$name.c has 100 lines or more"
+    [ "$(wc -l <"$source")" -lt 120 ] && pass || fail "$name.c has 120 lines or more"
     grep -q '^/\*' <(head -n 1 "$source") && pass || fail "$name.c does not begin with a comment"
     if [ ! -x "$root/examples/build/$name" ]; then
         fail "$name does not build"
@@ -24,5 +25,13 @@ done
 for expected in "$root"/tests/expected/*.txt; do
     [ -f "$expected" ] || continue
     [ -f "$root/examples/$(basename "$expected" .txt).c" ] && pass || fail "$expected belongs to no example"
+done
+# examples/README.md shows every example and picture, and nothing that is not there.
+cd "$root/examples" || exit 2
+for file in *.c pictures/*.svg; do
+    grep -qF "]($file)" README.md && pass || fail "examples/README.md does not show $file"
+done
+for link in $(grep -oE '\]\([^):]+\)' README.md | sed 's/^](//; s/)$//'); do
+    [ -e "$link" ] && pass || fail "examples/README.md: there is no $link"
 done
 report

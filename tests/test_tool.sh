@@ -160,6 +160,8 @@ expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1 --fairness 0.1 --fix bou
 expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
+expect 2 "--colour is for a picture" grid.obj -o new.obj --planar --colour area
+expect 2 "expected planarity, area, parallelogram or bend" grid.obj -o new.obj --planar --picture new.svg --colour red
 expect 2 "AZIMUTH,ELEVATION" grid.obj -o new.obj --planar --picture new.svg --view north
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3,
@@ -409,10 +411,26 @@ run grid.obj -o sized.obj --fix boundary --edge-length 3,
 run grid.obj -o all.obj --planar --glide boundary --fairness 0.1 --tangential '0.01*0.9:5' --gauss 0.01 \
     --boundary-fairness=0.01 --closeness 0.01 --epsilon 1e-3 --iterations 40 --tolerance 1e-9
 [ $status -eq 0 ] && pass || fail "all wishes together exit with $status: $(tail -n 1 err.txt)"
+for option in planar-boundary straight-boundary orthogonal-boundary lifting; do
+    run grid.obj -o $option.obj --planar --$option --iterations 30 --report $option.json
+    [ $status -eq 0 ] && grep -q "\"${option/-/ }\"" $option.json && pass || fail "--$option: $(tail -n 1 err.txt)"
+done
 for view in iso top bottom front back left right side 30,20 -120.5,-10; do
     run grid.obj -o view.obj --planar --picture view.svg --view $view
     [ $status -eq 0 ] && [ "$(grep -c '<path' view.svg)" -ge 64 ] && pass || fail "--view $view"
 done
+
+for colour in planarity area parallelogram bend; do
+    run grid.obj -o colour.obj --planar --picture colour-$colour.svg --colour $colour
+    [ $status -eq 0 ] && [ "$(grep -c '<path' colour-$colour.svg)" -ge 64 ] && pass || fail "--colour $colour"
+done
+grep -q 'areas of the faces' colour-area.svg && pass || fail "--colour area has no legend"
+cmp -s <(grep '<path d' colour-area.svg) <(grep '<path d' colour-planarity.svg) &&
+    fail "--colour area colours like planarity" || pass
+run grid.obj -o drawn.obj --fix 0 --closeness 0 --picture drawn.svg # holds already
+[ $status -eq 0 ] && ! grep -q 'before (line)' drawn.svg && pass || fail "a mesh that holds already has a before"
+measure grid.obj drawn.obj
+want "a mesh that holds already" displacement_max 0
 
 # ---- statics ----
 

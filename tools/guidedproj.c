@@ -104,8 +104,8 @@ typedef struct tool {
     /* what the command line says */
     const char *input;
     tool_output output[OUTPUT_COUNT];
-    tool_weight planar, circular, conical, closeness, fairness, boundary_fairness, tangential, gauss, parallelograms,
-        equal_areas;
+    tool_weight planar, circular, conical, planar_boundary, straight_boundary, orthogonal_boundary, lifting, closeness,
+        fairness, boundary_fairness, tangential, gauss, parallelograms, equal_areas;
     tool_weight equal_lengths;
     tool_range edge_length, face_area;
     tool_volume volume, total_area, cost;
@@ -124,6 +124,7 @@ typedef struct tool {
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
+    const struct tool_colour *colour; /* what colours the faces of the picture; NULL: planarity */
     bool nearest, view_given, quiet, help, version;
     bool seen[MOST_OPTIONS];
 
@@ -139,6 +140,7 @@ typedef struct tool {
     gproj_form *form;
     gproj_result result;
     double *original, *planarity_before, *planarity;
+    double *shade;                        /* of each face, what colours it; NULL: its planarity */
     double *point_load;                   /* of --loads */
     double *imbalance_before, *imbalance; /* of faces: what the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
@@ -247,7 +249,7 @@ static int edit_distance(const char *a, size_t size, const char *b) {
     enum {
         MOST = 24
     };
-    int d[MOST + 1][MOST + 1], rows = (int)size, columns = (int)strlen(b), i, j;
+    int d[MOST + 1][MOST + 1] = {{0}}, rows = (int)size, columns = (int)strlen(b), i, j;
     if (rows > MOST || columns > MOST) return MOST;
     for (i = 0; i <= rows; ++i)
         for (j = 0; j <= columns; ++j) {
@@ -498,6 +500,71 @@ static bool set_view(tool *t, void *place, const char *name, const char *value) 
                 name, value);
 }
 
+/* ---- what colours the faces of a picture ---- */
+
+typedef struct tool_colour {
+    const char *name, *legend;
+    double high; /* the end of its linear scale, which begins at 0 */
+    double (*value)(const tool *t, int32_t face);
+} tool_colour;
+
+/* The area of a face over the mean of all. */
+static double area_of_face(const tool *t, int32_t face) {
+    double a[3];
+    gproj_mesh_face_area_vector(t->mesh, face, a);
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * t->mesh->face_count / t->after.area;
+}
+
+/* |v1 - v2 + v3 - v4| of a quad, in mean edge lengths; other faces: 0. */
+static double skew_of_face(const tool *t, int32_t face) {
+    const int32_t *next = t->mesh->next, *origin = t->mesh->origin;
+    int32_t h = t->mesh->face_halfedge[face], k;
+    double sum[3] = {0, 0, 0};
+    if (t->mesh->face_degree[face] != 4) return 0;
+    for (k = 0; k < 4; ++k, h = next[h]) {
+        const double *p = t->mesh->position + 3 * (size_t)origin[h], sign = k % 2 ? -1 : 1;
+        sum[0] += sign * p[0], sum[1] += sign * p[1], sum[2] += sign * p[2];
+    }
+    return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / t->after.mean_edge;
+}
+
+/* The angle between two vectors, in degrees. */
+static double angle_between(const double a[3], const double b[3]) {
+    double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    return 57.29577951308232 * atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+/* The largest angle between the normals of a face and of a face beside it. */
+static double bend_of_face(const tool *t, int32_t face) {
+    int32_t h = t->mesh->face_halfedge[face], k;
+    double a[3], b[3], largest = 0;
+    gproj_mesh_face_area_vector(t->mesh, face, a);
+    for (k = 0; k < t->mesh->face_degree[face]; ++k, h = t->mesh->next[h]) {
+        int32_t beside = t->mesh->face[t->mesh->twin[h]];
+        if (beside < 0) continue;
+        gproj_mesh_face_area_vector(t->mesh, beside, b);
+        largest = fmax(largest, angle_between(a, b));
+    }
+    return largest;
+}
+
+static const tool_colour colours[] = {
+    {"planarity", "planarity of the faces, in mean edge lengths", 0, NULL},
+    {"area", "areas of the faces; 1: their mean", 2, area_of_face},
+    {"parallelogram", "quads against parallelograms: |v1 - v2 + v3 - v4| in mean edge lengths", 0.25, skew_of_face},
+    {"bend", "largest angle between normals of a face and one beside it, in degrees", 40, bend_of_face},
+};
+
+static bool set_colour(tool *t, void *place, const char *name, const char *value) {
+    size_t i;
+    for (i = 0; i < sizeof colours / sizeof colours[0]; ++i)
+        if (strcmp(value, colours[i].name) == 0) {
+            *(const tool_colour **)place = &colours[i];
+            return true;
+        }
+    return fail(t, EXIT_USAGE, "--%s %s: expected planarity, area, parallelogram or bend", name, value);
+}
+
 /* ---- the table of options ---- */
 
 typedef struct tool_option {
@@ -531,6 +598,13 @@ static const tool_option options[] = {
     {0, "cost", "CL,CA,MAX", false,
      "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
      NULL, set_cost, PLACE(cost)},
+    {0, "planar-boundary", "[=W]", false, "each part of the boundary between corners lies in a plane of its own", NULL,
+     set_must, PLACE(planar_boundary)},
+    {0, "straight-boundary", "[=W]", false, "the boundary is straight between its corners", NULL, set_must,
+     PLACE(straight_boundary)},
+    {0, "orthogonal-boundary", "[=W]", false, "inner edges meet the boundary at right angles", NULL, set_must,
+     PLACE(orthogonal_boundary)},
+    {0, "lifting", "[=W]", false, "vertices keep their x and y and move in z only", NULL, set_must, PLACE(lifting)},
     {0, "volume", "V", false,
      "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's", NULL,
      set_volume, PLACE(volume)},
@@ -602,12 +676,14 @@ static const tool_option options[] = {
      "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I", NULL,
      set_path, PLACE(output[OUTPUT_FORCES])},
     {0, "picture", "FILE", false,
-     "SVG: the result, coloured by the planarity of its faces; with --equilibrium also forces as widths of edges, and "
-     "without --planar by how far the faces are from standing by themselves",
+     "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges, and "
+     "without --planar coloured by how far the faces are from standing by themselves",
      NULL, set_path, PLACE(output[OUTPUT_PICTURE])},
     {0, "view", "VIEW", false,
      "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", NULL,
      set_view, PLACE(view)},
+    {0, "colour", "WHAT", false, "of the faces in the picture, by planarity, area, parallelogram or bend", NULL,
+     set_colour, PLACE(colour)},
     {0, "offset", "DISTANCE,FILE", false,
      "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
      "(exact "
@@ -748,7 +824,8 @@ static bool anything_asked(const tool *t) {
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
            t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
            t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
-           t->total_area.given || t->cost.given || t->equilibrium.given;
+           t->total_area.given || t->cost.given || t->equilibrium.given ||
+           t->planar_boundary.given || t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given;
 }
 
 static bool anything_wished(const tool *t) {
@@ -771,6 +848,8 @@ static bool check_options(tool *t) {
                     "--fairness 0.2)");
     if (t->view_given && !t->output[OUTPUT_PICTURE].path)
         return fail(t, EXIT_USAGE, "--view is for a picture: add --picture FILE.svg");
+    if (t->colour && !t->output[OUTPUT_PICTURE].path)
+        return fail(t, EXIT_USAGE, "--colour is for a picture: add --picture FILE.svg");
     if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
@@ -955,7 +1034,8 @@ static bool read_mesh(tool *t) {
     t->original = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->original);
     t->planarity_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);
     t->planarity = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);
-    if (!t->original || !t->planarity_before || !t->planarity) return false;
+    if (t->colour && t->colour->value) t->shade = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->shade);
+    if (!t->original || !t->planarity_before || !t->planarity || t->exit_code != 0) return false;
     memcpy(t->original, t->mesh->position, 3 * (size_t)t->mesh->vertex_count * sizeof *t->original);
     t->before = gproj_measure(t->mesh, t->original, t->planarity_before);
     for (i = 0; i < t->move_count; ++i)
@@ -1307,6 +1387,10 @@ static bool build_form(tool *t) {
     if (!t->form) return fail_memory(t);
     if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
     if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
+    if (t->planar_boundary.weight > 0) gproj_add_planar_boundary(t->form, t->planar_boundary.weight);
+    if (t->straight_boundary.weight > 0) gproj_add_straight_boundary(t->form, t->straight_boundary.weight);
+    if (t->orthogonal_boundary.weight > 0) gproj_add_orthogonal_boundary(t->form, t->orthogonal_boundary.weight);
+    if (t->lifting.weight > 0) gproj_add_lifting(t->form, t->lifting.weight);
     if (!add_statics(t)) return false;
     if (t->conical.weight > 0) gproj_add_conicality(t->form, t->conical.weight);
     add_sizes(t);
@@ -1419,6 +1503,7 @@ static bool measure_forces(tool *t) {
 static bool solve(tool *t) {
     gproj_solve_options how;
     double begin = now(NULL);
+    int32_t i;
     memset(&how, 0, sizeof how);
     how.tolerance = t->tolerance;
     how.epsilon = t->epsilon;
@@ -1445,6 +1530,7 @@ static bool solve(tool *t) {
     if (t->exit_code != 0) return false; /* the callback ran out of memory */
     if (t->result.outcome == GPROJ_FAILED) return fail_library(t, NULL, gproj_form_error(t->form));
     t->after = gproj_measure(t->mesh, t->original, t->planarity);
+    for (i = 0; t->shade && i < t->mesh->face_count; ++i) t->shade[i] = t->colour->value(t, i);
     return !t->equilibrium.given || measure_forces(t);
 }
 
@@ -1836,27 +1922,46 @@ static gproj_code write_report(tool *t, FILE *file) {
 
 static const char *file_name(const char *path) { return strrchr(path, '/') ? strrchr(path, '/') + 1 : path; }
 
+/* What colours the faces: what --colour says; else imbalance, where that was found; else planarity. */
+static void choose_colours(const tool *t, gprojx_picture_options *picture) {
+    bool moved = t->result.iterations > 0;
+    picture->legend = "planarity of the faces, in mean edge lengths";
+    picture->face_value = t->planarity;
+    picture->face_before = moved ? t->planarity_before : NULL;
+    if (t->shade) {
+        picture->legend = t->colour->legend;
+        picture->face_value = t->shade;
+        picture->face_before = NULL;
+        picture->linear = true;
+        picture->high = t->colour->high;
+    } else if (t->imbalance_before && !t->colour) {
+        picture->legend = "load that the best forces cannot balance, over the mean load";
+        picture->face_value = t->imbalance;
+        picture->face_before = t->imbalance_before;
+    }
+}
+
 static gproj_code write_picture(tool *t, FILE *file) {
     gprojx_picture_options picture;
     char caption[160];
+    int length;
     memset(&picture, 0, sizeof picture);
-    snprintf(caption, sizeof caption, "%ld vertices, %ld faces \xc2\xb7 planarity %.1e \xe2\x86\x92 %.1e",
-             (long)t->mesh->vertex_count, (long)t->mesh->face_count, t->before.planarity_max, t->after.planarity_max);
+    length = snprintf(caption, sizeof caption, "%ld vertices, %ld faces \xc2\xb7 ", (long)t->mesh->vertex_count,
+                      (long)t->mesh->face_count);
+    if (t->imbalance_before)
+        snprintf(caption + length, sizeof caption - (size_t)length, "equilibrium to %.1e of the largest load",
+                 t->forces.residual);
+    else if (t->result.iterations > 0)
+        snprintf(caption + length, sizeof caption - (size_t)length, "planarity %.1e \xe2\x86\x92 %.1e",
+                 t->before.planarity_max, t->after.planarity_max);
+    else
+        snprintf(caption + length, sizeof caption - (size_t)length, "planarity %.1e", t->after.planarity_max);
     picture.title = file_name(t->output[OUTPUT_MESH].path);
     picture.caption = caption;
-    picture.legend = "planarity of the faces, in mean edge lengths";
     picture.view = t->view_given ? &t->view : NULL;
     picture.original = t->original;
-    picture.face_value = t->planarity;
-    picture.face_before = t->planarity_before;
     if (t->equilibrium.given) picture.edge_value = t->force_in_edge;
-    if (t->imbalance_before) {
-        snprintf(caption, sizeof caption, "%ld vertices, %ld faces \xc2\xb7 equilibrium to %.1e of the largest load",
-                 (long)t->mesh->vertex_count, (long)t->mesh->face_count, t->forces.residual);
-        picture.legend = "load that the best forces cannot balance, over the mean load";
-        picture.face_value = t->imbalance;
-        picture.face_before = t->imbalance_before;
-    }
+    choose_colours(t, &picture);
     return gprojx_picture(file, t->mesh, &picture);
 }
 
@@ -2053,7 +2158,8 @@ static void clean_up(tool *t) {
     free(t->curve), free(t->fix), free(t->glide), free(t->move);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
-    free(t->original), free(t->planarity_before), free(t->planarity), free(t->record), free(t->group_record);
+    free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade), free(t->record),
+        free(t->group_record);
 }
 
 int main(int argc, char **argv) {
