@@ -373,13 +373,12 @@ typedef struct gproj_least_squares_result {
 
 /* Solves the problem. x, `columns` numbers: where to start; at the end the solution. A start of zeros is good. A start
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
-   zeros. `host`, `result` and `error` may be NULL.
-   The work are factorisations of a matrix with the pattern of A'A, so a row of A must not have very many entries. Usual
-   are 5 to 20; up to 30 where most bounds matter and the residual stays large; there are never more than 80.
-   Where A has dependent columns and damping is 0, nothing is added to the problem: 1e-12 of the diagonal of A'A stands in
-   the matrix of each step, but not in the conditions that the solution satisfies.
-   Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for what is
-   wrong with the problem, GPROJ_ERROR_MEMORY. */
+   zeros. `host`, `result` and `error` may be NULL. The work are factorisations of a matrix with the pattern of A'A, so
+   a row of A must not have very many entries. Usual are 5 to 20; up to 30 where most bounds matter and the residual
+   stays large; there are never more than 80. Where A has dependent columns and damping is 0, nothing is added to the
+   problem: 1e-12 of the diagonal of A'A stands in the matrix of each step, but not in the conditions that the solution
+   satisfies. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
+   for what is wrong with the problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -743,19 +742,19 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
    conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is, gproj_measure_offset
    tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
 
-/* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane orthogonal
-   to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round closes: in a
-   mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without doubled
-   vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices, and with
-   holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes best.
-   Vertices without a face stay. */
+/* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
+   orthogonal to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round
+   closes: in a mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without
+   doubled vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices,
+   and with holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes
+   best. Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
 /* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
-   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis a
-   of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the boundary
-   n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary, which become
-   as parallel as they can. Vertices without a face stay. */
+   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis
+   a of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the
+   boundary n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary,
+   which become as parallel as they can. Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
 /* The panels between a mesh and its offset: face e is the quad v_i v_j o_j o_i of edge e with half-edge 2e from i to j.
@@ -829,10 +828,10 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
 /* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
    a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting
-   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew in
-   each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
-   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis nearest
-   to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
+   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew
+   in each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
+   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis
+   nearest to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
 /* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
@@ -841,8 +840,8 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
    edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
-/* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the least-squares
-   plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
+/* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the
+   least-squares plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
 GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
 /* These vertices are on one unknown line: on two unknown planes with orthogonal normals. Nothing for 2 vertices and
    fewer. */
@@ -857,8 +856,8 @@ GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
    u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight);
-/* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the line
-   through the neighbours p and q: (t - b)'(q - p) / 2 = 0 (paper, Figure 13: right angles at the ground). */
+/* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the
+   line through the neighbours p and q: (t - b)'(q - p) / 2 = 0 (paper, Figure 13: right angles at the ground). */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight);
 /* All vertices keep the x and y of their originals and move in z only (paper, Figure 13: lifting a flat mesh). */
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
@@ -967,17 +966,17 @@ typedef struct gproj_loads {
 } gproj_loads;
 
 /* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
-   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; whether it stays where it
-   is, is another matter: see gproj_add_fixed and gproj_add_gliding_boundary. */
+   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; whether it stays
+   where it is, is another matter: see gproj_add_fixed and gproj_add_gliding_boundary. */
 typedef struct gproj_supports {
     int32_t count;
     const int32_t *vertex;
     const uint8_t *slides;
 } gproj_supports;
 
-/* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the forces
-   start from the solution of gproj_find_forces; where the shape carries next to nothing, from uniform forces that bend it
-   first. Later solves go on from the forces they find. */
+/* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
+   forces start from the solution of gproj_find_forces; where the shape carries next to nothing, from uniform forces
+   that bend it first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -995,12 +994,12 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
 /* Sets them as the start of the next solve; NULL: the next solve finds its own start. */
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
-/* The variable of an edge's force in the form's system, for rows of your own: the density in the form's units, which are
-   chosen at the first solve so that the mean square is 1. -1: the edge has none. */
+/* The variable of an edge's force in the form's system, for rows of your own: the density in the form's units, which
+   are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
-/* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), zero along axes without support. */
+/* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
 
 /* How self-supporting is the mesh as it is? The forces that balance its loads best: densities (edge_count numbers, may
@@ -9606,9 +9605,9 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double 
     return count;
 }
 
-/* The axis of the cone that the planes around a vertex touch: it is in the bisecting planes of all edges. The unit vector
-   along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal to it
-   and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
+/* The axis of the cone that the planes around a vertex touch: it is in the bisecting planes of all edges. The unit
+   vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
+   to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
                                          double axis[3]) {
     int32_t count = gproji_mean_normal(mesh, position, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
@@ -9983,8 +9982,8 @@ GPROJI_INTERNAL void gproji_closing(const gproj_mesh *mesh, const gproji_mirrors
         for (j = 0; j < 3; ++j) closing[i][j] /= edges;
 }
 
-/* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed) in
-   which the mesh does not close as well as it can; all of it where hardly half would be left. */
+/* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed)
+   in which the mesh does not close as well as it can; all of it where hardly half would be left. */
 GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted[3], double m[3]) {
     static const double up[3] = {0, 0, 1};
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, least, column[3];
@@ -10038,10 +10037,11 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
 /* -- the field of a face offset -- */
 
 /* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the minimum that is nearest to it; in two
-   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between two
-   faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for edges
-   between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x moves only
-   as the distances of the faces allow: along the one edge between two faces, or in the plane of the only face. */
+   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between
+   two faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for
+   edges between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x
+   moves only as the distances of the faces allow: along the one edge between two faces, or in the plane of the only
+   face. */
 typedef struct gproji_parallels {
     const gproj_mesh *mesh;
     bool boundary;     /* the second stage */
@@ -11392,20 +11392,31 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists that are no edges of the mesh. */
-GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
-    int32_t i, have = form->mesh->edge_count;
-    if (count < 0 || (!edges && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d edges of %d", name, count, have);
+/* Refuses lists that are no elements (edges, faces) of the mesh, which has `have` of them. */
+GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
+                                               int32_t count, const int32_t *elements) {
+    const char *word = gproji_place_word(place);
+    int32_t i;
+    if (count < 0 || (!elements && count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d %ss of %d", name, count, word,
+                    have);
         return false;
     }
-    for (i = 0; edges && i < count; ++i) {
-        if (edges[i] >= 0 && edges[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edges[i],
-                    "%s: there is no edge %d (the mesh has %d, counted from 0)", name, edges[i], have);
+    for (i = 0; elements && i < count; ++i) {
+        if (elements[i] >= 0 && elements[i] < have) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
+                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, word, elements[i], have);
         return false;
     }
     return true;
+}
+
+GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
+    return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
+}
+
+GPROJI_INTERNAL bool gproji_faces_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *faces) {
+    return gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces);
 }
 
 /* The terms of scale |v_i - v_j|^2 for the ends of an edge: 9 of them. */
@@ -11463,8 +11474,8 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean of points x[3 v] for `count` vertices v, and unit vectors along, across, flat in the directions in which they
-   scatter most, less and least. */
+/* The mean of points x[3 v] for `count` vertices v, and unit vectors along, across, flat in the directions in which
+   they scatter most, less and least. */
 GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int32_t *vertices, double mean[3],
                                        double along[3], double across[3], double flat[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
@@ -11774,8 +11785,8 @@ GPROJI_INTERNAL int32_t gproji_faces_at(const gproj_mesh *mesh, int32_t vertex) 
     return gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
 }
 
-/* The row det(a, e, m) / (2 |e|) = 0 of a half-edge, linearised at x: a the axis of its origin, e = v_j - v_i, m = n_f +
-   n_g. Its derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
+/* The row det(a, e, m) / (2 |e|) = 0 of a half-edge, linearised at x: a the axis of its origin, e = v_j - v_i, m = n_f
+   + n_g. Its derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cone_row(const gproj_form *form, gproj_system *system, int32_t group, int32_t row,
                                              int32_t halfedge) {
     const gproj_mesh *mesh = form->mesh;
@@ -12048,22 +12059,6 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
         }
     }
     return gproji_form_ready(form) ? group : -1;
-}
-
-/* Refuses lists that are no faces of the mesh. */
-GPROJI_INTERNAL bool gproji_faces_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *faces) {
-    int32_t i, have = form->mesh->face_count;
-    if (count < 0 || (!faces && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d faces of %d", name, count, have);
-        return false;
-    }
-    for (i = 0; faces && i < count; ++i) {
-        if (faces[i] >= 0 && faces[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, faces[i],
-                    "%s: there is no face %d (the mesh has %d, counted from 0)", name, faces[i], have);
-        return false;
-    }
-    return true;
 }
 
 /* The rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) of each face. */
@@ -13061,7 +13056,8 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     return s->lost > gproji_force_lost;
 }
 
-/* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise. */
+/* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise.
+   */
 GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
     gproji_statics *s = form->statics;
     gproj_schedule schedule = {0, 0.3, 5};

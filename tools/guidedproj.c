@@ -338,20 +338,34 @@ static bool set_total_area(tool *t, void *place, const char *name, const char *v
                 name, value);
 }
 
-/* MIN,MAX[=W], one of the two may be left out. */
-static bool set_range(tool *t, void *place, const char *name, const char *value) {
-    tool_range *range = (tool_range *)place;
+/* MIN,MAX[=W]; what is left out stays as it is. */
+static bool read_range(const char *value, tool_range *range) {
     tool_word word = split_word(value, 1);
     const char *comma = (const char *)memchr(word.text, ',', word.length);
     size_t first = comma ? (size_t)(comma - word.text) : 0, rest = comma ? word.length - first - 1 : 0;
-    bool good = comma && first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0;
-    range->given = true, range->min = range->max = 0;
-    if (first > 0) good = good && read_number(word.text, first, &range->min) && range->min >= 0;
-    if (rest > 0) good = good && read_number(comma + 1, rest, &range->max) && range->max > 0;
-    if (rest > 0) good = good && range->min <= range->max;
+    range->given = true;
     range->weight = word.weight.weight;
-    if (good) return true;
+    return first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0 &&
+           (first == 0 || read_number(word.text, first, &range->min)) &&
+           (rest == 0 || read_number(comma + 1, rest, &range->max)) &&
+           (first == 0 || rest == 0 || range->min <= range->max);
+}
+
+/* Of lengths and areas: 0 is no bound. */
+static bool set_range(tool *t, void *place, const char *name, const char *value) {
+    tool_range *range = (tool_range *)place;
+    const char *comma = strchr(value, ',');
+    bool bounded = comma && comma[1] && comma[1] != '=';
+    if (read_range(value, range) && range->min >= 0 && range->max >= 0 && (!bounded || range->max > 0)) return true;
     return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX", name, value);
+}
+
+/* Of stresses, of either sign. */
+static bool set_stress(tool *t, void *place, const char *name, const char *value) {
+    tool_range *range = (tool_range *)place;
+    range->min = -HUGE_VAL, range->max = HUGE_VAL;
+    if (read_range(value, range)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with MIN <= MAX", name, value);
 }
 
 /* LENGTHPRICE,AREAPRICE,MAX or ...,xF */
@@ -366,21 +380,6 @@ static bool set_cost(tool *t, void *place, const char *name, const char *value) 
                 "--%s %s: expected LENGTHPRICE,AREAPRICE,MAX: prices of 0 or larger, not both 0, and the largest cost, "
                 "or x and a factor of the input's cost (as in 1,2,x0.9)",
                 name, value);
-}
-
-/* The same for stresses, which may be of either sign, with bounds that may be left out. */
-static bool set_stress(tool *t, void *place, const char *name, const char *value) {
-    tool_range *range = (tool_range *)place;
-    tool_word word = split_word(value, 1);
-    const char *comma = (const char *)memchr(word.text, ',', word.length);
-    size_t first = comma ? (size_t)(comma - word.text) : 0, rest = comma ? word.length - first - 1 : 0;
-    bool good = comma && first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0;
-    range->given = true, range->min = -HUGE_VAL, range->max = HUGE_VAL;
-    if (first > 0) good = good && read_number(word.text, first, &range->min);
-    if (rest > 0) good = good && read_number(comma + 1, rest, &range->max);
-    range->weight = word.weight.weight;
-    if (good && range->min <= range->max) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with MIN <= MAX", name, value);
 }
 
 static bool set_load(tool *t, void *place, const char *name, const char *value) {
@@ -824,8 +823,8 @@ static bool anything_asked(const tool *t) {
            t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
            t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
            t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
-           t->total_area.given || t->cost.given || t->equilibrium.given ||
-           t->planar_boundary.given || t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given;
+           t->total_area.given || t->cost.given || t->equilibrium.given || t->planar_boundary.given ||
+           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given;
 }
 
 static bool anything_wished(const tool *t) {
