@@ -501,8 +501,8 @@ typedef struct gproj_iteration {
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
-    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or 8 roundings of the largest |x| where that
-       is more. */
+    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
+       roundings of the largest |x|, and in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3) */
     double time_budget; /* seconds by the host's clock; 0 means none */
@@ -1858,6 +1858,27 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
     gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
+
+/* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
+typedef struct gproji_sum {
+    double high, low;
+} gproji_sum;
+
+GPROJI_INLINE void gproji_sum_add(gproji_sum *s, double x) {
+    double total = s->high + x, part = total - s->high;
+    s->low += (s->high - (total - part)) + (x - part);
+    s->high = total;
+}
+
+/* += a b, for |a|, |b| < 1e100. */
+GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
+    double p = a * b, ca = 134217729.0 * a, cb = 134217729.0 * b; /* 2^27 + 1 splits a double into halves */
+    double ah = ca - (ca - a), al = a - ah, bh = cb - (cb - b), bl = b - bh;
+    s->low += ((ah * bh - p) + ah * bl + al * bh) + al * bl;
+    gproji_sum_add(s, p);
+}
+
+GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s->low; }
 
 /* ============================================================================================================
    >>dense   Dense kernels of the Cholesky factorisation: small tiles kept in registers. Uses platform, parallel.
@@ -5065,6 +5086,7 @@ struct gproj_system {
     bool sliding;         /* nearest: away from the start, where faces may become small */
     gproji_refuse_step refuse_step; /* NULL: none is refused */
     void *refuse_user;
+    double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
     double *x;
     int32_t *block; /* of each variable, the first variable of its block */
     size_t x_capacity, block_capacity;
@@ -5846,8 +5868,30 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
 typedef struct gproji_evaluation {
     gproji_group *group;
     const double *x;
+    double rounding; /* rows whose rounding may be larger than this are added up with more digits */
     int32_t chunks;
 } gproji_evaluation;
+
+/* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
+   where large terms cancel. */
+GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
+    gproji_sum sum = {0, 0};
+    int64_t t;
+    sum.high = row->constant;
+    for (t = row->term; t < row[1].term; ++t) {
+        const gproj_term *term = &g->term[t];
+        gproji_sum product = {0, 0};
+        gproji_sum_add_product(&product, term->a, x[term->i]);
+        if (term->j < 0) {
+            gproji_sum_add(&sum, product.high);
+            sum.low += product.low;
+        } else {
+            gproji_sum_add_product(&sum, product.high, x[term->j]);
+            sum.low += product.low * x[term->j];
+        }
+    }
+    return gproji_sum_value(&sum);
+}
 
 /* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
    violated, or where they did in the last step (gproji_switch_bounds lets them go again). */
@@ -5858,7 +5902,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
     for (; r < end; ++r) {
         gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local, phi = row->constant;
+        double *gradient = g->local_gradient + row->local, phi = row->constant, size = fabs(row->constant);
         int64_t t;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
@@ -5868,14 +5912,19 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             const gproj_term *term = &g->term[t];
             const gproji_term_local *place = &g->term_local[t];
             if (term->j < 0) {
-                phi += term->a * e->x[term->i];
+                double value = term->a * e->x[term->i];
+                phi += value;
+                size += fabs(value);
                 gradient[place->i] += term->a;
             } else {
-                phi += term->a * e->x[term->i] * e->x[term->j];
+                double value = term->a * e->x[term->i] * e->x[term->j];
+                phi += value;
+                size += fabs(value);
                 gradient[place->i] += term->a * e->x[term->j];
                 gradient[place->j] += term->a * e->x[term->i];
             }
         }
+        if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
         row->phi = phi;
         row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
     }
@@ -5890,6 +5939,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
         if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
         e.group = &s->group[i];
         e.x = s->x;
+        e.rounding = s->rounding;
         e.chunks = e.group->row_count / GPROJI_ROWS_PER_TASK + 1;
         gproji_for(&s->host.parallel, e.chunks, gproji_evaluate_chunk, &e);
     }
@@ -6273,22 +6323,36 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     return standing;
 }
 
+/* By how much rounding may change the value of a linear row. */
+GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, const double *x) {
+    double sum = 0;
+    int64_t t;
+    for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
+        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[g->term[t].i]);
+    return 16 * DBL_EPSILON * sum;
+}
+
 /* The caller's tolerance, or what rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     const gproj_system *s = loop->system;
-    double largest = 0;
-    int32_t v;
+    double largest = 0, tolerance;
+    int32_t v, i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
     for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
-    return gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
+            tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], r, s->x));
+    return tolerance;
 }
 
 /* Rows, gradients and standing at the current x. */
 GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
     gproji_refresh_groups(loop->system);
+    loop->tolerance = gproji_tolerance_at(loop);
+    loop->system->rounding = loop->tolerance;
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
-    loop->tolerance = gproji_tolerance_at(loop);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
@@ -12107,30 +12171,30 @@ GPROJI_INTERNAL double gproji_add_length_gradient(const gproj_form *form, double
     static const double none[3] = {0, 0, 0};
     const int32_t *origin = form->mesh->origin;
     const double *x = gproj_system_values(form->system);
-    double sum = 0;
+    gproji_sum sum = {0, 0};
     int32_t e;
     for (e = 0; e < form->mesh->edge_count; ++e, origin += 2) {
         double d[3];
         gproji_sub3(x + 3 * (size_t)origin[0], x + 3 * (size_t)origin[1], d);
-        sum += gproji_length3(d);
+        gproji_sum_add(&sum, gproji_length3(d));
         gproji_normalise3(d, none);
         gproji_add_scaled3(price, d, gradient + 3 * (size_t)origin[0]);
         gproji_add_scaled3(-price, d, gradient + 3 * (size_t)origin[1]);
     }
-    return sum;
+    return gproji_sum_value(&sum);
 }
 
 /* gradient += price * grad |a_k| over all faces at form->area; returns the sum of the areas. */
 GPROJI_INTERNAL double gproji_add_area_gradient(const gproj_form *form, double price, double *gradient) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
-    double sum = 0;
+    gproji_sum sum = {0, 0};
     int32_t f, k;
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         double normal[3];
         gproji_copy3(form->area + 3 * (size_t)f, normal);
-        sum += gproji_length3(normal);
+        gproji_sum_add(&sum, gproji_length3(normal));
         gproji_normalise3(normal, none);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             double slope[3];
@@ -12138,7 +12202,7 @@ GPROJI_INTERNAL double gproji_add_area_gradient(const gproj_form *form, double p
             gproji_add_scaled3(price, slope, gradient + 3 * (size_t)mesh->origin[h]);
         }
     }
-    return sum;
+    return gproji_sum_value(&sum);
 }
 
 /* The cost and its gradient at the system's x. */
@@ -12157,16 +12221,17 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
 GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
-    double ahead = gproji_cost(part->form, part, NULL);
+    gproji_sum ahead = {0, 0};
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
-    for (t = 0; t < count; ++t) ahead -= part->gradient[t] * x[t];
+    ahead.high = gproji_cost(part->form, part, NULL);
+    for (t = 0; t < count; ++t) gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
     for (side = 0; side < 2; ++side) {
         double scale = (side == 0 ? 1 : -1) / part->unit;
         gproj_term *term;
         if (!gproji_has_bound(part->bound, side)) continue;
         term = gproji_row_terms(system, group, row, &count);
         for (t = 0; t < count; ++t) term[t].a = scale * part->gradient[t];
-        gproj_system_set_row(system, group, row++, NULL, scale * (ahead - part->bound[side]));
+        gproj_system_set_row(system, group, row++, NULL, scale * (gproji_sum_value(&ahead) - part->bound[side]));
     }
 }
 
