@@ -331,8 +331,6 @@ static void gprojt_weigh_elements(gprojt_case *c, gprojt_ask *a) {
     if (info.place == GPROJ_PLACE_NONE || have == 0) return;
     for (i = 0; i < count; ++i) element[i] = gprojt_choose(c, have), weight[i] = weights[gprojt_choose(c, 5)];
     a->partly = true;
-    for (i = 0; i < c->asks; ++i) /* asking again may give the same group */
-        if (c->ask[i].group == a->group) c->ask[i].partly = true;
     gproj_set_element_weights(c->form, a->group, count, element, weight);
 }
 
@@ -436,6 +434,14 @@ static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     return off;
 }
 
+/* Asking again may give the same group. */
+static bool gprojt_is_partly(const gprojt_case *c, int32_t group) {
+    int32_t i;
+    for (i = 0; i < c->asks; ++i)
+        if (c->ask[i].group == group && c->ask[i].partly) return true;
+    return false;
+}
+
 /* "All constraints hold", in the form's units, to the tolerance and the rounding of the coordinates. */
 static void gprojt_check_converged(const gprojt_case *c, const gproj_result *result) {
     double centre[3], scale, size = 1, slack, *planarity, edge = gproj_mesh_mean_edge_length(c->mesh);
@@ -447,7 +453,7 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
     slack = 2 * result->tolerance + 64 * DBL_EPSILON * size;
     for (i = 0; i < c->asks; ++i) { /* a group that has no weight at the end is not asked for */
         if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
-        if (c->ask[i].partly) continue;
+        if (gprojt_is_partly(c, c->ask[i].group)) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
         if (c->ask[i].what == GPROJT_EQUILIBRIUM && c->form->statics->started)
             GPROJT_MUST(c->form->statics->load_scale * gprojt_off_balance(c) <= slack * (1 + size));
