@@ -10386,6 +10386,7 @@ typedef struct gproji_statics {
     int32_t *first_row; /* of each vertex, in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
+    double *work; /* 3 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     double lost;       /* the part of the load that the first forces could not balance */
     int32_t group;     /* of equilibrium */
@@ -10442,6 +10443,7 @@ GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_give(&form->own, s->force, edges, sizeof *s->force);
     gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
     gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
+    gproji_give(&form->own, s->work, 3 * vertices, sizeof *s->work);
     gproji_give(&form->own, s, 1, sizeof *s);
 }
 
@@ -12528,8 +12530,9 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
     s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
     s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
+    s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
     return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start;
+           s->first_row && s->load_start && s->work;
 }
 
 /* Which vertices are in equilibrium along which axes, which edges have a force. */
@@ -13149,17 +13152,11 @@ GPROJI_INTERNAL double gproji_mean_density(const gproj_form *form, const double 
     return carrying ? largest * sqrt(sum / carrying) : 0;
 }
 
-/* The density that balances the mean load at an angle of 45 degrees in a mean edge. -1 after an error. */
-GPROJI_INTERNAL double gproji_density_of_loads(gproj_form *form) {
-    size_t count = 3 * (size_t)form->mesh->vertex_count;
-    double density, *load = (double *)gproji_take(&form->own, count, sizeof *load);
-    if (!load) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    gproj_get_loads(form, load);
-    density = gproji_mean_load(form, load) * form->scale;
-    gproji_give(&form->own, load, count, sizeof *load);
+/* The density that balances the mean load at an angle of 45 degrees in a mean edge. */
+GPROJI_INTERNAL double gproji_density_of_loads(const gproj_form *form) {
+    double density;
+    gproj_get_loads(form, form->statics->work);
+    density = gproji_mean_load(form, form->statics->work) * form->scale;
     return gproji_is_finite(density) ? density : 0;
 }
 
@@ -13176,7 +13173,6 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
                            "set forces: the density of edge %d is not a finite number", e);
     }
     of_loads = gproji_density_of_loads(form);
-    if (of_loads < 0) return gproj_form_error(form)->code;
     mean = gproji_mean_density(form, densities);
     /* forces that are next to nothing must not make the loads huge */
     if (mean < gproji_least_force * of_loads) mean = of_loads;
@@ -13268,19 +13264,12 @@ GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, g
 
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     gproj_forces m;
-    double *sum;
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
     if (!form || !gproji_has_statics(form, "measure forces")) return m;
-    sum = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
-    if (!sum) {
-        gproji_fail_memory(&form->error);
-        return m;
-    }
-    gproj_get_loads(form, sum);
+    gproj_get_loads(form, form->statics->work);
     gproji_measure_members(form, &m);
-    gproji_measure_nodes(form, sum, &m);
-    gproji_give(&form->own, sum, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
+    gproji_measure_nodes(form, form->statics->work, &m);
     return m;
 }
 
