@@ -13111,7 +13111,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
 /* Densities in the caller's units. */
 GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
     const gproji_statics *s = form->statics;
-    if (!s || !s->started || s->force[edge] < 0) return 0;
+    if (!s || s->force[edge] < 0) return 0;
     return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
 }
 
@@ -13166,6 +13166,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
     form->statics->started = false;
+    x = gproj_system_values(form->system);
+    for (e = 0; !densities && e < form->mesh->edge_count; ++e)
+        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = 0;
     if (!densities) return GPROJ_OK;
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (form->statics->force[e] < 0 || gproji_is_finite(densities[e])) continue;
@@ -13177,7 +13180,6 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
     /* forces that are next to nothing must not make the loads huge */
     if (mean < gproji_least_force * of_loads) mean = of_loads;
     if (!(mean > DBL_MIN)) mean = 1;
-    x = gproj_system_values(form->system);
     form->statics->load_scale = form->scale / mean;
     for (e = 0; e < form->mesh->edge_count; ++e)
         if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / mean;

@@ -455,7 +455,7 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
         if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
         if (gprojt_is_partly(c, c->ask[i].group)) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
-        if (c->ask[i].what == GPROJT_EQUILIBRIUM && c->form->statics->started)
+        if (c->ask[i].what == GPROJT_EQUILIBRIUM)
             GPROJT_MUST(c->form->statics->load_scale * gprojt_off_balance(c) <= slack * (1 + size));
         GPROJT_MUST(scale * gprojt_off_bounds(c->mesh, &c->ask[i]) <= slack * (1 + size));
         if (c->ask[i].what != GPROJT_PLANAR) continue;
