@@ -975,8 +975,8 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces; where the shape carries next to nothing, from uniform forces
-   that bend it first. Later solves go on from the forces they find. */
+   forces start from the solution of gproj_find_forces; where that leaves more than three quarters of the loads, from
+   uniform forces that bend it first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -12695,7 +12695,7 @@ GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, con
                                             const double *sections, double min, double max) {
     int32_t k;
     if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
-    if (!(min <= max) || min == HUGE_VAL || max == -HUGE_VAL) {
+    if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "stress bounds: the least, %g, is not below the greatest, %g", min, max);
         return false;
