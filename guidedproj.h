@@ -975,8 +975,8 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces; where the shape carries next to nothing, from uniform forces
-   that bend it first. Later solves go on from the forces they find. */
+   forces start from the solution of gproj_find_forces; where that leaves more than three quarters of the loads, from
+   uniform forces that bend it first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -10450,6 +10450,7 @@ typedef struct gproji_statics {
     int32_t *first_row; /* of each vertex, in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
+    double *work; /* 3 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     double lost;       /* the part of the load that the first forces could not balance */
     int32_t group;     /* of equilibrium */
@@ -10506,6 +10507,7 @@ GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_give(&form->own, s->force, edges, sizeof *s->force);
     gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
     gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
+    gproji_give(&form->own, s->work, 3 * vertices, sizeof *s->work);
     gproji_give(&form->own, s, 1, sizeof *s);
 }
 
@@ -12593,8 +12595,9 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
     s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
     s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
+    s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
     return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start;
+           s->first_row && s->load_start && s->work;
 }
 
 /* Which vertices are in equilibrium along which axes, which edges have a force. */
@@ -12757,7 +12760,7 @@ GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, con
                                             const double *sections, double min, double max) {
     int32_t k;
     if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
-    if (!(min <= max) || min == HUGE_VAL || max == -HUGE_VAL) {
+    if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "stress bounds: the least, %g, is not below the greatest, %g", min, max);
         return false;
@@ -13173,7 +13176,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
 /* Densities in the caller's units. */
 GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
     const gproji_statics *s = form->statics;
-    if (!s || !s->started || s->force[edge] < 0) return 0;
+    if (!s || s->force[edge] < 0) return 0;
     return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
 }
 
@@ -13214,17 +13217,11 @@ GPROJI_INTERNAL double gproji_mean_density(const gproj_form *form, const double 
     return carrying ? largest * sqrt(sum / carrying) : 0;
 }
 
-/* The density that balances the mean load at an angle of 45 degrees in a mean edge. -1 after an error. */
-GPROJI_INTERNAL double gproji_density_of_loads(gproj_form *form) {
-    size_t count = 3 * (size_t)form->mesh->vertex_count;
-    double density, *load = (double *)gproji_take(&form->own, count, sizeof *load);
-    if (!load) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    gproj_get_loads(form, load);
-    density = gproji_mean_load(form, load) * form->scale;
-    gproji_give(&form->own, load, count, sizeof *load);
+/* The density that balances the mean load at an angle of 45 degrees in a mean edge. */
+GPROJI_INTERNAL double gproji_density_of_loads(const gproj_form *form) {
+    double density;
+    gproj_get_loads(form, form->statics->work);
+    density = gproji_mean_load(form, form->statics->work) * form->scale;
     return gproji_is_finite(density) ? density : 0;
 }
 
@@ -13234,6 +13231,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
     form->statics->started = false;
+    x = gproj_system_values(form->system);
+    for (e = 0; !densities && e < form->mesh->edge_count; ++e)
+        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = 0;
     if (!densities) return GPROJ_OK;
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (form->statics->force[e] < 0 || gproji_is_finite(densities[e])) continue;
@@ -13241,12 +13241,10 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
                            "set forces: the density of edge %d is not a finite number", e);
     }
     of_loads = gproji_density_of_loads(form);
-    if (of_loads < 0) return gproj_form_error(form)->code;
     mean = gproji_mean_density(form, densities);
     /* forces that are next to nothing must not make the loads huge */
     if (mean < gproji_least_force * of_loads) mean = of_loads;
     if (!(mean > DBL_MIN)) mean = 1;
-    x = gproj_system_values(form->system);
     form->statics->load_scale = form->scale / mean;
     for (e = 0; e < form->mesh->edge_count; ++e)
         if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / mean;
@@ -13333,19 +13331,12 @@ GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, g
 
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     gproj_forces m;
-    double *sum;
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
     if (!form || !gproji_has_statics(form, "measure forces")) return m;
-    sum = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
-    if (!sum) {
-        gproji_fail_memory(&form->error);
-        return m;
-    }
-    gproj_get_loads(form, sum);
+    gproj_get_loads(form, form->statics->work);
     gproji_measure_members(form, &m);
-    gproji_measure_nodes(form, sum, &m);
-    gproji_give(&form->own, sum, 3 * (size_t)form->mesh->vertex_count, sizeof *sum);
+    gproji_measure_nodes(form, form->statics->work, &m);
     return m;
 }
 

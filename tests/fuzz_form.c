@@ -265,7 +265,7 @@ static double gprojt_off_balance(const gprojt_case *c) {
 
 static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     static const double parts[4] = {0.7, 1, 1.2, 3};
-    double part = parts[a->count % 4];
+    double part = parts[a->count % 4], total = part * (a->max > 0 ? a->max : 1);
     switch (a->what) {
     case GPROJT_PLANAR: return gproj_add_planarity(c->form, weight);
     case GPROJT_FIX: return gproj_add_fixed(c->form, a->count, a->vertex, weight);
@@ -283,8 +283,8 @@ static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     case GPROJT_LENGTHS: return gproj_add_length_bounds(c->form, c->mesh->edge_count, NULL, a->min, a->max, weight);
     case GPROJT_AREAS: return gproj_add_area_bounds(c->form, c->mesh->face_count, NULL, a->min, a->max, weight);
     case GPROJT_COST: return gproj_add_cost_bounds(c->form, 1, 0.5, a->min, a->max, weight);
-    case GPROJT_TOTAL_AREA: return gproj_add_total_area(c->form, part * a->max, weight);
-    case GPROJT_TOTAL_COST: return gproj_add_cost(c->form, 0.3, a->count % 2, part * a->max, weight);
+    case GPROJT_TOTAL_AREA: return gproj_add_total_area(c->form, total, weight);
+    case GPROJT_TOTAL_COST: return gproj_add_cost(c->form, 0.3, a->count % 2, total, weight);
     case GPROJT_TOTAL_AREA_BOUNDS: return gproj_add_total_area_bounds(c->form, a->min, a->max, weight);
     case GPROJT_VOLUME: return gproj_add_volume(c->form, part * gproj_volume(c->mesh), weight);
     case GPROJT_EQUAL_LENGTHS: return gproj_add_equal_lengths(c->form, c->mesh->edge_count, NULL, weight);
@@ -352,6 +352,7 @@ static void gprojt_add_ask(gprojt_case *c) {
     if (a->what >= GPROJT_LENGTHS && a->what <= GPROJT_TOTAL_AREA_BOUNDS) gprojt_bounds_of_bytes(c, a);
     if ((a->what == GPROJT_GLIDE && !c->curve) || (a->what == GPROJT_REFER && !c->surface)) return;
     a->group = gprojt_ask_for(c, a, weight);
+    if (a->group < 0 && gproj_form_error(c->form)->code == GPROJ_OK) return; /* forces before there are any */
     if (a->group >= 0 && gprojt_choose(c, 4) == 0) gprojt_schedule_of_bytes(c, a->group);
     if (a->group >= 0 && gprojt_choose(c, 8) == 1) gprojt_weigh_elements(c, a);
     c->asks++;
@@ -433,6 +434,14 @@ static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     return off;
 }
 
+/* Asking again may give the same group. */
+static bool gprojt_is_partly(const gprojt_case *c, int32_t group) {
+    int32_t i;
+    for (i = 0; i < c->asks; ++i)
+        if (c->ask[i].group == group && c->ask[i].partly) return true;
+    return false;
+}
+
 /* "All constraints hold", in the form's units, to the tolerance and the rounding of the coordinates. */
 static void gprojt_check_converged(const gprojt_case *c, const gproj_result *result) {
     double centre[3], scale, size = 1, slack, *planarity, edge = gproj_mesh_mean_edge_length(c->mesh);
@@ -444,9 +453,9 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
     slack = 2 * result->tolerance + 64 * DBL_EPSILON * size;
     for (i = 0; i < c->asks; ++i) { /* a group that has no weight at the end is not asked for */
         if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
-        if (c->ask[i].partly) continue;
+        if (gprojt_is_partly(c, c->ask[i].group)) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
-        if (c->ask[i].what == GPROJT_EQUILIBRIUM && c->form->statics->started)
+        if (c->ask[i].what == GPROJT_EQUILIBRIUM)
             GPROJT_MUST(c->form->statics->load_scale * gprojt_off_balance(c) <= slack * (1 + size));
         GPROJT_MUST(scale * gprojt_off_bounds(c->mesh, &c->ask[i]) <= slack * (1 + size));
         if (c->ask[i].what != GPROJT_PLANAR) continue;
@@ -468,8 +477,7 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     return gproj_system_error(s)->code == GPROJ_OK;
 }
 
-/* What may be refused: a state (the Gauss image before planarity), areas and costs that are not > 0 (a mesh without
-   extent), numbers beyond all (loads per length of a tiny or huge mesh). */
+/* What may be refused: the Gauss image before planarity. */
 static void gprojt_check_refusal(const gproj_error *error) {
     bool known = error->code == GPROJ_ERROR_STATE;
     if (!known) fprintf(stderr, "%s\n", error->message);

@@ -1037,6 +1037,35 @@ GPROJT_TEST(weights_switch_groups_off_and_on) {
     free(pins.item), free(kept), free(w);
 }
 
+static bool gprojt_switch_on(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    gproj_schedule on = {1, 1, 0};
+    if (iteration->number == 2) gproj_system_set_schedule(s, *(const int32_t *)user, on);
+    return true;
+}
+
+/* Equilibrium that gets its weight on the way has forces, too. */
+GPROJT_TEST(equilibrium_on_the_way) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 5, 10, 3);
+    gprojt_list pins = gprojt_boundary(mesh);
+    gproj_supports supports = gprojt_pins(pins);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    int32_t group, v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] += 1;
+    memset(&options, 0, sizeof options);
+    loads.density = 1;
+    group = gproj_add_equilibrium(form, &loads, &supports, 0);
+    gproj_add_fixed_boundary(form, 1);
+    options.on_iteration = gprojt_switch_on, options.user = &group;
+    GPROJT_CHECK(gproj_solve(form, 60, &options).outcome == GPROJ_CONVERGED);
+    gprojt_check_balance(form, &loads, 1e-9);
+    GPROJT_CHECK(gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(pins.item);
+}
+
 /* -- borders -- */
 
 /* A square of four quads and two vertices without faces, one of them with a load. */
@@ -1318,7 +1347,7 @@ GPROJT_TEST(every_allocation_fails_once) {
         measured = gproj_measure_forces(form).residual_vertex >= 0;
         if (failing.calls >= fail_at) {
             GPROJT_CHECK(!measured && (!form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY));
-            GPROJT_REQUIRE(result.outcome == GPROJ_FAILED || failing.calls == fail_at);
+            GPROJT_REQUIRE(result.outcome == GPROJ_FAILED);
         }
         gproj_form_destroy(form);
         GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
@@ -1377,6 +1406,7 @@ int main(void) {
     GPROJT_RUN(forces_of_any_size_are_set);
     GPROJT_RUN(planar_faces_and_compression);
     GPROJT_RUN(weights_switch_groups_off_and_on);
+    GPROJT_RUN(equilibrium_on_the_way);
     GPROJT_RUN(isolated_vertices);
     GPROJT_RUN(supports_only);
     GPROJT_RUN(no_supports);
