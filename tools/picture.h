@@ -38,7 +38,8 @@ typedef struct gprojx_picture_options {
     const char *legend;          /* what the numbers are */
     double low, high;            /* the scale's ends; both 0: 1e-16 and 1e-1 */
     bool linear;                 /* the scale is linear instead of logarithmic */
-    const double *edge_value;    /* edge_count numbers: widths of the edges; > 0 blue, < 0 red */
+    const double *edge_value;    /* edge_count numbers: widths and colours of the edges; > 0 blue, < 0 red */
+    double edge_high;            /* the value of the widest edges; 0: the largest of all */
 } gprojx_picture_options;
 
 typedef struct gprojx_point { /* of an item's outline */
@@ -779,6 +780,7 @@ static gprojx_colour gprojx_face_colour(const gprojx_painter *p, const gprojx_it
 
 /* Edges that stand out are lines of their own, above the face. */
 static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
+    static const gprojx_colour pale[2] = {{122, 160, 208}, {236, 150, 150}}, deep[2] = {{14, 38, 104}, {170, 8, 36}};
     const gprojx_point *outline = gprojx_outline(p, item);
     int32_t i;
     for (i = 0; i < item->count; ++i) {
@@ -788,8 +790,11 @@ static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
         side[0] = outline[i], side[1] = outline[(i + 1) % item->count];
         if (p->edge_most > 0) {
             double value = p->options->edge_value[e], share = fabs(value) / p->edge_most;
-            fprintf(p->file, "<path fill=\"none\" stroke=\"#%s\"", value < 0 ? "c8102e" : "1b4f9c");
-            gprojx_put_attribute(p->file, "stroke-width", p->line * (0.5 + 6 * sqrt(gprojx_clamp(share, 0, 1))));
+            int tension = value < -1e-9 * p->edge_most;
+            share = sqrt(gprojx_clamp(share, 0, 1));
+            fprintf(p->file, "<path fill=\"none\" stroke=\"#%06x\"",
+                    gprojx_hex(gprojx_mix(pale[tension], deep[tension], share)));
+            gprojx_put_attribute(p->file, "stroke-width", p->line * (0.6 + 4.6 * share));
         } else if (p->folded[e])
             fputs("<path class=\"f\"", p->file);
         else if (p->mesh->face[2 * e] < 0 || p->mesh->face[2 * e + 1] < 0)
@@ -803,10 +808,11 @@ static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
     }
 }
 
-/* The largest size of the edges' values. */
+/* The size of value that makes the widest edges; 0: no values. */
 static double gprojx_edge_most(const gprojx_painter *p) {
     double most = 0;
     int32_t i;
+    if (p->options->edge_value && p->options->edge_high > 0) return p->options->edge_high;
     for (i = 0; i < p->mesh->edge_count && p->options->edge_value; ++i) {
         double size = fabs(p->options->edge_value[i]);
         if (size > most && size < INFINITY) most = size;
