@@ -4,7 +4,8 @@
    A dome of planar panels that stands on the walls by compression alone, three times: (a) with fairness, (b) also with
    the wish that opposite edges of a panel carry the same force, (c) with 20 % more volume, but no edge longer and no
    panel larger than in (a). Diagonals meet the walls: edges along straight walls would force whole strips of panels
-   into one plane. As many panels along as across: then the lines of the net, reflected at the walls, close. Writes courtyard_a.obj, _b, _c and .svg (edges by their force).
+   into one plane. As many panels along as across: then the lines of the net, reflected at the walls, close. Writes
+   courtyard_a.obj, _b, _c and .svg (edges by their force).
 
    Build and run:   cc -O2 courtyard.c -lm -o courtyard && ./courtyard
    Prints:          the forces of (a) and (b), volume and bounds of (c) */

@@ -71,8 +71,8 @@ int main(void) {
     printf("panels planar           %s\n", measures.planarity_max <= 1e-12 ? "to 1e-12 mean edge lengths" : "no");
     printf("every vertex stands     %s\n", forces.residual <= 1e-9 ? "to 1e-9 of its load" : "no");
     printf("compression alone       %s\n", forces.min_density >= -1e-9 * forces.max_density ? "yes" : "no");
-    printf("largest force           %.1f %% of the load\n", 100 * forces.max_force / forces.total_load);
-    printf("the design moved by     %.1f %% of its size at most\n", 100 * measures.deviation_max);
+    printf("largest force           %.0f %% of the load\n", 100 * forces.max_force / forces.total_load);
+    printf("the design moved by     %.0f %% of its size at most\n", 100 * measures.deviation_max);
     printf("folded edges            %d\n", (int)measures.folded_edges);
     gproj_get_forces(form, density);
     gproj_mesh_save(mesh, "self_supporting_roof.obj", NULL);

@@ -76,8 +76,8 @@ int main(void) {
     printf("every vertex stands     %s\n", forces.residual <= 1e-9 ? "to 1e-9 of its load" : "no");
     printf("compression alone       %s\n", forces.min_density >= -1e-9 * forces.max_density ? "yes" : "no");
     printf("overhang                %.0f %% of the area looks down\n", 100 * down / area);
-    printf("load                    %.1f\n", forces.total_load);
-    printf("largest force           %.1f %% of it\n", 100 * forces.max_force / forces.total_load);
+    printf("load                    %.0f\n", forces.total_load);
+    printf("largest force           %.0f %% of it\n", 100 * forces.max_force / forces.total_load);
     printf("folded edges            %d\n", (int)gproj_measure(mesh, NULL, NULL).folded_edges);
     gproj_get_forces(form, density);
     gproj_mesh_save(mesh, "thrust_network.obj", NULL);
