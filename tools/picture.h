@@ -38,7 +38,8 @@ typedef struct gprojx_picture_options {
     const char *legend;          /* what the numbers are */
     double low, high;            /* the scale's ends; both 0: 1e-16 and 1e-1 */
     bool linear;                 /* the scale is linear instead of logarithmic */
-    const double *edge_value;    /* edge_count numbers: widths of the edges; > 0 blue, < 0 red */
+    const double *edge_value;    /* edge_count numbers: widths and colours of the edges; > 0 blue, < 0 red */
+    double edge_high;            /* the value of the widest edges; 0: the largest of all */
 } gprojx_picture_options;
 
 typedef struct gprojx_point { /* of an item's outline */
@@ -777,6 +778,10 @@ static gprojx_colour gprojx_face_colour(const gprojx_painter *p, const gprojx_it
     return gprojx_mix(colour, white, 0.16 * gprojx_clamp(far, 0, 1));
 }
 
+enum {
+    GPROJX_EDGE_LEVELS = 20
+};
+
 /* Edges that stand out are lines of their own, above the face. */
 static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
     const gprojx_point *outline = gprojx_outline(p, item);
@@ -788,8 +793,8 @@ static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
         side[0] = outline[i], side[1] = outline[(i + 1) % item->count];
         if (p->edge_most > 0) {
             double value = p->options->edge_value[e], share = fabs(value) / p->edge_most;
-            fprintf(p->file, "<path fill=\"none\" stroke=\"#%s\"", value < 0 ? "c8102e" : "1b4f9c");
-            gprojx_put_attribute(p->file, "stroke-width", p->line * (0.5 + 6 * sqrt(gprojx_clamp(share, 0, 1))));
+            fprintf(p->file, "<path class=\"%c%d\"", value < -1e-9 * p->edge_most ? 't' : 'p',
+                    (int)floor(sqrt(gprojx_clamp(share, 0, 1)) * GPROJX_EDGE_LEVELS + 0.5));
         } else if (p->folded[e])
             fputs("<path class=\"f\"", p->file);
         else if (p->mesh->face[2 * e] < 0 || p->mesh->face[2 * e + 1] < 0)
@@ -803,10 +808,11 @@ static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
     }
 }
 
-/* The largest size of the edges' values. */
+/* The size of value that makes the widest edges; 0: no values. */
 static double gprojx_edge_most(const gprojx_painter *p) {
     double most = 0;
     int32_t i;
+    if (p->options->edge_value && p->options->edge_high > 0) return p->options->edge_high;
     for (i = 0; i < p->mesh->edge_count && p->options->edge_value; ++i) {
         double size = fabs(p->options->edge_value[i]);
         if (size > most && size < INFINITY) most = size;
@@ -958,6 +964,22 @@ static void gprojx_choose_line(gprojx_painter *p) {
     p->line = gprojx_clamp(p->mesh->edge_count > 0 ? 0.035 * sum / p->mesh->edge_count : 1, 0.12, 1.1);
 }
 
+/* The styles of edges by value: p0.. of positive, t0.. of negative ones, from thin and pale to wide and deep. */
+static void gprojx_put_edge_styles(gprojx_painter *p) {
+    static const gprojx_colour pale[2] = {{122, 160, 208}, {236, 150, 150}}, deep[2] = {{14, 38, 104}, {170, 8, 36}};
+    int sign, level;
+    fputs("<style>", p->file);
+    for (sign = 0; sign < 2; ++sign)
+        for (level = 0; level <= GPROJX_EDGE_LEVELS; ++level) {
+            double share = (double)level / GPROJX_EDGE_LEVELS;
+            fprintf(p->file, ".%c%d{fill:none;stroke:#%06x;stroke-width:", sign ? 't' : 'p', level,
+                    gprojx_hex(gprojx_mix(pale[sign], deep[sign], share)));
+            gprojx_put_number(p->file, p->line * (0.6 + 4.6 * share));
+            fputs("}", p->file);
+        }
+    fputs("</style>\n", p->file);
+}
+
 static void gprojx_put_head(gprojx_painter *p) {
     fputs("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", p->file);
     gprojx_put_number(p->file, p->width);
@@ -983,7 +1005,9 @@ static void gprojx_put_head(gprojx_painter *p) {
     gprojx_put_number(p->file, 2.2 * p->line);
     fputs("}.f{stroke-width:", p->file);
     gprojx_put_number(p->file, fmax(3 * p->line, 1.6));
-    fputs("}</style>\n<g class=\"m\">\n", p->file);
+    fputs("}</style>\n", p->file);
+    if (p->edge_most > 0) gprojx_put_edge_styles(p);
+    fputs("<g class=\"m\">\n", p->file);
 }
 
 /* Folded edges and turned faces once more above all, so that none is hidden. `corner` has room for any face. */
