@@ -2,12 +2,12 @@
    Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
 
    WHAT IT DOES
-     Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, boundaries on curves, fixed
-     vertices, a volume, constraints of your own) and what is wished (fairness, closeness). In about ten Newton-like
-     steps the mesh satisfies all constraints together to machine precision, and you get an honest verdict: what holds,
-     how exactly, and where it does not.
+     Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, static equilibrium, compression
+     only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
+     and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
+     machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
      Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
-     and projection onto any system of quadratic equations.
+     least squares with bounds, and projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
      - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
@@ -37,8 +37,11 @@
          return result.outcome == GPROJ_CONVERGED ? 0 : 1;
      }
 
-   A CONSTRAINT OF YOUR OWN is rows of terms a x_i x_j and b x_i with a constant: "vertex v has height h" is
+   A CONSTRAINT OF YOUR OWN is rows of terms a x_i x_j and b x_i with a constant: "vertex v has height h" is as follows;
+   with GPROJ_BOUND the row must be >= 0, so it says "at least h" (for "at most", change the signs of all terms and of
+   the constant)
 
+     double centre[3], scale;
      gproj_group group = {"height", GPROJ_CONSTRAINT, false, GPROJ_PLACE_VERTEX, {1, 0, 0}, NULL, NULL};
      gproj_system *system = gproj_form_system(form);
      int32_t number = gproj_system_add_group(system, &group);
@@ -7187,7 +7190,7 @@ GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
         return;
     }
     if (r->outcome == GPROJ_CONVERGED) more = ", at a minimum of the wishes";
-    if (r->outcome == GPROJ_ITERATION_LIMIT) more = ", but the iterations ran out before a minimum of the wishes";
+    if (r->outcome == GPROJ_ITERATION_LIMIT) more = ", but more iterations would serve the wishes better";
     if (r->outcome == GPROJ_STALLED) more = ", and no step serves the wishes better";
     if (r->outcome == GPROJ_CANCELLED) more = ", cancelled by the caller";
     if (r->outcome == GPROJ_TIME_OUT) more = ", but the time budget ran out before a minimum of the wishes";
@@ -10450,7 +10453,7 @@ typedef struct gproji_statics {
     int32_t *first_row; /* of each vertex, in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
-    double *work; /* 3 numbers a vertex */
+    double *work;      /* 3 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     double lost;       /* the part of the load that the first forces could not balance */
     int32_t group;     /* of equilibrium */
@@ -11354,14 +11357,14 @@ GPROJI_INTERNAL int32_t gproji_add_gauss_differences(gproj_form *form, int32_t g
 }
 
 /* Triangles have no normals as variables until something needs them. Other faces get theirs from the planarity. */
-GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form) {
+GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *name) {
     int32_t f, group = -1;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         if (form->normal[f] >= 0) continue;
         if (form->mesh->face_degree[f] > 3) {
             gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
-                        "the Gauss image needs the normals of planar faces: call gproj_add_planarity before");
+                        "%s needs the normals of planar faces: call gproj_add_planarity before", name);
             return false;
         }
         if (group < 0)
@@ -11375,7 +11378,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     gproji_part *part;
     gproj_term *term;
     int32_t f;
-    if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form)) return -1;
+    if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form, "Gauss image fairness")) return -1;
     part = gproji_new_part(form, 2 * form->mesh->face_count);
     term = part ? gproji_take_terms(form) : NULL;
     if (!term) return -1;
@@ -11413,20 +11416,27 @@ GPROJI_INTERNAL bool gproji_element_weights_are_valid(gproj_form *form, int32_t 
                                                       const int32_t *elements, const double *weights) {
     gproj_group_info info = gproj_system_group_info(form->system, group);
     int32_t have = gproji_element_count(form->mesh, info.place), k;
-    if (!gproji_system_has_group(form->system, group) || count < 0 || (count > 0 && !weights) ||
-        (!elements && count > have)) {
+    if (!gproji_system_has_group(form->system, group)) {
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                    "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
+        return false;
+    }
+    if (count < 0 || (count > 0 && !weights) || (!elements && count > have)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                    "element weights: %d of %d elements of group %d, or there is no such group, or no weights", count,
-                    have, group);
+                    "element weights: %d of the %d elements of group '%s', or no weights", count, have, info.name);
         return false;
     }
     for (k = 0; k < count; ++k) {
         int32_t element = elements ? elements[k] : k;
-        if (element >= 0 && element < have && weights[k] >= 0 && weights[k] <= 1e50) continue;
-        gproji_fail(&form->error, element < 0 || element >= have ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT, info.place,
-                    element, "element weights: group '%s' has no %s %d, or its weight %g is not in 0..1e50", info.name,
-                    gproji_place_word(info.place), element, weights[k]);
-        return false;
+        if (element < 0 || element >= have)
+            gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
+                        "element weights: there is no %s %d (the mesh has %d, counted from 0)",
+                        gproji_place_word(info.place), element, have);
+        else if (!(weights[k] >= 0 && weights[k] <= 1e50))
+            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
+                        "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
+                        gproji_place_word(info.place), element, info.name);
+        if (form->error.code != GPROJ_OK) return false;
     }
     return true;
 }
@@ -11932,7 +11942,7 @@ GPROJI_INTERNAL int32_t gproji_add_cones(gproj_form *form) {
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     gproji_part *part;
     int32_t rows, v;
-    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form)) return -1;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
     rows = gproji_add_cones(form);
     part = rows < 0 ? NULL : gproji_new_part(form, rows);
     if (!part) return -1;

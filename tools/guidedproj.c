@@ -622,11 +622,13 @@ static const tool_option options[] = {
     {0, "compressive", "[=W]", false, "edges carry compression only", NULL, set_must, PLACE(compressive)},
     {0, "tensile", "[=W]", false, "edges carry tension only", NULL, set_must, PLACE(tensile)},
     {0, "stress", "MIN,MAX[=W]", false,
-     "axial forces (compression > 0) are at least MIN and at most MAX; one may be left out", NULL, set_stress,
-     PLACE(stress)},
+     "axial forces (compression > 0) are at least MIN and at most MAX; one may be left out, 0 is a bound", NULL,
+     set_stress, PLACE(stress)},
     {0, "supports", "WHICH", false,
-     "boundary, corners, a list or a file, as in --fix (boundary). Supports may move: add --fix or --glide", NULL,
-     set_supports, PLACE(supports)},
+     "where forces go to the ground: boundary (if left out), corners, a list or a file, as in --fix. This does not "
+     "hold "
+     "them in place: without --fix or --glide of the same vertices they move",
+     NULL, set_supports, PLACE(supports)},
     {0, "density", "R", false, "each edge weighs R times its length (1 where no load is given)", NULL, set_load,
      PLACE(density)},
     {0, "area-load", "Q", false, "each face weighs Q times its area", NULL, set_load, PLACE(area_load)},
@@ -675,7 +677,8 @@ static const tool_option options[] = {
      "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I", NULL,
      set_path, PLACE(output[OUTPUT_FORCES])},
     {0, "picture", "FILE", false,
-     "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges, and "
+     "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges "
+     "(compression blue, tension red), and "
      "without --planar coloured by how far the faces are from standing by themselves",
      NULL, set_path, PLACE(output[OUTPUT_PICTURE])},
     {0, "view", "VIEW", false,
@@ -747,11 +750,13 @@ static void print_help(void) {
          "  guidedproj roof.obj -o flat.obj --planar --picture flat.svg\n"
          "  guidedproj roof.obj -o fair.obj --planar --glide boundary \\\n"
          "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
-         "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 40,0,0,3\n\n"
+         "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 220,0,0,5\n\n"
          "exit status\n"
          "  0 all that must hold holds to the tolerance   1 it does not (the output is\n"
-         "  written, the report says why)   2 wrong usage   3 input refused, or an output\n"
-         "  could not be written   4 out of memory. After 2, 3 and 4 no output is touched.");
+         "  written, the report says why)   2 wrong usage, or an output that cannot be written\n"
+         "  3 input refused, or writing failed   4 out of memory. After 2, 3 and 4 no output\n"
+         "  is touched. With --nearest 0 does not say that a minimum was reached: the\n"
+         "  sentence and the report do.");
 }
 
 /* ---- the command line ---- */
@@ -2095,6 +2100,35 @@ static void print_offset(const tool *t) {
                (long)m->reversed_edges);
 }
 
+/* How far the supports went. */
+static double support_movement(const tool *t) {
+    double most = 0;
+    int32_t v, k;
+    for (v = 0; v < t->mesh->vertex_count; ++v) {
+        double square = 0;
+        for (k = 0; t->is_support[v] && k < 3; ++k) {
+            double d = t->mesh->position[3 * (size_t)v + (size_t)k] - t->original[3 * (size_t)v + (size_t)k];
+            square += d * d;
+        }
+        if (square > most) most = square;
+    }
+    return sqrt(most);
+}
+
+/* The measures that some options ask for. */
+static void print_asked(const tool *t) {
+    const gproj_measures *b = &t->before, *a = &t->after;
+    if (t->equilibrium.given && support_movement(t) > 1e-9 * b->mean_edge)
+        printf("supports      moved by up to %.3g; --fix or --glide holds them\n", support_movement(t));
+    if (t->edge_length.given || t->equal_lengths.given)
+        printf("lengths       %.6g to %.6g -> %.6g to %.6g\n", b->min_edge, b->max_edge, a->min_edge, a->max_edge);
+    if (t->face_area.given || t->equal_areas.given)
+        printf("face areas    %.6g to %.6g -> %.6g to %.6g\n", b->min_face_area, b->max_face_area, a->min_face_area,
+               a->max_face_area);
+    if (t->total_area.given) printf("total area    %.6g -> %.6g\n", b->area, a->area);
+    if (t->cost.given) printf("cost          %.6g -> %.6g\n", cost_of(t, b), cost_of(t, a));
+}
+
 static void print_summary(const tool *t) {
     const gproj_measures *b = &t->before, *a = &t->after;
     print_mesh(t);
@@ -2111,6 +2145,7 @@ static void print_summary(const tool *t) {
     if (t->offset) print_offset(t);
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
+    print_asked(t);
     printf("faces         %ld turned over, %ld -> %ld bow-ties\n", (long)a->turned_faces, (long)b->bow_tie_faces,
            (long)a->bow_tie_faces);
     printf("edges         %ld -> %ld folded, %ld -> %ld collapsed\n", (long)b->folded_edges, (long)a->folded_edges,
