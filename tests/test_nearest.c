@@ -423,7 +423,7 @@ GPROJT_TEST(honest_verdicts) {
         if (result.outcome == GPROJ_CONVERGED) {
             GPROJT_CHECK(result.optimality <= 1e-6 && result.residual <= result.tolerance);
         } else {
-            GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && strstr(result.message, "iterations ran out"));
+            GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && strstr(result.message, "more iterations"));
             GPROJT_CHECK(strstr(result.message, "projected gradient") != NULL);
         }
         GPROJT_CHECK((strstr(result.message, "all constraints hold") != NULL) == (result.residual <= result.tolerance));

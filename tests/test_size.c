@@ -427,10 +427,10 @@ GPROJT_TEST(refusals) {
         if (i == 18) group = -(gproj_set_element_weights(form, lengths, 2, far, good) == GPROJ_ERROR_INDEX);
         if (i == 19) group = -(gproj_set_element_weights(form, lengths, 2, NULL, weights) == GPROJ_ERROR_ARGUMENT);
         if (i == 20) group = -(gproj_set_element_weights(form, total, 1, NULL, good) == GPROJ_ERROR_ARGUMENT);
-        if (i == 21) group = -(gproj_set_element_weights(form, 99, 1, NULL, good) == GPROJ_ERROR_ARGUMENT);
+        if (i == 21) group = -(gproj_set_element_weights(form, 99, 1, NULL, good) == GPROJ_ERROR_INDEX);
         if (i == 22) group = -(gproj_set_element_weights(form, lengths, 1, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
         if (i == 23) group = -(gproj_set_element_weights(form, lengths, -1, NULL, good) == GPROJ_ERROR_ARGUMENT);
-        if (i == 18) code = GPROJ_ERROR_INDEX;
+        if (i == 18 || i == 21) code = GPROJ_ERROR_INDEX;
         GPROJT_CHECK(group == -1 && gproj_form_error(form)->code == code);
         if (group != -1 || gproj_form_error(form)->code != code)
             printf("  %d: %ld, %s\n", i, group, gproj_form_error(form)->message);
