@@ -426,8 +426,7 @@ static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     double off = 0;
     int32_t e;
     for (e = 0; a->what == GPROJT_LENGTHS && e < mesh->edge_count; ++e) {
-        double length =
-            gprojt_far(mesh->position + 3 * mesh->origin[2 * e], mesh->position + 3 * mesh->origin[2 * e + 1]);
+        double length = gprojt_edge_length(mesh, e);
         if (a->min > 0) off = fmax(off, (a->min - length) * (a->min + length) / (2 * a->min));
         if (a->max > 0) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
     }

@@ -2,6 +2,7 @@
 #ifndef GPROJT_H
 #define GPROJT_H
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -20,32 +21,32 @@ static const char *gprojt_skip_reason;
 #define GPROJT_RUN(name) gprojt_run(#name, gprojt_test_##name)
 
 /* A failed check is printed and counted; the test goes on. */
-#define GPROJT_CHECK(condition)                                                                    \
-    do {                                                                                           \
-        if (!(condition)) gprojt_fail(__FILE__, __LINE__, #condition);                             \
+#define GPROJT_CHECK(condition)                                        \
+    do {                                                               \
+        if (!(condition)) gprojt_fail(__FILE__, __LINE__, #condition); \
     } while (0)
 /* |a - b| <= bound */
-#define GPROJT_NEAR(a, b, bound)                                                                   \
-    do {                                                                                           \
-        double gprojt_a = (a), gprojt_b = (b);                                                     \
-        if (!(fabs(gprojt_a - gprojt_b) <= (bound))) {                                             \
-            gprojt_fail(__FILE__, __LINE__, #a " = " #b " within " #bound);                        \
-            printf("    %.17g and %.17g\n", gprojt_a, gprojt_b);                                   \
-        }                                                                                          \
+#define GPROJT_NEAR(a, b, bound)                                            \
+    do {                                                                    \
+        double gprojt_a = (a), gprojt_b = (b);                              \
+        if (!(fabs(gprojt_a - gprojt_b) <= (bound))) {                      \
+            gprojt_fail(__FILE__, __LINE__, #a " = " #b " within " #bound); \
+            printf("    %.17g and %.17g\n", gprojt_a, gprojt_b);            \
+        }                                                                   \
     } while (0)
 /* Leaves the test at once when the condition fails: for what the rest depends on. */
-#define GPROJT_REQUIRE(condition)                                                                  \
-    do {                                                                                           \
-        if (!(condition)) {                                                                        \
-            gprojt_fail(__FILE__, __LINE__, #condition);                                           \
-            return;                                                                                \
-        }                                                                                          \
+#define GPROJT_REQUIRE(condition)                        \
+    do {                                                 \
+        if (!(condition)) {                              \
+            gprojt_fail(__FILE__, __LINE__, #condition); \
+            return;                                      \
+        }                                                \
     } while (0)
 /* Ends a test that cannot run here; the reason is printed. */
-#define GPROJT_SKIP(reason)                                                                        \
-    do {                                                                                           \
-        gprojt_skip_reason = (reason);                                                             \
-        return;                                                                                    \
+#define GPROJT_SKIP(reason)            \
+    do {                               \
+        gprojt_skip_reason = (reason); \
+        return;                        \
     } while (0)
 
 static void gprojt_fail(const char *file, int line, const char *what) {
@@ -86,6 +87,29 @@ static inline uint64_t gprojt_random(uint64_t *state) {
 static inline double gprojt_uniform(uint64_t *state) { return (double)(gprojt_random(state) >> 11) * 0x1p-53; }
 /* uniform in 0..n-1 */
 static inline int32_t gprojt_below(uint64_t *state, int32_t n) { return (int32_t)(gprojt_random(state) % (uint64_t)n); }
+
+/* -- vectors -- */
+
+static inline double gprojt_dot3(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static inline double gprojt_length3(const double a[3]) { return sqrt(gprojt_dot3(a, a)); }
+static inline void gprojt_sub3(const double a[3], const double b[3], double out[3]) {
+    int k;
+    for (k = 0; k < 3; ++k) out[k] = a[k] - b[k];
+}
+static inline void gprojt_cross3(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+static inline double gprojt_far(const double a[3], const double b[3]) {
+    double d[3];
+    gprojt_sub3(a, b, d);
+    return gprojt_length3(d);
+}
+
+/* -- memory -- */
 
 /* A host whose allocator counts what is held and fails at one chosen allocation (0: never). */
 typedef struct gprojt_failing {
@@ -130,6 +154,29 @@ static inline gproj_host gprojt_failing_host(gprojt_failing *f) {
     host.allocator.release = gprojt_failing_release;
     host.allocator.user = f;
     return host;
+}
+
+/* What has come of the allocations of a host from gprojt_failing_host. */
+static inline const gprojt_failing *gprojt_failing_of(const gproj_host *host) {
+    return (const gprojt_failing *)host->allocator.user;
+}
+
+/* Calls `run` until it went well (true): first without its first allocation, then without its second, and so on. It must
+   go well iff no allocation failed, and give everything back. Returns how many allocations a whole run takes. */
+static inline long gprojt_fail_every_allocation(bool (*run)(const gproj_host *host, void *user), void *user) {
+    gprojt_failing failing;
+    long fail_at = 0;
+    do {
+        gproj_host host;
+        bool whole;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = ++fail_at;
+        host = gprojt_failing_host(&failing);
+        whole = run(&host, user);
+        GPROJT_CHECK(whole == (failing.calls < fail_at));
+        GPROJT_CHECK(failing.held == 0 && failing.bytes == 0 && failing.wrong_sizes == 0);
+    } while (failing.calls >= fail_at);
+    return failing.calls;
 }
 
 /* The folder of real meshes: GPROJ_DATA, or beside the project; they are not part of it. */

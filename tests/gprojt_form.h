@@ -54,6 +54,15 @@ static inline gproj_group_info gprojt_info(const gproj_system *s, int32_t group)
     return gproj_system_group_info(s, group);
 }
 
+/* -- forms -- */
+
+/* The form's unit of length in the mesh's. */
+static inline double gprojt_unit(const gproj_form *form) {
+    double centre[3], scale = 0;
+    gproj_form_units(form, centre, &scale);
+    return 1 / scale;
+}
+
 /* -- threads: the tasks in reverse order, in leaps, or on `user` threads -- */
 
 static inline void gprojt_run_reverse(void *user, int32_t count, gproj_task task, void *data) {
@@ -158,10 +167,6 @@ static inline double *gprojt_keep(const gproj_mesh *mesh) {
     return copy;
 }
 
-static inline double gprojt_far(const double *a, const double *b) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 /* The largest distance of vertices of two sets of positions. */
 static inline double gprojt_largest_move(const double *a, const double *b, int32_t count) {
     double largest = 0;
@@ -175,6 +180,45 @@ static inline bool gprojt_all_finite(const double *x, int32_t count) {
     for (i = 0; i < count; ++i)
         if (!(fabs(x[i]) < HUGE_VAL)) return false;
     return true;
+}
+
+/* -- failing allocations of forms: gprojt_fail_every_allocation with this, and a gprojt_solve as user -- */
+
+typedef struct gprojt_solve {
+    gproj_mesh *mesh;
+    void (*build)(gproj_form *form, void *user); /* adds the groups */
+    void *user;
+    int32_t iterations;
+    const gproj_solve_options *options;
+} gprojt_solve;
+
+/* Where the memory fails, that is the form's error and the mesh stays as it is; else it is set back. */
+static inline bool gprojt_use_form(const gproj_host *host, void *user) {
+    const gprojt_solve *solve = (const gprojt_solve *)user;
+    gproj_mesh *mesh = solve->mesh;
+    double *before = gprojt_keep(mesh);
+    gproj_form *form = gproj_form_create(mesh, host);
+    gproj_result result;
+    bool whole;
+    solve->build(form, solve->user);
+    result = gproj_solve(form, solve->iterations, solve->options);
+    whole = gproj_form_error(form)->code == GPROJ_OK;
+    GPROJT_CHECK(whole == (result.outcome != GPROJ_FAILED));
+    GPROJT_CHECK(whole || gproj_form_error(form)->code == (form ? GPROJ_ERROR_MEMORY : GPROJ_ERROR_ARGUMENT));
+    GPROJT_CHECK(whole || !memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    gproj_form_destroy(form);
+    free(before);
+    return whole;
+}
+
+/* One solve of this mesh whose i-th allocation fails, for every i. Returns how many it takes. */
+static inline long gprojt_fail_every_allocation_of_solve(gproj_mesh *mesh, void (*build)(gproj_form *form, void *user),
+                                                         void *user, int32_t iterations,
+                                                         const gproj_solve_options *options) {
+    gprojt_solve solve;
+    solve.mesh = mesh, solve.build = build, solve.user = user, solve.iterations = iterations, solve.options = options;
+    return gprojt_fail_every_allocation(gprojt_use_form, &solve);
 }
 
 #endif

@@ -83,6 +83,20 @@ static inline void gprojt_compact(gprojt_soup *s) {
     free(number);
 }
 
+static inline double gprojt_edge_length(const gproj_mesh *mesh, int32_t edge) {
+    return gprojt_far(mesh->position + 3 * mesh->origin[2 * edge], mesh->position + 3 * mesh->origin[2 * edge + 1]);
+}
+
+/* For gprojt_fail_every_allocation: whether there is a mesh. It has all that was taken from the host, and is destroyed; if
+   there is none, memory was missing. */
+static inline bool gprojt_mesh_was_made(gproj_mesh *mesh, const gproj_host *host, const gproj_error *error) {
+    bool made = mesh != NULL;
+    GPROJT_CHECK(made || error->code == GPROJ_ERROR_MEMORY);
+    GPROJT_CHECK(!made || gproj_mesh_memory(mesh).used == gprojt_failing_of(host)->bytes);
+    gproj_mesh_destroy(mesh);
+    return made;
+}
+
 /* -- generators: gentle double-curved shapes -- */
 
 static inline double gprojt_height(double x, double y) { return 0.15 * sin(2 * x) * cos(1.5 * y) + 0.05 * x * y; }

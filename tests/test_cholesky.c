@@ -1,7 +1,7 @@
 /* test_cholesky.c - >>ordering, >>symbolic, >>cholesky: against dense matrices, naive elimination, SuiteSparse's AMD.
 
    Build with -DGPROJT_HAVE_AMD and -lamd to compare the fill with SuiteSparse. */
-#define GUIDEDPROJ_IMPLEMENTATION
+#define GPROJ_STATIC
 #include "gprojt.h"
 
 #if defined(__unix__) && !defined(GPROJT_NO_THREADS)
@@ -167,7 +167,7 @@ static matrix planarity(int32_t kind, int32_t nx, int32_t ny) {
                 double n[3], g[9], length;
                 if (!degree) continue;
                 n[0] = 0.3 * sin(0.31 * x), n[1] = 0.3 * cos(0.23 * y), n[2] = 1.0;
-                length = sqrt(gproji_dot3(n, n));
+                length = sqrt(gprojt_dot3(n, n));
                 for (d = 0; d < 3; ++d) {
                     n[d] /= length;
                     variable[d] = 3 * vertices + 3 * faces + d;
@@ -907,43 +907,43 @@ GPROJT_TEST(cholesky_sizes) {
     }
 }
 
+typedef struct factoring {
+    matrix m;
+    gproj_cholesky_options options;
+} factoring;
+
+static bool factor_with(const gproj_host *host, void *user) {
+    const factoring *f = (const factoring *)user;
+    gproj_cholesky *c = gproj_cholesky_create(host);
+    gproj_factor_outcome outcome = GPROJ_FACTOR_FAILED;
+    gproj_code code;
+    if (!c) return false;
+    code = gproj_cholesky_analyse(c, f->m.n, f->m.start, f->m.row, &f->options);
+    GPROJT_CHECK(code == gproj_cholesky_error(c)->code);
+    if (code == GPROJ_OK) outcome = gproj_cholesky_factor(c, f->m.value);
+    GPROJT_CHECK(outcome == GPROJ_FACTORED ||
+                 (outcome == GPROJ_FACTOR_FAILED && gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY));
+    if (outcome == GPROJ_FACTOR_FAILED) /* the next try has memory */
+        GPROJT_CHECK(solve_error(c, &f->m, &f->options) >= 0 && solve_error(c, &f->m, &f->options) < 1e-9);
+    GPROJT_CHECK(gproj_cholesky_memory(c).used == gprojt_failing_of(host)->bytes);
+    gproj_cholesky_destroy(c);
+    return outcome == GPROJ_FACTORED;
+}
+
 GPROJT_TEST(cholesky_every_allocation_fails) {
-    matrix m = planarity(QUADS, 6, 6);
-    int32_t way, step, *order = (int32_t *)malloc((size_t)m.n * sizeof(int32_t));
+    factoring f;
+    int32_t *order;
     uint64_t seed = 3;
-    random_permutation(m.n, order, &seed);
-    for (way = 0; way < 2; ++way) {
-        gproj_cholesky_options options = options_of(way ? GPROJ_ORDERING_GIVEN : GPROJ_ORDERING_AMD);
-        bool whole = false;
-        options.permutation = order;
-        for (step = 1; !whole && step < 1000; ++step) {
-            gprojt_failing f;
-            gproj_host host;
-            gproj_cholesky *c;
-            memset(&f, 0, sizeof f);
-            f.fail_at = step;
-            host = gprojt_failing_host(&f);
-            c = gproj_cholesky_create(&host);
-            if (c) {
-                gproj_code code = gproj_cholesky_analyse(c, m.n, m.start, m.row, &options);
-                gproj_factor_outcome outcome = GPROJ_FACTOR_FAILED;
-                GPROJT_CHECK(code == gproj_cholesky_error(c)->code);
-                if (code == GPROJ_OK) outcome = gproj_cholesky_factor(c, m.value);
-                whole = outcome == GPROJ_FACTORED && f.calls < step;
-                if (!whole)
-                    GPROJT_CHECK(outcome == GPROJ_FACTOR_FAILED && gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY);
-                /* the next try has memory */
-                f.fail_at = 0;
-                GPROJT_CHECK(solve_error(c, &m, &options) >= 0 && solve_error(c, &m, &options) < 1e-9);
-                GPROJT_CHECK(gproj_cholesky_memory(c).used == f.bytes);
-            }
-            gproj_cholesky_destroy(c);
-            GPROJT_CHECK(f.held == 0 && f.bytes == 0 && f.wrong_sizes == 0);
-        }
-        GPROJT_CHECK(whole && step > 40);
-    }
+    f.m = planarity(QUADS, 6, 6);
+    order = (int32_t *)malloc((size_t)f.m.n * sizeof(int32_t));
+    random_permutation(f.m.n, order, &seed);
+    f.options = options_of(GPROJ_ORDERING_AMD);
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 40);
+    f.options = options_of(GPROJ_ORDERING_GIVEN);
+    f.options.permutation = order;
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 40);
     free(order);
-    matrix_free(&m);
+    matrix_free(&f.m);
 }
 
 /* -- size -- */

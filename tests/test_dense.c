@@ -1,5 +1,5 @@
 /* test_dense.c - >>dense: the kernels against plain triple loops. */
-#define GUIDEDPROJ_IMPLEMENTATION
+#define GPROJ_STATIC
 #include "gprojt.h"
 
 /* The place of row i and column j in a column-major array. */

@@ -1,5 +1,5 @@
 /* test_loop.c - >>loop: known problems, every verdict, schedules, damping, time, memory, the same bits. */
-#define GUIDEDPROJ_IMPLEMENTATION
+#define GPROJ_STATIC
 #include "gprojt_form.h"
 
 /* What the callback sees, and what it is told to do. */
@@ -224,7 +224,7 @@ GPROJT_TEST(seconds_add_up) {
         for (n = 0; n < watch.count; ++n) of_iterations += watch.seen[n].seconds[phase];
     }
     GPROJT_NEAR(sum, ticks.now - 1 - watch.count, 0); /* but the start and the callbacks */
-    GPROJT_NEAR(sum - of_iterations, 2, 0); /* the analysis and the rows before the first step */
+    GPROJT_NEAR(sum - of_iterations, 2, 0);           /* the analysis and the rows before the first step */
     result = gproj_system_solve(s, 1, NULL);
     GPROJT_NEAR(result.seconds[GPROJ_PHASE_ANALYSE], 1, 0); /* one tick: nothing to do */
     gproj_system_destroy(s);

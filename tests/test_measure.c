@@ -1,5 +1,4 @@
 /* test_measure.c - >>measure: every figure against one that is known or computed in another way. */
-#define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_form.h"
 
 static gproj_mesh *gprojt_polygon(int32_t count, const double *x) {

@@ -1,5 +1,4 @@
 /* test_mesh.c - >>mesh: building half-edge meshes from arrays, what they promise, and what is refused. */
-#define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_mesh.h"
 
 static void gprojt_check_valid(const gproj_mesh *mesh, const char *name) {
@@ -326,48 +325,41 @@ GPROJT_TEST(huge_valence) { /* a fan of 200,000 triangles about one vertex, and 
     free(corner);
 }
 
-GPROJT_TEST(every_allocation_fails_once) {
-    gprojt_soup s = gprojt_tube(7, 3), flipped;
-    gprojt_failing failing;
-    gproj_host host;
-    gproj_mesh *mesh = NULL, *copy;
+static bool gprojt_make_mesh(const gproj_host *host, void *user) {
     gproj_error error;
-    long at;
-    int32_t k;
-    flipped = gprojt_soup_copy(&s);
-    k = flipped.corner[41], flipped.corner[41] = flipped.corner[43], flipped.corner[43] = k;
-    for (at = 1; !mesh && at < 1000; ++at) {
-        memset(&failing, 0, sizeof failing);
-        failing.fail_at = at;
-        host = gprojt_failing_host(&failing);
-        mesh = gprojt_soup_mesh(&flipped, &host, &error);
-        if (mesh) break;
-        GPROJT_CHECK(error.code == GPROJ_ERROR_MEMORY && failing.held == 0 && failing.wrong_sizes == 0);
-    }
-    GPROJT_CHECK(at > 10 && mesh != NULL);
-    GPROJT_REQUIRE(mesh != NULL);
-    GPROJT_CHECK(gproj_mesh_memory(mesh).used == failing.bytes &&
-                 gproj_mesh_memory(mesh).allocations == (uint64_t)failing.calls);
-    gproj_mesh_destroy(mesh);
-    GPROJT_CHECK(failing.held == 0 && failing.bytes == 0 && failing.wrong_sizes == 0);
+    gproj_mesh *mesh = gprojt_soup_mesh((const gprojt_soup *)user, host, &error);
+    GPROJT_CHECK(!mesh || gproj_mesh_memory(mesh).allocations == (uint64_t)gprojt_failing_of(host)->calls);
+    return gprojt_mesh_was_made(mesh, host, &error);
+}
+
+static bool gprojt_make_copy(const gproj_host *host, void *user) {
+    const gproj_mesh *mesh = (const gproj_mesh *)user;
+    gproj_error error;
+    gproj_mesh *copy = gproj_mesh_copy(mesh, host, &error);
+    GPROJT_CHECK(!copy || gprojt_same_mesh(copy, mesh));
+    return gprojt_mesh_was_made(copy, host, &error);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gprojt_soup s = gprojt_tube(7, 3), flipped = gprojt_soup_copy(&s);
+    gproj_mesh *mesh;
+    int32_t k = flipped.corner[41];
+    flipped.corner[41] = flipped.corner[43], flipped.corner[43] = k;
     mesh = gprojt_soup_mesh(&flipped, NULL, NULL);
-    for (at = 1, copy = NULL; at < 1000; ++at) {
-        memset(&failing, 0, sizeof failing);
-        failing.fail_at = at;
-        host = gprojt_failing_host(&failing);
-        copy = gproj_mesh_copy(mesh, &host, &error);
-        if (copy) break;
-        GPROJT_CHECK(error.code == GPROJ_ERROR_MEMORY && failing.held == 0 && failing.wrong_sizes == 0);
-    }
-    GPROJT_CHECK(at > 6 && copy && gprojt_same_mesh(copy, mesh));
-    gproj_mesh_destroy(copy);
-    GPROJT_CHECK(failing.held == 0 && failing.wrong_sizes == 0);
-    /* a limit */
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_mesh, &flipped) >= 10);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_copy, mesh) >= 6);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&flipped);
+    gprojt_soup_free(&s);
+}
+
+GPROJT_TEST(a_limit_of_memory) {
+    gprojt_soup s = gprojt_tube(7, 3);
+    gproj_error error;
+    gproj_host host;
     memset(&host, 0, sizeof host);
     host.allocator.limit = 3000;
     GPROJT_CHECK(!gprojt_soup_mesh(&s, &host, &error) && error.code == GPROJ_ERROR_MEMORY);
-    gproj_mesh_destroy(mesh);
-    gprojt_soup_free(&flipped);
     gprojt_soup_free(&s);
 }
 
@@ -399,6 +391,7 @@ int main(void) {
     GPROJT_RUN(random_faces);
     GPROJT_RUN(huge_valence);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(a_limit_of_memory);
     GPROJT_RUN(real_meshes);
     return gprojt_report();
 }

@@ -1,5 +1,4 @@
 /* test_nearest.c - >>loop: the nearest point where the constraints hold, by multipliers. */
-#define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_form.h"
 
 static gproj_solve_options gprojt_nearest(void) {
@@ -511,31 +510,15 @@ GPROJT_TEST(real_meshes) {
     }
 }
 
-/* One solve of a small mesh whose i-th allocation fails, for every i. */
+static void gprojt_add_planarity(gproj_form *form, void *user) {
+    (void)user;
+    gproj_add_planarity(form, 1);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 5);
-    double *start = gprojt_keep(mesh);
-    long fail_at;
-    for (fail_at = 1;; ++fail_at) {
-        gprojt_failing failing;
-        gproj_solve_options options = gprojt_nearest();
-        gproj_host host;
-        gproj_form *form;
-        gproj_result result;
-        memset(&failing, 0, sizeof failing);
-        failing.fail_at = fail_at;
-        host = gprojt_failing_host(&failing);
-        memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
-        form = gproj_form_create(mesh, &host);
-        gproj_add_planarity(form, 1);
-        result = gproj_solve(form, 30, &options);
-        GPROJT_CHECK(failing.calls < fail_at || result.outcome == GPROJ_FAILED);
-        gproj_form_destroy(form);
-        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
-        if (failing.calls < fail_at) break;
-    }
-    GPROJT_CHECK(fail_at > 30);
-    free(start);
+    gproj_solve_options options = gprojt_nearest();
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planarity, NULL, 30, &options) >= 30);
     gproj_mesh_destroy(mesh);
 }
 

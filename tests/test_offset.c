@@ -1,6 +1,6 @@
 /* test_offset.c - >>offset, and the conicality of >>form: conical meshes, parallel meshes at constant distance. */
-#define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_form.h"
+#include "gprojt_inside.h"
 
 enum {
     GRID = 0,
@@ -77,8 +77,8 @@ static double gprojt_corner_angle(const gproj_mesh *mesh, int32_t h) {
     double u[3], v[3], w[3];
     int32_t i;
     for (i = 0; i < 3; ++i) u[i] = a[i] - p[i], v[i] = b[i] - p[i];
-    gproji_cross3(u, v, w);
-    return atan2(gproji_length3(w), gproji_dot3(u, v));
+    gprojt_cross3(u, v, w);
+    return atan2(gprojt_length3(w), gprojt_dot3(u, v));
 }
 
 /* A vertex of valence 4 is conical where the angles of its faces have w1 + w3 = w2 + w4 (Wang, Wallner, Liu 2007). The
@@ -148,19 +148,20 @@ GPROJT_TEST(conicality_rows_are_tangent) {
     for (v = 0; v < n; ++v) x[v] += size * (2 * gprojt_uniform(&state) - 1);
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
-        const double *a = x + form->cone[v];
-        if (form->cone[v] < 0) continue;
-        GPROJT_NEAR(gproj_system_row_value(s, group, row++, NULL), gproji_dot3(a, a) - 1, 1e-12);
+        const double *a = x + gprojt_inside_cone(form, v);
+        if (gprojt_inside_cone(form, v) < 0) continue;
+        GPROJT_NEAR(gproj_system_row_value(s, group, row++, NULL), gprojt_dot3(a, a) - 1, 1e-12);
         do {
             double e[3], m[3], frozen[3], cross[3];
             const double *p = x + 3 * v, *q = x + 3 * mesh->origin[h ^ 1];
-            const double *f = x + form->normal[mesh->face[h]], *g = x + form->normal[mesh->face[h ^ 1]];
+            const double *f = x + gprojt_inside_normal(form, mesh->face[h]),
+                         *g = x + gprojt_inside_normal(form, mesh->face[h ^ 1]);
             int32_t i;
             for (i = 0; i < 3; ++i) e[i] = q[i] - p[i], m[i] = f[i] + g[i];
-            gproji_sub3(before + 3 * mesh->origin[h ^ 1], before + 3 * v, frozen);
-            gproji_cross3(e, m, cross);
+            gprojt_sub3(before + 3 * mesh->origin[h ^ 1], before + 3 * v, frozen);
+            gprojt_cross3(e, m, cross);
             GPROJT_NEAR(gproj_system_row_value(s, group, row++, NULL),
-                        gproji_dot3(a, cross) / (2 * gproji_length3(frozen)), 30 * size * size);
+                        gprojt_dot3(a, cross) / (2 * gprojt_length3(frozen)), 30 * size * size);
             h = mesh->prev[h] ^ 1;
         } while (h != start);
     }
@@ -175,7 +176,7 @@ static double gprojt_angle_range(const double n[4][3], const double axis[3]) {
     double least = 10, most = 0;
     int32_t k;
     for (k = 0; k < 4; ++k) {
-        double angle = acos(gproji_dot3(n[k], axis) / gproji_length3(axis));
+        double angle = acos(gprojt_dot3(n[k], axis) / gprojt_length3(axis));
         least = fmin(least, angle);
         most = fmax(most, angle);
     }
@@ -197,7 +198,7 @@ GPROJT_TEST(conicality_is_measured) {
         for (k = 0; k < 4; ++k) {
             double length;
             gproj_mesh_face_area_vector(mesh, k, n[k]);
-            length = gproji_length3(n[k]);
+            length = gprojt_length3(n[k]);
             n[k][0] /= length, n[k][1] /= length, n[k][2] /= length;
         }
         for (u = -1; u <= 1; u += 0.004)
@@ -275,8 +276,8 @@ static double gprojt_across(const gproj_mesh *a, const gproj_mesh *b) {
             u[i] = a->position[3 * a->origin[2 * e + 1] + i] - a->position[3 * a->origin[2 * e] + i];
             v[i] = b->position[3 * a->origin[2 * e + 1] + i] - b->position[3 * a->origin[2 * e] + i];
         }
-        gproji_cross3(u, v, w);
-        worst = fmax(worst, gproji_length3(w) / gproji_length3(u));
+        gprojt_cross3(u, v, w);
+        worst = fmax(worst, gprojt_length3(w) / gprojt_length3(u));
     }
     return worst;
 }
@@ -285,11 +286,11 @@ static double gprojt_across(const gproj_mesh *a, const gproj_mesh *b) {
 static void gprojt_three_planes(const double n[3][3], const double h[3], double out[3]) {
     double c[3], determinant;
     int32_t k, i;
-    gproji_cross3(n[1], n[2], c);
-    determinant = gproji_dot3(n[0], c);
+    gprojt_cross3(n[1], n[2], c);
+    determinant = gprojt_dot3(n[0], c);
     for (i = 0; i < 3; ++i) out[i] = 0;
     for (k = 0; k < 3; ++k) {
-        gproji_cross3(n[(k + 1) % 3], n[(k + 2) % 3], c);
+        gprojt_cross3(n[(k + 1) % 3], n[(k + 2) % 3], c);
         for (i = 0; i < 3; ++i) out[i] += h[k] * c[i] / determinant;
     }
 }
@@ -305,9 +306,9 @@ static double gprojt_off_planes(const gproj_mesh *mesh, const gproj_mesh *offset
         for (k = 0; k < 3; ++k, h = mesh->prev[h] ^ 1) {
             double length;
             gproj_mesh_face_area_vector(mesh, mesh->face[h], n[k]);
-            length = gproji_length3(n[k]);
+            length = gprojt_length3(n[k]);
             n[k][0] /= length, n[k][1] /= length, n[k][2] /= length;
-            height[k] = gproji_dot3(n[k], mesh->position + 3 * v) + distance;
+            height[k] = gprojt_dot3(n[k], mesh->position + 3 * v) + distance;
         }
         gprojt_three_planes((const double(*)[3])n, height, point);
         worst = fmax(worst, gprojt_far(point, offset->position + 3 * v));
@@ -545,37 +546,28 @@ GPROJT_TEST(refusals) {
     gproj_mesh_destroy(other);
 }
 
+static bool gprojt_use_offsets(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = (gproj_mesh *)user, *a = gproj_mesh_vertex_offset(mesh, 0.1, host, NULL);
+    gproj_mesh *b = gproj_mesh_face_offset(mesh, 0.1, host, NULL);
+    gproj_mesh *support = gproj_mesh_support(mesh, a ? a : b, host, NULL);
+    int missing = !a + !b + !support;
+    GPROJT_CHECK(missing <= 1);
+    gproj_mesh_destroy(a);
+    gproj_mesh_destroy(b);
+    gproj_mesh_destroy(support);
+    return missing == 0;
+}
+
+static void gprojt_add_conicality(gproj_form *form, void *user) {
+    (void)user;
+    gproj_add_planarity(form, 1);
+    gproj_add_conicality(form, 1);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 2, 0.02, 1);
-    double *before = gprojt_keep(mesh);
-    long fail_at;
-    for (fail_at = 1;; ++fail_at) {
-        gprojt_failing failing;
-        gproj_host host;
-        gproj_form *form;
-        gproj_mesh *a, *b, *support;
-        gproj_result result;
-        memset(&failing, 0, sizeof failing);
-        failing.fail_at = fail_at;
-        host = gprojt_failing_host(&failing);
-        form = gproj_form_create(mesh, &host);
-        gproj_add_planarity(form, 1);
-        gproj_add_conicality(form, 1);
-        result = gproj_solve(form, 2, NULL);
-        gproj_form_destroy(form);
-        memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
-        a = gproj_mesh_vertex_offset(mesh, 0.1, &host, NULL);
-        b = gproj_mesh_face_offset(mesh, 0.1, &host, NULL);
-        support = gproj_mesh_support(mesh, a ? a : b, &host, NULL);
-        GPROJT_CHECK((result.outcome == GPROJ_FAILED) + !a + !b + !support == (failing.calls >= fail_at));
-        gproj_mesh_destroy(a);
-        gproj_mesh_destroy(b);
-        gproj_mesh_destroy(support);
-        GPROJT_REQUIRE(failing.held == 0 && failing.wrong_sizes == 0);
-        if (failing.calls < fail_at) break;
-    }
-    GPROJT_CHECK(fail_at > 30);
-    free(before);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_conicality, NULL, 2, NULL) >= 20);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_offsets, mesh) >= 10);
     gproj_mesh_destroy(mesh);
 }
 

@@ -1,18 +1,10 @@
 /* test_reference.c - >>hierarchy, >>curve, >>surface: closest points against brute force, odd shapes, memory. */
-#define GUIDEDPROJ_IMPLEMENTATION
+#define GPROJ_STATIC
 #include "gprojt_mesh.h"
 
 static void gprojt_random_point(uint64_t *state, double scale, double p[3]) {
     int k;
     for (k = 0; k < 3; ++k) p[k] = scale * (2 * gprojt_uniform(state) - 1);
-}
-
-static double gprojt_length(const double a[3]) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
-static double gprojt_gap(const double a[3], const double b[3]) {
-    double d[3];
-    int k;
-    for (k = 0; k < 3; ++k) d[k] = a[k] - b[k];
-    return gprojt_length(d);
 }
 
 /* -- an independent closest point: segments by clamping, the inside of triangles by normal equations -- */
@@ -23,7 +15,7 @@ static double gprojt_segment_gap(const double a[3], const double b[3], const dou
     for (k = 0; k < 3; ++k) ab += (b[k] - a[k]) * (b[k] - a[k]), t += (b[k] - a[k]) * (p[k] - a[k]);
     t = ab > 0 ? fmin(fmax(t / ab, 0), 1) : 0;
     for (k = 0; k < 3; ++k) q[k] = t == 1 ? b[k] : a[k] + t * (b[k] - a[k]);
-    return gprojt_gap(q, p);
+    return gprojt_far(q, p);
 }
 
 static double gprojt_triangle_gap(const double a[3], const double b[3], const double c[3], const double p[3]) {
@@ -39,7 +31,7 @@ static double gprojt_triangle_gap(const double a[3], const double b[3], const do
     s = (uw * vv - vw * uv) / determinant, t = (vw * uu - uw * uv) / determinant;
     if (s < 0 || t < 0 || s + t > 1) return best;
     for (k = 0; k < 3; ++k) q[k] = a[k] + s * u[k] + t * v[k];
-    return fmin(best, gprojt_gap(q, p));
+    return fmin(best, gprojt_far(q, p));
 }
 
 /* -- curves -- */
@@ -64,14 +56,14 @@ static void gprojt_check_curve(const double *x, int32_t count, bool closed, uint
         hit = gproj_curve_closest(curve, p);
         GPROJT_CHECK(hit.segment >= 0 && hit.segment < segments && hit.parameter >= 0 && hit.parameter <= 1);
         GPROJT_NEAR(hit.distance, best, 1e-13 * scale);
-        GPROJT_NEAR(gprojt_gap(hit.point, p), hit.distance, 1e-14 * scale);
+        GPROJT_NEAR(gprojt_far(hit.point, p), hit.distance, 1e-14 * scale);
         if (i % 4 == 0) GPROJT_CHECK(hit.segment == first); /* the lowest segment */
-        GPROJT_NEAR(gprojt_length(hit.tangent), 1, 1e-14);
+        GPROJT_NEAR(gprojt_length3(hit.tangent), 1, 1e-14);
         a = x + 3 * hit.segment, b = x + 3 * ((hit.segment + 1) % count);
         for (k = 0; k < 3; ++k) q[k] = a[k] + hit.parameter * (b[k] - a[k]);
-        GPROJT_NEAR(gprojt_gap(q, hit.point), 0, 1e-13 * scale);
-        if (gprojt_gap(a, b) > 1e-6 * scale) {
-            for (k = 0; k < 3; ++k) GPROJT_NEAR(hit.tangent[k], (b[k] - a[k]) / gprojt_gap(a, b), 1e-9);
+        GPROJT_NEAR(gprojt_far(q, hit.point), 0, 1e-13 * scale);
+        if (gprojt_far(a, b) > 1e-6 * scale) {
+            for (k = 0; k < 3; ++k) GPROJT_NEAR(hit.tangent[k], (b[k] - a[k]) / gprojt_far(a, b), 1e-9);
         }
     }
     gproj_curve_destroy(curve);
@@ -211,9 +203,9 @@ static void gprojt_check_surface(const gproj_mesh *mesh, uint64_t *state, int qu
         }
         GPROJT_NEAR(hit.distance, best, 1e-11 * scale);
         GPROJT_NEAR(at_face, best, 1e-11 * scale);
-        GPROJT_NEAR(gprojt_gap(hit.point, p), hit.distance, 1e-14 * scale);
-        GPROJT_NEAR(gprojt_length(hit.normal), 1, 1e-14);
-        for (k = 0; k < 3; ++k) GPROJT_CHECK(gproji_is_finite(hit.point[k]));
+        GPROJT_NEAR(gprojt_far(hit.point, p), hit.distance, 1e-14 * scale);
+        GPROJT_NEAR(gprojt_length3(hit.normal), 1, 1e-14);
+        for (k = 0; k < 3; ++k) GPROJT_CHECK(isfinite(hit.point[k]));
     }
     gproj_surface_destroy(surface);
 }
@@ -273,11 +265,11 @@ GPROJT_TEST(smooth_normals) { /* on a sphere the interpolated normal is the radi
         double p[3], r;
         gproj_surface_hit hit;
         gprojt_random_point(&state, 1, p);
-        r = gprojt_length(p);
+        r = gprojt_length3(p);
         if (r < 0.3) continue;
         hit = gproj_surface_closest(surface, p);
         GPROJT_CHECK((hit.normal[0] * p[0] + hit.normal[1] * p[1] + hit.normal[2] * p[2]) / r > 0.99);
-        GPROJT_NEAR(gprojt_length(hit.point), 1, 0.01);
+        GPROJT_NEAR(gprojt_length3(hit.point), 1, 0.01);
     }
     gproj_surface_destroy(surface);
     gproj_surface_destroy(NULL);
@@ -307,12 +299,12 @@ GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces: the triangles cov
         for (t = 0; t < surface->triangle_count; ++t) {
             const int32_t *v = surface->triangle + 3 * t;
             double a[3], b[3], c[3];
-            gproji_sub3(s.position + 3 * v[1], s.position + 3 * v[0], a);
-            gproji_sub3(s.position + 3 * v[2], s.position + 3 * v[0], b);
-            gproji_cross3(a, b, c);
-            sum += 0.5 * gprojt_length(c);
+            gprojt_sub3(s.position + 3 * v[1], s.position + 3 * v[0], a);
+            gprojt_sub3(s.position + 3 * v[2], s.position + 3 * v[0], b);
+            gprojt_cross3(a, b, c);
+            sum += 0.5 * gprojt_length3(c);
         }
-        GPROJT_NEAR(sum, gprojt_length(area), 1e-8 * sum);
+        GPROJT_NEAR(sum, gprojt_length3(area), 1e-8 * sum);
         gproj_surface_destroy(surface);
         gproj_mesh_destroy(mesh);
         gprojt_soup_free(&s);
@@ -361,35 +353,39 @@ GPROJT_TEST(hierarchy_of_equal_items) { /* thousands of segments in one place: d
     free(x);
 }
 
+/* Curves and surfaces of a mesh, or curves of its polyline. */
+typedef struct gprojt_made {
+    const gproj_mesh *mesh;
+    int kind;
+} gprojt_made;
+
+static bool gprojt_make(const gproj_host *host, void *user) {
+    const gprojt_made *what = (const gprojt_made *)user;
+    const gproj_mesh *mesh = what->mesh;
+    gproj_error error;
+    gproj_curve *curve = NULL;
+    gproj_surface *surface = NULL;
+    bool made;
+    if (what->kind == 0) curve = gproj_curve_create(mesh->vertex_count, mesh->position, true, host, &error);
+    if (what->kind == 1) curve = gproj_curve_from_loop(mesh, 0, host, &error);
+    if (what->kind == 2) curve = gproj_curve_from_polyline(mesh, 0, host, &error);
+    if (what->kind == 3) surface = gproj_surface_create(mesh, host, &error);
+    made = curve || surface;
+    GPROJT_CHECK(made || error.code == GPROJ_ERROR_MEMORY);
+    gproj_curve_destroy(curve);
+    gproj_surface_destroy(surface);
+    return made;
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n";
     gprojt_soup s = gprojt_hexagon_mesh(4, 4);
     gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL), *line;
-    static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n";
-    int kind;
+    gprojt_made what;
     line = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);
-    for (kind = 0; kind < 4; ++kind) {
-        gprojt_failing failing;
-        gproj_error error;
-        long at;
-        void *made = NULL;
-        for (at = 1; at < 100; ++at) {
-            gproj_host host;
-            memset(&failing, 0, sizeof failing);
-            failing.fail_at = at;
-            host = gprojt_failing_host(&failing);
-            if (kind == 0) made = gproj_curve_create(mesh->vertex_count, mesh->position, true, &host, &error);
-            if (kind == 1) made = gproj_curve_from_loop(mesh, 0, &host, &error);
-            if (kind == 2) made = gproj_curve_from_polyline(line, 0, &host, &error);
-            if (kind == 3) made = gproj_surface_create(mesh, &host, &error);
-            if (made) break;
-            GPROJT_CHECK(error.code == GPROJ_ERROR_MEMORY && failing.held == 0 && failing.wrong_sizes == 0);
-        }
-        GPROJT_CHECK(made && at > 10);
-        if (kind == 3)
-            gproj_surface_destroy((gproj_surface *)made);
-        else
-            gproj_curve_destroy((gproj_curve *)made);
-        GPROJT_CHECK(failing.held == 0 && failing.wrong_sizes == 0 && failing.bytes == 0);
+    for (what.kind = 0; what.kind < 4; ++what.kind) {
+        what.mesh = what.kind == 2 ? line : mesh;
+        GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make, &what) >= 10);
     }
     gproj_mesh_destroy(line);
     gproj_mesh_destroy(mesh);

@@ -2,7 +2,6 @@
 #if !defined(_WIN32) && !defined(_XOPEN_SOURCE)
 #define _XOPEN_SOURCE 700 /* setrlimit */
 #endif
-#define GUIDEDPROJ_IMPLEMENTATION
 #include "gprojt_mesh.h"
 
 #ifndef _WIN32
@@ -374,31 +373,24 @@ GPROJT_TEST(full_disk) { /* the old file stays, the new one is taken away */
 
 /* -- memory, noise, mutations -- */
 
+/* `user`: a text, or the name of a file that ends in .obj. */
+static bool gprojt_make_from_text(const gproj_host *host, void *user) {
+    const char *text = (const char *)user, *end = strrchr(text, '.');
+    bool is_file = end && !strcmp(end, ".obj");
+    gproj_error error;
+    gproj_mesh *mesh = is_file ? gproj_mesh_load(text, host, &error)
+                               : gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_DETECT, host, &error);
+    return gprojt_mesh_was_made(mesh, host, &error);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
-    static const char *const texts[2] = {GPROJT_SQUARE "v 5 5 5\nf 1 2 3\nf 1 3 4\nl 1 5 1\nl 2 5\n",
-                                         "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"};
-    int k;
-    long at = 0;
-    gprojt_put_file("gprojt_alloc.obj", texts[0]);
-    for (k = 0; k < 3; ++k) {
-        gproj_mesh *mesh = NULL;
-        gprojt_failing failing;
-        gproj_error error;
-        for (at = 1; at < 1000; ++at) {
-            gproj_host host;
-            memset(&failing, 0, sizeof failing);
-            failing.fail_at = at;
-            host = gprojt_failing_host(&failing);
-            mesh = k == 2 ? gproj_mesh_load("gprojt_alloc.obj", &host, &error)
-                          : gproj_mesh_read(texts[k], strlen(texts[k]), GPROJ_FORMAT_DETECT, &host, &error);
-            if (mesh) break;
-            GPROJT_CHECK(error.code == GPROJ_ERROR_MEMORY && failing.held == 0 && failing.wrong_sizes == 0);
-        }
-        GPROJT_CHECK(mesh && at > 20 && gproj_mesh_memory(mesh).used == failing.bytes);
-        gproj_mesh_destroy(mesh);
-        GPROJT_CHECK(failing.held == 0 && failing.wrong_sizes == 0);
-    }
-    remove("gprojt_alloc.obj");
+    char obj[] = GPROJT_SQUARE "v 5 5 5\nf 1 2 3\nf 1 3 4\nl 1 5 1\nl 2 5\n";
+    char off[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n", file[] = "gprojt_alloc.obj";
+    gprojt_put_file(file, obj);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_from_text, obj) >= 20);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_from_text, off) >= 20);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_from_text, file) >= 20);
+    remove(file);
 }
 
 /* Reads a text that may be anything: a valid mesh or a sentence comes back. The text ends where its memory ends. */

@@ -1,0 +1,20 @@
+/* gprojt_inside.c - the library as most tests link it, once compiled, with what they see of its inside. */
+#define GUIDEDPROJ_IMPLEMENTATION
+#include "gprojt_inside.h"
+
+int32_t gprojt_inside_wide_rows(const gproj_system *system) { return system->wide_count; }
+gproj_cholesky_info gprojt_inside_factor(const gproj_system *system) {
+    return gproj_cholesky_get_info(system->cholesky);
+}
+
+gproj_mesh *gprojt_inside_mesh(const gproj_form *form) { return form->mesh; }
+int32_t gprojt_inside_normal(const gproj_form *form, int32_t face) { return form->normal[face]; }
+int32_t gprojt_inside_cone(const gproj_form *form, int32_t vertex) { return form->cone[vertex]; }
+int32_t gprojt_inside_force(const gproj_form *form, int32_t edge) { return form->statics->force[edge]; }
+int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex) { return form->statics->axes[vertex]; }
+double gprojt_inside_load_scale(const gproj_form *form) { return form->statics->load_scale; }
+
+double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
+                            double *gradient) {
+    return gproji_volume(mesh, position, height, scale, gradient);
+}

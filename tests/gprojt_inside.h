@@ -1,0 +1,26 @@
+/* gprojt_inside.h - what tests of the public functions see of the library's inside; gprojt_inside.c answers. */
+#ifndef GPROJT_INSIDE_H
+#define GPROJT_INSIDE_H
+
+#include "../guidedproj.h"
+
+/* How many rows a system keeps out of its matrix, and the matrix's factor. */
+int32_t gprojt_inside_wide_rows(const gproj_system *system);
+gproj_cholesky_info gprojt_inside_factor(const gproj_system *system);
+
+/* The mesh of a form. */
+gproj_mesh *gprojt_inside_mesh(const gproj_form *form);
+/* The first variable of a face's normal, of a vertex's axis of a cone, an edge's force density; -1: it has none. */
+int32_t gprojt_inside_normal(const gproj_form *form, int32_t face);
+int32_t gprojt_inside_cone(const gproj_form *form, int32_t vertex);
+int32_t gprojt_inside_force(const gproj_form *form, int32_t edge);
+/* Bit k: the forces along axis k balance at this vertex. */
+int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex);
+/* The caller's unit of loads in the form's. */
+double gprojt_inside_load_scale(const gproj_form *form);
+
+/* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
+double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
+                            double *gradient);
+
+#endif
