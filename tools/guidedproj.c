@@ -1960,6 +1960,10 @@ static gproj_code write_picture(tool *t, FILE *file) {
                  t->before.planarity_max, t->after.planarity_max);
     else
         snprintf(caption + length, sizeof caption - (size_t)length, "planarity %.1e", t->after.planarity_max);
+    length = (int)strlen(caption);
+    if (t->equilibrium.given && !t->imbalance_before)
+        snprintf(caption + length, sizeof caption - (size_t)length, " \xc2\xb7 equilibrium to %.1e of the largest load",
+                 t->forces.residual);
     picture.title = file_name(t->output[OUTPUT_MESH].path);
     picture.caption = caption;
     picture.view = t->view_given ? &t->view : NULL;

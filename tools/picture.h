@@ -944,6 +944,11 @@ static void gprojx_put_legend(gprojx_painter *p) {
             gprojx_put_words(p->file, x + width + 24, y - 8, 13, " fill=\"#777\"",
                              "faces along the scale: now (dark), before (line)");
     }
+    if (p->edge_most > 0) {
+        char text[96];
+        snprintf(text, sizeof text, "edges by force: blue compression, red tension, widest %.3g", p->edge_most);
+        gprojx_put_words(p->file, p->options->face_value ? x + width + 24 : x, y - 28, 13, " fill=\"#777\"", text);
+    }
     if (p->turned_count > 0)
         gprojx_put_mark(p, p->width - 215, y + 8, 10, p->turned_count, "fill=\"#e66e28\" stroke=\"#222\"",
                         "face turned over", "faces turned over");
