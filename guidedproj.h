@@ -13737,9 +13737,9 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     result = gproj_system_solve(form->system, iterations, options);
     form->system->default_last = 0;
     if (result.outcome == GPROJ_FAILED) return result;
-    gproji_store_positions(form);
     gproji_doubt_equilibrium(form, &result);
     if (result.outcome == GPROJ_FAILED) return result;
+    gproji_store_positions(form);
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result.message, sizeof result.message, strlen(result.message), shrinks, sizeof shrinks - 1);
     if (gproji_is_unbalanced(form, &result)) gproji_tell_unbalanced(form, &result);
