@@ -12888,6 +12888,8 @@ GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, 
     }
 }
 
+static const char gproji_loads_too_large[] = "equilibrium: the loads are too large, their squares overflow";
+
 /* The least-squares problem of equilibrium at positions x: a column for each edge, rows as in the group; and its
    solution. */
 typedef struct gproji_balance {
@@ -13029,25 +13031,41 @@ GPROJI_INTERNAL double gproji_norm(const double *a, int32_t count) {
     return sqrt(sum);
 }
 
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
+/* p->load, at positions x, as parts of the mean load. Returns this mean, 0 without loads; -1 after an error. */
+GPROJI_INTERNAL double gproji_relative_loads(gproj_form *form, const double *x, gproji_balance *p) {
     static const gproji_load_units units = {1, 1, 1};
-    gproji_balance p;
-    const double *x;
     double mean;
+    size_t i;
+    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
+    mean = gproji_mean_load(form, p->load);
+    if (!gproji_is_finite(mean)) {
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
+        return -1;
+    }
+    for (i = 0; mean > 0 && i < 3 * p->vertices; ++i) p->load[i] /= mean;
+    return mean;
+}
+
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
+    gproji_balance p;
+    double *x, mean;
     int32_t v, e;
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
         !gproji_take_balance(form, &p))
         return gproj_form_error(form)->code;
-    x = form->mesh->position;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p.load);
-    mean = gproji_mean_load(form, p.load);
-    if (gproji_solve_balance(form, x, 0, 0, &p)) {
+    x = (double *)gproji_take(&form->own, 3 * p.vertices, sizeof *x);
+    if (!x) gproji_fail_memory(&form->error);
+    mean = x ? gproji_relative_loads(form, form->mesh->position, &p) : -1;
+    for (v = 0; x && v < form->mesh->vertex_count; ++v)
+        gproji_to_internal(form, form->mesh->position + 3 * (size_t)v, x + 3 * (size_t)v);
+    if (mean >= 0 && gproji_solve_balance(form, x, 0, 0, &p)) {
         gproji_unbalanced(form, x, p.force, p.load, p.load);
         for (v = 0; residuals && v < form->mesh->vertex_count; ++v)
-            residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) / mean : 0;
-        for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e];
+            residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) : 0;
+        for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
+    gproji_give(&form->own, x, 3 * p.vertices, sizeof *x);
     gproji_give_balance(form, &p);
     return gproj_form_error(form)->code;
 }
@@ -13120,6 +13138,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     s->load_scale = 1;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     load = gproji_mean_load(form, p->load);
+    if (!gproji_is_finite(load)) {
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
+        return false;
+    }
     if (load > 0) s->load_scale = 1 / load;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     gproji_force_limits(form, p->lower, p->upper);
@@ -13619,6 +13641,46 @@ GPROJI_INTERNAL void gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
                   kind, planar, others, vertex[0], forces.residual);
 }
 
+/* The largest |phi| of the rows of equilibrium that count, over the largest part of a load on a vertex; 0 without loads.
+   `largest`: that part, in the form's units. -1 after an error. */
+GPROJI_INTERNAL double gproji_part_unbalanced(gproj_form *form, double *largest) {
+    const gproji_group *g = &form->system->group[form->statics->group];
+    size_t count = 3 * (size_t)form->mesh->vertex_count, i;
+    double worst = 0, *load = (double *)gproji_take(&form->own, count, sizeof *load);
+    int32_t r;
+    *largest = 0;
+    if (!load) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    gproji_loads_at(form->mesh, &form->statics->loads, gproji_internal_loads(form), gproj_system_values(form->system),
+                    load);
+    for (i = 0; i < count; ++i) *largest = gproji_fmax(*largest, fabs(load[i]));
+    gproji_give(&form->own, load, count, sizeof *load);
+    for (r = 0; r < g->row_count; ++r)
+        if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
+    return *largest > 0 ? worst / *largest : 0;
+}
+
+/* Equilibrium to the tolerance says nothing where the loads themselves are below it: where the mesh has shrunk to a
+   point, or beside huge forces. */
+GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
+    static const double noticeable = 1e-3;
+    const gproji_statics *s = form->statics;
+    double part, largest;
+    if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
+    part = gproji_part_unbalanced(form, &largest);
+    if (part < 0) {
+        *result = gproji_failed_result(gproj_form_error(form));
+    } else if (part > noticeable && largest <= 10 * result->tolerance) {
+        result->outcome = GPROJ_STALLED;
+        gproji_format(result->message, sizeof result->message,
+                      "no equilibrium: the loads have become nothing beside the forces, and %g of the largest load is "
+                      "unbalanced; where the mesh has shrunk to a point, fix vertices or let them glide",
+                      part);
+    }
+}
+
 /* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
    them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
 GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
@@ -13674,6 +13736,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     form->system->default_last = gproji_guided_iterations(form, iterations);
     result = gproj_system_solve(form->system, iterations, options);
     form->system->default_last = 0;
+    if (result.outcome == GPROJ_FAILED) return result;
+    gproji_doubt_equilibrium(form, &result);
     if (result.outcome == GPROJ_FAILED) return result;
     gproji_store_positions(form);
     if (gproji_has_active_wish(form) && !gproji_is_held(form))

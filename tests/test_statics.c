@@ -1379,6 +1379,76 @@ GPROJT_TEST(same_bits_for_all_workers) {
     free(first[0]), free(first[1]);
 }
 
+/* Supports that may move, and circular faces: a point satisfies everything, but its loads are nothing. */
+GPROJT_TEST(a_point_is_no_equilibrium) {
+    int wish;
+    for (wish = 0; wish < 2; ++wish) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 6, 2, 0.6);
+        int32_t corner[4], count = 0, v;
+        gproj_supports supports = {0, NULL, NULL};
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        for (v = 0; v < mesh->vertex_count && count < 4; ++v)
+            if (gproj_form_is_corner(form, v)) corner[count++] = v;
+        supports.count = count, supports.vertex = corner;
+        loads.density = 1;
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        if (wish) gproj_add_fairness(form, 0.3);
+        if (!wish) gproj_add_fixed_corners(form, 1);
+        result = gproj_solve(form, 25, NULL);
+        GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !wish);
+        GPROJT_CHECK((gproj_measure_forces(form).residual < 1e-9) == !wish);
+        GPROJT_CHECK(wish == (strstr(result.message, "shrunk to a point") != NULL));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Forces beside which the loads are nothing are no equilibrium, however small the rows are. */
+GPROJT_TEST(huge_forces_are_no_equilibrium) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 6, 2, 0.6);
+    gproj_loads loads = gprojt_no_loads();
+    double *w = gprojt_numbers(mesh->edge_count);
+    gproj_form *form;
+    int32_t e;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1e100;
+    GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+    GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome != GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_set_forces(form, NULL) == GPROJ_OK);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w);
+}
+
+/* Loads far from 1 are found forces for; those whose squares overflow are refused, by the solve as well. */
+GPROJT_TEST(loads_of_any_size) {
+    static const double size[] = {1, 1e-100, 1e100, 1e200};
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_mesh *mesh = gprojt_vault(TRIANGLES, 5, 10, 3);
+        gproj_loads loads = gprojt_no_loads();
+        double *w = gprojt_numbers(mesh->edge_count);
+        bool refused = i == 3;
+        gproj_form *form;
+        loads.density = size[i];
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_find_forces(form, w, NULL) == (refused ? GPROJ_ERROR_NUMBER : GPROJ_OK));
+        GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == (refused ? GPROJ_FAILED : GPROJ_CONVERGED));
+        GPROJT_CHECK(refused == (strstr(gproj_form_error(form)->message, "too large") != NULL));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        mesh = gprojt_vault(TRIANGLES, 5, 10, 3);
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == (refused ? GPROJ_FAILED : GPROJ_CONVERGED));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(w);
+    }
+}
+
 int main(void) {
     GPROJT_RUN(gradients);
     GPROJT_RUN(load_rows_are_tangent);
@@ -1404,6 +1474,9 @@ int main(void) {
     GPROJT_RUN(supports_only);
     GPROJT_RUN(no_supports);
     GPROJT_RUN(prestressed_net);
+    GPROJT_RUN(a_point_is_no_equilibrium);
+    GPROJT_RUN(huge_forces_are_no_equilibrium);
+    GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(refusals_of_equilibrium);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);

@@ -509,6 +509,12 @@ expect 3 "bad.csv, line 2: there is no vertex 99" vault.obj -o new.obj --equilib
 printf '3,0,0\n' >bad.csv
 expect 3 "bad.csv, line 1: expected VERTEX,FX,FY,FZ" vault.obj -o new.obj --equilibrium --loads bad.csv
 expect 2 "would overwrite the input" vault.obj -o new.obj --equilibrium --loads loads.csv --forces loads.csv
+printf 'load,24,0,0,-1\n' >bad.csv # a line of --forces, and no heading
+expect 3 "bad.csv, line 1: expected VERTEX,FX,FY,FZ" vault.obj -o new.obj --equilibrium --loads bad.csv
+printf '\357\273\277vertex,fx,fy,fz\r\n40 ,\t0, 0 ,-5\r\n20,1,0,-1\r\n' >marked.csv # as spreadsheets write it
+run vault.obj -o new.obj --equilibrium --density 1 --loads marked.csv --fix boundary --forces forces.csv
+balanced "loads from a spreadsheet" 'edges == 144'
+expect 2 "names no vertex" vault.obj -o new.obj --equilibrium --supports ,
 
 # ---- offsets ----
 

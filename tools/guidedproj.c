@@ -1287,6 +1287,14 @@ static void add_sizes(tool *t) {
     if (t->volume.given) gproj_add_volume(form, value_of(&t->volume, gproj_volume(t->mesh)), 1);
 }
 
+/* A heading: words, and no number behind the first comma. */
+static bool is_heading(const char *line, size_t size) {
+    const char *comma = (const char *)memchr(line, ',', size);
+    size_t at = comma ? (size_t)(comma - line) + 1 : size;
+    while (at < size && isspace((unsigned char)line[at])) ++at;
+    return isalpha((unsigned char)line[0]) && (at == size || !strchr("+-.0123456789", line[at]));
+}
+
 /* One line VERTEX,FX,FY,FZ; empty lines, comments after # and a heading in the first line are passed over. */
 static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
     double field[4];
@@ -1294,13 +1302,15 @@ static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
     int32_t k;
     for (end = 0; end < size && line[end] != '#'; ++end) continue;
     while (end > 0 && isspace((unsigned char)line[end - 1])) --end;
-    if (end == 0 || (number == 1 && isalpha((unsigned char)line[0]))) return true;
+    if (end == 0 || (number == 1 && is_heading(line, end))) return true;
     for (k = 0; k < 4; ++k) {
         const char *comma = (const char *)memchr(line + at, ',', end - at);
         size_t length = comma ? (size_t)(comma - line) - at : end - at;
-        while (length > 0 && line[at] == ' ') ++at, --length;
+        size_t next = at + length + 1;
+        while (length > 0 && isspace((unsigned char)line[at])) ++at, --length;
+        while (length > 0 && isspace((unsigned char)line[at + length - 1])) --length;
         if ((k < 3) != (comma != NULL) || !read_number(line + at, length, &field[k])) break;
-        at += length + 1;
+        at = next;
     }
     if (k < 4) return fail(t, EXIT_REFUSED, "%s, line %ld: expected VERTEX,FX,FY,FZ", t->loads, (long)number);
     if (!(field[0] >= 0) || field[0] >= t->mesh->vertex_count || field[0] != floor(field[0]))
@@ -1314,6 +1324,7 @@ static bool read_loads(tool *t) {
     char *text = load_text(t, t->loads), *line = text;
     int32_t number = 1;
     bool good = text != NULL;
+    if (text && strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
     t->point_load = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->point_load);
     good = good && t->point_load;
     for (; good && *line; ++number) {
@@ -1341,7 +1352,9 @@ static bool add_equilibrium(tool *t) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
             if (t->is_support[i]) list[supports.count++] = i;
         if (supports.count == 0)
-            good = fail(t, EXIT_USAGE, "there is no support: the mesh has no boundary, so name some by --supports");
+            good = fail(t, EXIT_USAGE, "%s",
+                        t->supports.text ? "--supports names no vertex"
+                                         : "there is no support: the mesh has no boundary, so name some by --supports");
     }
     if (good) {
         supports.vertex = list;
