@@ -507,7 +507,8 @@ typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
        roundings of the largest |x|, and in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|. */
     double tolerance;
-    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3) */
+    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
+                           less where steps fall short near the end) */
     double time_budget; /* seconds by the host's clock; 0 means none */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
@@ -6197,7 +6198,7 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    Newton method, 2003). The first guess is what is violated at x and what acted on the last step. The merit is then
    piecewise of degree 4 with a continuous slope. */
 
-static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3;
+static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.01;
 enum {
@@ -6226,8 +6227,9 @@ typedef struct gproji_loop {
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
-    double shift; /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    double epsilon_least; /* the least that follows the residual: gproji_epsilon_min, smaller where steps fall short */
+    double shift;         /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row, to change their coefficients in place. */
@@ -6571,12 +6573,15 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     double epsilon = loop->options.epsilon;
     int32_t attempt;
     if (!(epsilon > 0))
-        epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_epsilon_min), gproji_epsilon_max);
+        epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, loop->epsilon_least), gproji_epsilon_max);
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
         if (gproji_try_step(loop, epsilon)) {
+            double before = loop->standing.residual;
             gproji_linearise(loop);
+            if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
+                loop->epsilon_least = gproji_fmax(0.1 * loop->epsilon_least, gproji_epsilon_least);
             return true;
         }
         gproji_start_bounds(s);
@@ -7210,6 +7215,7 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     gproji_error_clear(&refused);
     if (!gproji_options_are_valid(s, iterations, &loop.options, &refused)) return gproji_failed_result(&refused);
     if (!gproji_values_are_valid(s)) return gproji_failed_result(&s->error);
+    loop.epsilon_least = gproji_epsilon_min;
     loop.started = loop.lap = gproji_now(s);
     if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
     gproji_lap(&loop, GPROJ_PHASE_ANALYSE);

@@ -73,7 +73,7 @@ static gproj_form *stand(gproj_mesh *mesh, const double *density) {
 int main(void) {
     static double density[2 * FACES + AROUND];
     gproj_schedule wish = {0.05, 0.95, 15};
-    gproj_solve_options lift = {0}, plain = {0};
+    gproj_solve_options lift = {0};
     gproj_error error;
     gproj_mesh *mesh = make_flat(&error);
     gproj_form *form;
@@ -95,8 +95,7 @@ int main(void) {
     gproj_add_planarity(form, 1);
     right = gproj_add_orthogonal_boundary(form, 1);
     gproj_set_schedule(form, gproj_add_tangential_fairness(form, 1), wish);
-    plain.skip_damping = true; /* the paper's iteration; steps that may not make it worse stall here */
-    result = gproj_solve(form, 40, &plain);
+    result = gproj_solve(form, 40, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
     forces = gproj_measure_forces(form);
     for (j = 0; j < AROUND; ++j) {
