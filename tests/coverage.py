@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """coverage.py FOLDER HEADER LINES BRANCHES [--lines] - adds up gcov's counts of one header over many programs.
 
-Every program has its own copy of the header's functions. A line counts as covered when it ran in any program, a branch
+Programs may have their own copies of the header's functions. A line counts as covered when it ran in any program, a branch
 when it was taken in any; branches are the same when function, line and position in the line are. --lines also prints
 the lines that never ran, and those with branches never taken. Fails when fewer than LINES percent of the lines or BRANCHES
 percent of the branches are covered.

@@ -1,11 +1,10 @@
-/* gprojt_form.h - systems and forms for tests: rows in one line, threads, a clock that counts, noisy meshes, failing
+/* gprojt_form.h - systems and forms for tests: rows in one line, a clock that counts, noisy meshes, failing
    allocations. */
 #ifndef GPROJT_FORM_H
 #define GPROJT_FORM_H
 
-#include <pthread.h>
-
 #include "gprojt_mesh.h"
+#include "gprojt_threads.h"
 
 /* -- rows -- */
 
@@ -64,67 +63,6 @@ static inline double gprojt_unit(const gproj_form *form) {
     return 1 / scale;
 }
 
-/* -- threads: the tasks in reverse order, in leaps, or on `user` threads -- */
-
-static inline void gprojt_run_reverse(void *user, int32_t count, gproj_task task, void *data) {
-    (void)user;
-    while (count-- > 0) task(data, count);
-}
-
-static inline void gprojt_run_leaps(void *user, int32_t count, gproj_task task, void *data) {
-    int32_t leap, i;
-    (void)user;
-    for (leap = 0; leap < 3; ++leap)
-        for (i = leap; i < count; i += 3) task(data, i);
-}
-
-typedef struct gprojt_team {
-    int32_t next, count;
-    gproj_task task;
-    void *data;
-    pthread_mutex_t lock;
-} gprojt_team;
-
-static inline void *gprojt_team_work(void *user) {
-    gprojt_team *team = (gprojt_team *)user;
-    for (;;) {
-        int32_t mine;
-        pthread_mutex_lock(&team->lock);
-        mine = team->next++;
-        pthread_mutex_unlock(&team->lock);
-        if (mine >= team->count) return NULL;
-        team->task(team->data, mine);
-    }
-}
-
-/* `user`: an int, how many threads. */
-static inline void gprojt_run_threads(void *user, int32_t count, gproj_task task, void *data) {
-    pthread_t thread[8];
-    int threads = *(const int *)user, i, started = 0;
-    gprojt_team team;
-    team.next = 0, team.count = count, team.task = task, team.data = data;
-    pthread_mutex_init(&team.lock, NULL);
-    for (i = 1; i < threads && i < 8 && i < count; ++i)
-        if (pthread_create(&thread[started], NULL, gprojt_team_work, &team) == 0) ++started;
-    gprojt_team_work(&team);
-    for (i = 0; i < started; ++i) pthread_join(thread[i], NULL);
-    pthread_mutex_destroy(&team.lock);
-}
-
-/* One worker, two orders of one worker, 2 and 5 workers. */
-enum {
-    GPROJT_CREWS = 5
-};
-static inline gproj_host gprojt_crew(int index) {
-    static int two = 2, five = 5;
-    gproj_host host;
-    memset(&host, 0, sizeof host);
-    if (index == 1) host.parallel.run = gprojt_run_reverse;
-    if (index == 2) host.parallel.run = gprojt_run_leaps;
-    if (index >= 3) host.parallel.run = gprojt_run_threads, host.parallel.user = index == 3 ? &two : &five;
-    return host;
-}
-
 /* -- a clock that goes one second further each time it is read -- */
 
 typedef struct gprojt_ticks {
@@ -161,11 +99,20 @@ static inline gproj_mesh *gprojt_noisy(int shape, int32_t n, double noise, uint6
     return mesh;
 }
 
+/* A copy of the positions, whether they are still the same bits, and back to them. */
 static inline double *gprojt_keep(const gproj_mesh *mesh) {
     double *copy = (double *)malloc(3 * (size_t)mesh->vertex_count * sizeof *copy);
     if (!copy) abort();
     memcpy(copy, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *copy);
     return copy;
+}
+
+static inline bool gprojt_unmoved(const gproj_mesh *mesh, const double *kept) {
+    return !memcmp(kept, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+}
+
+static inline void gprojt_put_back(gproj_mesh *mesh, const double *kept) {
+    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
 }
 
 /* The largest distance of vertices of two sets of positions. */
@@ -206,8 +153,8 @@ static inline bool gprojt_use_form(const gproj_host *host, void *user) {
     whole = gproj_form_error(form)->code == GPROJ_OK;
     GPROJT_CHECK(whole == (result.outcome != GPROJ_FAILED));
     GPROJT_CHECK(whole || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
-    GPROJT_CHECK(whole || !memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
-    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    GPROJT_CHECK(whole || gprojt_unmoved(mesh, before));
+    gprojt_put_back(mesh, before);
     gproj_form_destroy(form);
     free(before);
     return whole;

@@ -97,6 +97,17 @@ static inline bool gprojt_mesh_was_made(gproj_mesh *mesh, const gproj_host *host
     return made;
 }
 
+/* Whether making a mesh was refused with this error, in a sentence of one line with this piece. */
+static inline bool gprojt_mesh_was_refused(const gproj_mesh *mesh, const gproj_error *error, gproj_code code,
+                                           gproj_place place, int64_t index, const char *piece) {
+    bool right = !mesh && error->code == code && error->place == place && error->index == index &&
+                 strstr(error->message, piece) && !strchr(error->message, '\n');
+    if (!right)
+        printf("  code %d place %d index %ld: %s\n", (int)error->code, (int)error->place, (long)error->index,
+               error->message);
+    return right;
+}
+
 /* -- generators: gentle double-curved shapes -- */
 
 static inline double gprojt_height(double x, double y) { return 0.15 * sin(2 * x) * cos(1.5 * y) + 0.05 * x * y; }

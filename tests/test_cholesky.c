@@ -2,12 +2,7 @@
 
    Build with -DGPROJT_HAVE_AMD and -lamd to compare the fill with SuiteSparse. */
 #define GPROJ_STATIC
-#include "gprojt.h"
-
-#if defined(__unix__) && !defined(GPROJT_NO_THREADS)
-#include <pthread.h>
-#define GPROJT_THREADS 1
-#endif
+#include "gprojt_threads.h"
 
 #if defined(GPROJT_HAVE_AMD) && defined(__has_include)
 #if __has_include(<suitesparse/amd.h>)
@@ -707,63 +702,12 @@ GPROJT_TEST(cholesky_not_positive_definite) {
 
 /* -- threads -- */
 
-static void run_backwards(void *user, int32_t count, gproj_task task, void *data) {
-    (void)user;
-    while (count-- > 0) task(data, count);
-}
-
-/* first the even tasks backwards, then the odd ones */
-static void run_mixed(void *user, int32_t count, gproj_task task, void *data) {
-    int32_t k;
-    (void)user;
-    for (k = count - 1; k >= 0; --k)
-        if (k % 2 == 0) task(data, k);
-    for (k = 0; k < count; ++k)
-        if (k % 2 == 1) task(data, k);
-}
-
-#ifdef GPROJT_THREADS
-typedef struct workers {
-    int32_t threads, count, next;
-    gproj_task task;
-    void *data;
-    pthread_mutex_t lock;
-} workers;
-
-static void *work(void *user) {
-    workers *w = (workers *)user;
-    for (;;) {
-        int32_t k;
-        pthread_mutex_lock(&w->lock);
-        k = w->next++;
-        pthread_mutex_unlock(&w->lock);
-        if (k >= w->count) return NULL;
-        w->task(w->data, k);
-    }
-}
-
-static void run_threads(void *user, int32_t count, gproj_task task, void *data) {
-    workers w;
-    pthread_t thread[8];
-    int32_t k;
-    memset(&w, 0, sizeof w);
-    w.threads = *(const int32_t *)user, w.count = count, w.task = task, w.data = data;
-    pthread_mutex_init(&w.lock, NULL);
-    for (k = 0; k < w.threads; ++k) pthread_create(&thread[k], NULL, work, &w);
-    for (k = 0; k < w.threads; ++k) pthread_join(thread[k], NULL);
-    pthread_mutex_destroy(&w.lock);
-}
-#endif
-
-/* The solution with the given way to run tasks; the first unknown of a failing matrix in *failed. */
-static double *solution_with(const gproj_parallel *parallel, const matrix *m, int32_t *failed) {
-    gproj_host host;
+/* The solution with a host that runs tasks its way; the first unknown of a failing matrix in *failed. */
+static double *solution_with(const gproj_host *host, const matrix *m, int32_t *failed) {
     gproj_cholesky *c;
     double *x = (double *)malloc((size_t)m->n * sizeof(double)), was, was_half;
     int32_t i;
-    memset(&host, 0, sizeof host);
-    host.parallel = *parallel;
-    c = gproj_cholesky_create(&host);
+    c = gproj_cholesky_create(host);
     for (i = 0; i < m->n; ++i) x[i] = sin(0.1 * i);
     GPROJT_CHECK(gproj_cholesky_analyse(c, m->n, m->start, m->row, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_factor(c, m->value) == GPROJ_FACTORED);
@@ -781,19 +725,8 @@ static double *solution_with(const gproj_parallel *parallel, const matrix *m, in
 
 GPROJT_TEST(cholesky_same_bits_for_any_workers) {
     matrix m = planarity(TORUS, 50, 50);
-    gproj_parallel parallel[5];
     double *first = NULL;
-    int32_t k, kinds = 3, failed = -1, other, j;
-    static int32_t two = 2, five = 5;
-    memset(parallel, 0, sizeof parallel);
-    parallel[1].run = run_backwards, parallel[2].run = run_mixed;
-#ifdef GPROJT_THREADS
-    parallel[3].run = run_threads, parallel[3].user = &two;
-    parallel[4].run = run_threads, parallel[4].user = &five;
-    kinds = 5;
-#else
-    (void)two, (void)five;
-#endif
+    int32_t k, failed = -1, other, j;
     matrix_merge(&m);
     for (j = 0; j < m.n; ++j) { /* the diagonal first in every column */
         int64_t p = m.start[j];
@@ -803,8 +736,9 @@ GPROJT_TEST(cholesky_same_bits_for_any_workers) {
         m.value[p] = m.value[m.start[j]], m.row[p] = m.row[m.start[j]];
         m.value[m.start[j]] = v, m.row[m.start[j]] = j;
     }
-    for (k = 0; k < kinds; ++k) {
-        double *x = solution_with(&parallel[k], &m, &other);
+    for (k = 0; k < GPROJT_CREWS; ++k) {
+        gproj_host host = gprojt_crew(k);
+        double *x = solution_with(&host, &m, &other);
         if (k == 0) {
             first = x, failed = other;
             continue;

@@ -970,7 +970,7 @@ GPROJT_TEST(default_guidance) {
     gproj_solve(form, 4, NULL);
     GPROJT_CHECK(gprojt_find_group(form, "closeness").schedule.weight == 0);
     gproj_form_destroy(form);
-    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    gprojt_put_back(mesh, before);
     form = gproj_form_create(mesh, NULL);
     gproj_add_planarity(form, 1);
     options.skip_closeness = true;
@@ -1079,7 +1079,7 @@ GPROJT_TEST(guard_on_and_off) {
     gproj_add_planarity(form, 1);
     gproj_solve(form, 12, NULL);
     GPROJT_CHECK(gprojt_find_group(form, "guard").schedule.weight > 0);
-    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    gprojt_put_back(mesh, before);
     gproj_solve(form, 12, &options);
     GPROJT_CHECK(gprojt_find_group(form, "guard").schedule.weight == 0);
     gprojt_planarise(copy, 12, true, &result);
@@ -1104,7 +1104,7 @@ GPROJT_TEST(guard_is_no_wish) {
     result = gproj_solve(form, 3, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.worst_group == -1);
     GPROJT_CHECK(!gprojt_has_group(form, "guard"));
-    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    gprojt_put_back(mesh, before);
     GPROJT_CHECK(gproj_add_planarity(form, 1) == 0);
     memset(&options, 0, sizeof options);
     memset(&energies, 0, sizeof energies);
@@ -1389,7 +1389,7 @@ GPROJT_TEST(planar_meshes_keep_their_bits) {
     gproj_add_planarity(form, 1);
     gproj_add_fixed_boundary(form, 1);
     GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
-    GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+    GPROJT_CHECK(gprojt_unmoved(mesh, before));
     gproj_form_destroy(form);
     free(before);
     gproj_mesh_destroy(mesh);
@@ -1522,7 +1522,7 @@ GPROJT_TEST(positions_that_are_no_numbers) {
         result = gproj_solve(form, 3, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_FAILED && gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
         GPROJT_CHECK(gproj_form_error(form)->place == GPROJ_PLACE_VERTEX && gproj_form_error(form)->index == 7);
-        GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+        GPROJT_CHECK(gprojt_unmoved(mesh, before));
         free(before);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -1610,7 +1610,7 @@ GPROJT_TEST(form_refusals) {
             GPROJT_CHECK(gproj_form_error(form)->place == GPROJ_PLACE_VERTEX &&
                          gproj_form_error(form)->index == (call ? -1 : 25));
         gprojt_check_form_stuck(form, &props);
-        GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+        GPROJT_CHECK(gprojt_unmoved(mesh, before));
         gproj_form_destroy(form);
         free(before);
         gprojt_give_props(&props);
@@ -1632,7 +1632,7 @@ GPROJT_TEST(empty_lists_and_no_iterations) {
     gproj_add_planarity(form, 1);
     result = gproj_solve(form, 0, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 0 && result.residual > 0);
-    GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+    GPROJT_CHECK(gprojt_unmoved(mesh, before));
     GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
     gproj_form_destroy(form);
     free(before);
@@ -1658,7 +1658,7 @@ GPROJT_TEST(wrong_options_are_of_the_call) {
         GPROJT_CHECK(result.outcome == GPROJ_FAILED && result.iterations == 0);
         GPROJT_CHECK(strstr(result.message, "none may be negative") != NULL);
         GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
-        GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+        GPROJT_CHECK(gprojt_unmoved(mesh, before));
     }
     GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
     gproj_form_destroy(form);

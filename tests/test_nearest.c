@@ -417,7 +417,7 @@ GPROJT_TEST(honest_verdicts) {
     options.on_iteration = gprojt_note;
     options.user = &log;
     for (n = 0; n < 14; ++n) {
-        memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+        gprojt_put_back(mesh, start);
         result = gproj_solve(form, n, &options);
         if (result.outcome == GPROJ_CONVERGED) {
             GPROJT_CHECK(result.optimality <= 1e-6 && result.residual <= result.tolerance);
@@ -429,16 +429,16 @@ GPROJT_TEST(honest_verdicts) {
         GPROJT_CHECK(n == 0 || result.optimality == log.optimality);
     }
     memset(&log, 0, sizeof log);
-    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    gprojt_put_back(mesh, start);
     log.stop_after = 3;
     result = gproj_solve(form, 30, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 3 && !log.allocated);
     memset(&log, 0, sizeof log);
-    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    gprojt_put_back(mesh, start);
     result = gproj_solve(form, 60, &options);
     GPROJT_CHECK(result.residual <= result.tolerance && !log.allocated && log.count > 5);
     /* afterwards the usual solve is as ever */
-    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    gprojt_put_back(mesh, start);
     options.nearest = false;
     result = gproj_solve(form, 20, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality == 0);

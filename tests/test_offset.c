@@ -251,7 +251,7 @@ GPROJT_TEST(conicality_refusals_and_weight_0) {
     gproj_add_planarity(plain, 1);
     gproj_solve(plain, 10, NULL);
     end = gprojt_keep(mesh);
-    memcpy(mesh->position, start, 3 * (size_t)mesh->vertex_count * sizeof *start);
+    gprojt_put_back(mesh, start);
     form = gproj_form_create(mesh, NULL);
     gproj_add_planarity(form, 1);
     GPROJT_CHECK(gproj_add_conicality(form, 0) >= 0);

@@ -112,7 +112,7 @@ GPROJT_TEST(bounds_that_hold_already) {
     gproj_add_cost_bounds(form, 2, 3, 0, 1.001 * gprojt_cost(mesh, 2, 3), 1);
     result = gproj_solve(form, 20, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0);
-    GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
+    GPROJT_CHECK(gprojt_unmoved(mesh, before));
     free(before);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -474,7 +474,7 @@ GPROJT_TEST(same_bytes_on_any_number_of_threads) {
         gproj_add_cost_bounds(form, 1, 1, 0, 0.97 * gprojt_cost(mesh, 1, 1), 1);
         gproj_solve(form, 8, NULL);
         if (!first) first = gprojt_keep(mesh);
-        GPROJT_CHECK(!memcmp(first, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *first));
+        GPROJT_CHECK(gprojt_unmoved(mesh, first));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }

@@ -545,7 +545,7 @@ GPROJT_TEST(stresses_stay_within_bounds) {
         GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
         gprojt_stress_range(form, sections, free_range);
         gproj_form_destroy(form);
-        memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+        gprojt_put_back(mesh, kept);
         form = gprojt_pinned_form(mesh, NULL, &loads);
         max = way == 3 ? INFINITY : 0.9 * free_range[1];
         min = way == 0   ? -INFINITY
@@ -769,7 +769,7 @@ GPROJT_TEST(best_forces) {
             if (sign > 0) gproj_add_compression(form, mesh->edge_count, NULL, 1);
             if (sign < 0) gproj_add_tension(form, mesh->edge_count, NULL, 1);
             gprojt_check_optimal(form, &loads, sign);
-            GPROJT_CHECK(!memcmp(kept, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *kept));
+            GPROJT_CHECK(gprojt_unmoved(mesh, kept));
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
             free(kept);
@@ -916,11 +916,11 @@ GPROJT_TEST(forces_are_kept_and_set) {
     gproj_form_destroy(form);
 
     /* NULL and the first positions: all again */
-    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    gprojt_put_back(mesh, kept);
     form = gprojt_pinned_form(mesh, NULL, &loads);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_solve(form, 30, NULL);
-    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    gprojt_put_back(mesh, kept);
     gproj_set_forces(form, NULL);
     GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(mesh->position, solved, mesh->vertex_count) < 1e-9);
@@ -1028,7 +1028,7 @@ GPROJT_TEST(weights_switch_groups_off_and_on) {
     gproj_set_schedule(form, stress, off);
     gproj_set_schedule(form, equilibrium, off);
     gproj_set_schedule(form, compression, off);
-    memcpy(mesh->position, kept, 3 * (size_t)mesh->vertex_count * sizeof *kept);
+    gprojt_put_back(mesh, kept);
     GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-9);
     gproj_form_destroy(form);
@@ -1340,9 +1340,8 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     whole = gproj_measure_forces(form).residual_vertex >= 0;
     GPROJT_CHECK(whole || !form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
     GPROJT_CHECK(whole || result.outcome == GPROJ_FAILED || failing->calls == failing->fail_at);
-    if (result.outcome == GPROJ_FAILED)
-        GPROJT_CHECK(!memcmp(before, mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *before));
-    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    if (result.outcome == GPROJ_FAILED) GPROJT_CHECK(gprojt_unmoved(mesh, before));
+    gprojt_put_back(mesh, before);
     gproj_form_destroy(form);
     free(before), free(w), free(f), free(density), free(r);
     return whole;
@@ -1370,7 +1369,7 @@ GPROJT_TEST(same_bits_for_all_workers) {
         gproj_solve(form, 8, NULL);
         gproj_get_forces(form, w);
         if (crew == 0) first[0] = gprojt_keep(mesh), first[1] = w;
-        GPROJT_CHECK(!memcmp(first[0], mesh->position, 3 * (size_t)mesh->vertex_count * sizeof *w));
+        GPROJT_CHECK(gprojt_unmoved(mesh, first[0]));
         GPROJT_CHECK(!memcmp(first[1], w, (size_t)mesh->edge_count * sizeof *w));
         if (crew) free(w);
         gproj_form_destroy(form);
