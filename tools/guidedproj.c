@@ -753,10 +753,10 @@ static void print_help(void) {
          "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 220,0,0,5\n\n"
          "exit status\n"
          "  0 all that must hold holds to the tolerance   1 it does not (the output is\n"
-         "  written, the report says why)   2 wrong usage, or an output that cannot be written\n"
-         "  3 input refused, or writing failed   4 out of memory. After 2, 3 and 4 no output\n"
-         "  is touched. With --nearest 0 does not say that a minimum was reached: the\n"
-         "  sentence and the report do.");
+         "  written, the report says why)   2 wrong usage, or an output that cannot be\n"
+         "  written   3 input refused, or writing failed   4 out of memory. After 2, 3\n"
+         "  and 4 no output is touched. With --nearest 0 does not say that a minimum was\n"
+         "  reached: the sentence and the report do.");
 }
 
 /* ---- the command line ---- */
