@@ -536,7 +536,8 @@ typedef struct gproj_result {
     int32_t worst_group; /* where that residual is; -1 where nothing must hold */
     int32_t worst_element;
     double seconds[GPROJ_PHASE_COUNT];
-    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name */
+    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; of a form also what else
+                                         has happened: edges that collapsed, a mesh that shrank */
 } gproj_result;
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host);
@@ -13722,11 +13723,42 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     return false;
 }
 
+/* -- what else the verdict must not hide -- */
+
+/* Edges without length at the system's x, and the mean length. */
+GPROJI_INTERNAL int32_t gproji_collapsed_edges(const gproj_form *form, double *mean) {
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    int32_t e, collapsed = 0;
+    *mean = 0;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double length = gproji_distance3(x + 3 * (size_t)mesh->origin[2 * e], x + 3 * (size_t)mesh->origin[2 * e + 1]);
+        collapsed += length <= 1e-6;
+        *mean += length / mesh->edge_count;
+    }
+    return collapsed;
+}
+
+/* A mesh can satisfy everything and yet be spoiled: says so. `collapsed`, `mean`: what they were before. */
+GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, int32_t collapsed, double mean, gproj_result *result) {
+    size_t length = strlen(result->message);
+    double mean_now;
+    int32_t more = gproji_collapsed_edges(form, &mean_now) - collapsed;
+    if (result->outcome != GPROJ_CONVERGED) return;
+    if (mean_now < 0.2 * mean)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", mean_now / mean);
+    else if (more > 0)
+        gproji_format(result->message + length, sizeof result->message - length, "; but %d edge%s collapsed", more,
+                      more == 1 ? " has" : "s have");
+}
+
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     static const char shrinks[] =
         "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
     gproj_result result;
-    int32_t guided;
+    int32_t guided, collapsed;
+    double mean;
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
         return gproji_failed_result(gproj_form_error(form));
     gproji_load_positions(form);
@@ -13739,6 +13771,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
         gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    collapsed = gproji_collapsed_edges(form, &mean);
     form->system->default_last = gproji_guided_iterations(form, iterations);
     result = gproj_system_solve(form->system, iterations, options);
     form->system->default_last = 0;
@@ -13749,6 +13782,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result.message, sizeof result.message, strlen(result.message), shrinks, sizeof shrinks - 1);
     if (gproji_is_unbalanced(form, &result)) gproji_tell_unbalanced(form, &result);
+    gproji_tell_spoiled(form, collapsed, mean, &result);
     return result;
 }
 

@@ -291,6 +291,32 @@ static void gprojt_add_all(gproj_form *form, void *user) {
     gproj_add_equal_lengths(form, 3, NULL, 1);
 }
 
+/* What holds may be spoiled all the same: the verdict says so. */
+GPROJT_TEST(spoiled_meshes_are_told) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0, 1);
+    const int32_t *end = mesh->origin; /* of edge 0 */
+    int32_t pair[2], e;
+    double places[6] = {0, 0, 0, 0, 0, 0}, lengths[64];
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    pair[0] = end[0], pair[1] = end[1];
+    gproj_add_targets(form, 2, pair, places, 1);
+    result = gproj_solve(form, 5, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && strstr(result.message, "; but 1 edge has collapsed"));
+    result = gproj_solve(form, 5, NULL); /* it was so before */
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "collapsed"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_noisy(0, 4, 0, 1);
+    form = gproj_form_create(mesh, NULL);
+    for (e = 0; e < mesh->edge_count; ++e) lengths[e] = 0.1 * gproj_mesh_mean_edge_length(mesh);
+    gproj_add_lengths(form, mesh->edge_count, NULL, lengths, 1);
+    result = gproj_solve(form, 60, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && strstr(result.message, "; but the mesh has shrunk to 0.1 of"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 2, 0.05, 1);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_all, mesh, 3, NULL) >= 30);
@@ -309,6 +335,7 @@ int main(void) {
     GPROJT_RUN(equal_lengths);
     GPROJT_RUN(refusals_of_lengths);
     GPROJT_RUN(refusals);
+    GPROJT_RUN(spoiled_meshes_are_told);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }
