@@ -6568,13 +6568,19 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     return loop->iteration.length > 0;
 }
 
+/* The eps that belongs to how far things are from holding: three tenths of the norm of all phi, which does not depend
+   on the directions of the axes, as the largest of them would. */
+GPROJI_INTERNAL double gproji_epsilon_of(const gproji_standing *standing) {
+    return 0.3 * sqrt(gproji_fmax(0, standing->merit - standing->energy));
+}
+
 /* One iteration from a linearised x to the next. False when no attempt was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double epsilon = loop->options.epsilon;
     int32_t attempt;
     if (!(epsilon > 0))
-        epsilon = gproji_fmin(gproji_fmax(loop->standing.residual, loop->epsilon_least), gproji_epsilon_max);
+        epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {

@@ -668,7 +668,7 @@ GPROJT_TEST(epsilon_given_and_followed) {
     gproj_system_solve(s, 20, &options);
     GPROJT_CHECK(watch.seen[0].epsilon == 1e-3);
     for (n = 1; n < watch.count; ++n)
-        GPROJT_NEAR(watch.seen[n].epsilon, fmin(fmax(watch.seen[n - 1].residual, 1e-5), 1e-3), 1e-15);
+        GPROJT_NEAR(watch.seen[n].epsilon, fmin(fmax(0.3 * sqrt(watch.seen[n - 1].merit), 1e-5), 1e-3), 1e-15);
     gproj_system_destroy(s);
 }
 
