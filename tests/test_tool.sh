@@ -403,6 +403,7 @@ run grid.obj -o sized.obj --planar --cost 2,3,450 --report cost.json
 [ $status -eq 0 ] && pass || fail "--cost exits with $status: $(tail -n 1 err.txt)"
 holds "--cost" '2 * l + 3 * a < 450 + 1e-8 && 2 * l + 3 * a > 440' sized.obj
 grep -q '"cost": 4[45]' cost.json && pass || fail "the report does not tell the cost"
+grep -q '"volume": [0-9-]' cost.json && pass || fail "the report does not tell the volume"
 run grid.obj -o sized.obj --planar --cost 2,3,x0.95
 [ $status -eq 0 ] && pass || fail "--cost x0.95 exits with $status: $(tail -n 1 err.txt)"
 run grid.obj -o sized.obj --fix boundary --edge-length 3,

@@ -147,6 +147,7 @@ typedef struct tool {
     bool *is_support;
     gproj_forces forces;
     gproj_measures before, after;
+    double volume_before;
     tool_record *record;
     int32_t record_count;
     tool_group_record *group_record;
@@ -1042,6 +1043,7 @@ static bool read_mesh(tool *t) {
     if (!t->original || !t->planarity_before || !t->planarity || t->exit_code != 0) return false;
     memcpy(t->original, t->mesh->position, 3 * (size_t)t->mesh->vertex_count * sizeof *t->original);
     t->before = gproj_measure(t->mesh, t->original, t->planarity_before);
+    t->volume_before = gproj_volume(t->mesh);
     for (i = 0; i < t->move_count; ++i)
         if (t->move[i].vertex >= t->mesh->vertex_count)
             return fail(t, EXIT_USAGE, "--move: there is no vertex %ld; the mesh has %ld, counted from 0",
@@ -1846,7 +1848,7 @@ static void report_result(json *j, const tool *t) {
     json_close(j, '}');
 }
 
-static void report_measures(json *j, const tool *t, const char *key, const gproj_measures *m) {
+static void report_measures(json *j, const tool *t, const char *key, const gproj_measures *m, double volume) {
     json_open(j, key, '{');
     json_number(j, "planarity_max", m->planarity_max);
     json_number(j, "planarity_mean", m->planarity_mean);
@@ -1868,6 +1870,7 @@ static void report_measures(json *j, const tool *t, const char *key, const gproj
     json_number(j, "min_edge", m->min_edge);
     json_number(j, "max_edge", m->max_edge);
     json_number(j, "length", m->length);
+    json_number(j, "volume", volume);
     json_number(j, "area", m->area);
     json_number(j, "min_face_area", m->min_face_area);
     json_number(j, "max_face_area", m->max_face_area);
@@ -1919,8 +1922,8 @@ static gproj_code write_report(tool *t, FILE *file) {
     for (i = 0; i < t->record_count; ++i) report_iteration(j, t, &t->record[i]);
     json_close(j, ']');
     report_result(j, t);
-    report_measures(j, t, "measures_before", &t->before);
-    report_measures(j, t, "measures", &t->after);
+    report_measures(j, t, "measures_before", &t->before, t->volume_before);
+    report_measures(j, t, "measures", &t->after, gproj_volume(t->mesh));
     if (t->equilibrium.given) report_forces(j, &t->forces);
     report_offset(j, t);
     json_open(j, "seconds", '{');
@@ -2142,6 +2145,7 @@ static void print_asked(const tool *t) {
     if (t->face_area.given || t->equal_areas.given)
         printf("face areas    %.6g to %.6g -> %.6g to %.6g\n", b->min_face_area, b->max_face_area, a->min_face_area,
                a->max_face_area);
+    if (t->volume.given) printf("volume        %.6g -> %.6g\n", t->volume_before, gproj_volume(t->mesh));
     if (t->total_area.given) printf("total area    %.6g -> %.6g\n", b->area, a->area);
     if (t->cost.given) printf("cost          %.6g -> %.6g\n", cost_of(t, b), cost_of(t, a));
 }
