@@ -1864,6 +1864,13 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
 
+GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
+    double sum = 0;
+    size_t i;
+    for (i = 0; i < count; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
 /* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
 typedef struct gproji_sum {
     double high, low;
@@ -10193,13 +10200,6 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
     if (p->boundary) gproji_keep_distances(p, out);
 }
 
-GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
-    double sum = 0;
-    size_t i;
-    for (i = 0; i < count; ++i) sum += a[i] * b[i];
-    return sum;
-}
-
 /* One round, until the slope is a small part of what it was. */
 GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     size_t count = 3 * (size_t)p->mesh->vertex_count, i;
@@ -10468,7 +10468,6 @@ typedef struct gproji_statics {
     int32_t *load_vertex;
     double *work;      /* 3 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
-    double lost;       /* the part of the load that the first forces could not balance */
     int32_t group;     /* of equilibrium */
     int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
     bool started;      /* the forces have values */
@@ -10667,7 +10666,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* -- what the builders share -- */
 
 GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
-                                         double weight, gproj_refresh refresh, gproji_part *part) {
+                                         double weight, gproj_refresh refresh, void *user) {
     gproj_group group;
     memset(&group, 0, sizeof group);
     group.name = name;
@@ -10675,8 +10674,16 @@ GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const char *name, gpr
     group.place = place;
     group.schedule.weight = weight;
     group.refresh = refresh;
-    group.refresh_user = part;
+    group.refresh_user = user;
     return gproj_system_add_group(form->system, &group);
+}
+
+/* The same for global rows, which belong to the whole mesh. */
+GPROJI_INTERNAL int32_t gproji_new_global_group(gproj_form *form, const char *name, gproj_kind kind, double weight,
+                                                gproj_refresh refresh, void *user) {
+    int32_t group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, user);
+    if (group >= 0) form->system->group[group].global = true;
+    return group;
 }
 
 /* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
@@ -12078,7 +12085,6 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
     gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
     size_t count;
     gproj_term *term;
-    gproj_group group;
     int32_t t;
     if (!part) return -1;
     if (!gproji_is_finite(volume)) {
@@ -12093,14 +12099,7 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
         gproji_fail_memory(&form->error);
         return -1;
     }
-    memset(&group, 0, sizeof group);
-    group.name = "volume";
-    group.kind = GPROJ_CONSTRAINT;
-    group.global = true;
-    group.schedule.weight = weight;
-    group.refresh = gproji_refresh_volume;
-    group.refresh_user = part;
-    part->group = gproj_system_add_group(form->system, &group);
+    part->group = gproji_new_global_group(form, "volume", GPROJ_CONSTRAINT, weight, gproji_refresh_volume, part);
     for (t = 0; t < (int32_t)count; ++t) gproji_set_term(&term[t], t, -1, 0);
     gproj_system_add_row(form->system, part->group, (int32_t)count, term, 0, 0);
     gproji_give(&form->own, term, count, sizeof *term);
@@ -12264,17 +12263,9 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
 GPROJI_INTERNAL int32_t gproji_add_cost_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
                                              double weight, gproj_term *term) {
     int32_t count = 3 * form->mesh->vertex_count, side, t;
-    gproj_group group;
     gproji_cost(form, part, &part->unit);
     part->unit = gproji_fmax(part->unit, 1e-12);
-    memset(&group, 0, sizeof group);
-    group.name = name;
-    group.kind = kind;
-    group.global = true;
-    group.schedule.weight = weight;
-    group.refresh = gproji_refresh_cost;
-    group.refresh_user = part;
-    part->group = gproj_system_add_group(form->system, &group);
+    part->group = gproji_new_global_group(form, name, kind, weight, gproji_refresh_cost, part);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (side = 0; side < 2; ++side)
         if (gproji_has_bound(part->bound, side)) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
@@ -12698,9 +12689,8 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     gproji_give(&form->own, mark, (size_t)form->mesh->vertex_count, sizeof *mark);
     if (!gproji_form_ready(form)) return -1;
     form->statics->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
-                                            gproji_refresh_equilibrium, NULL);
+                                            gproji_refresh_equilibrium, form);
     if (form->statics->group < 0) return -1;
-    form->system->group[form->statics->group].refresh_user = form;
     gproji_add_equilibrium_rows(form);
     return gproji_form_ready(form) ? form->statics->group : -1;
 }
@@ -13019,29 +13009,25 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     return true;
 }
 
+/* Adds the forces of an edge with density w to those on its ends. */
+GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, int32_t edge, double w, double *out) {
+    size_t i = 3 * (size_t)mesh->origin[2 * edge], j = 3 * (size_t)mesh->origin[2 * edge + 1], c;
+    for (c = 0; c < 3; ++c) {
+        out[i + c] += w * (x[i + c] - x[j + c]);
+        out[j + c] -= w * (x[i + c] - x[j + c]);
+    }
+}
+
 /* out = load + the forces' sum in each vertex at x (NULL: no forces), nothing along the axes of supports. */
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
     int32_t v, e, c;
     for (c = 0; c < 3 * mesh->vertex_count; ++c) out[c] = load[c];
-    for (e = 0; force && e < mesh->edge_count; ++e) {
-        size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
-        for (c = 0; c < 3; ++c) {
-            out[i + (size_t)c] += force[e] * (x[i + (size_t)c] - x[j + (size_t)c]);
-            out[j + (size_t)c] -= force[e] * (x[i + (size_t)c] - x[j + (size_t)c]);
-        }
-    }
+    for (e = 0; force && e < mesh->edge_count; ++e) gproji_add_force(mesh, x, e, force[e], out);
     for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
             if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
-}
-
-GPROJI_INTERNAL double gproji_norm(const double *a, int32_t count) {
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < count; ++i) sum += a[i] * a[i];
-    return sqrt(sum);
 }
 
 /* p->load, at positions x, as parts of the mean load. Returns this mean, 0 without loads; -1 after an error. */
@@ -13134,7 +13120,7 @@ GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *
     double *x = gproj_system_values(form->system), sum = 0;
     int32_t e, carrying = 0;
     for (e = 0; e < form->mesh->edge_count; ++e) carrying += s->force[e] >= 0;
-    sum = gproji_norm(p->force, form->mesh->edge_count) / sqrt(gproji_fmax(1, carrying));
+    sum = sqrt(gproji_dot(p->force, p->force, p->edges) / gproji_fmax(1, carrying));
     if (!(sum > 0)) sum = 1;
     s->load_scale /= sum;
     for (e = 0; e < form->mesh->edge_count; ++e)
@@ -13146,8 +13132,8 @@ GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *
 GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, int32_t *work) {
     gproji_statics *s = form->statics;
     const double *x = gproj_system_values(form->system);
-    double load, all, typical = 0.5 * gproji_support_radius(form, work, work + form->mesh->vertex_count);
-    int32_t count = 3 * form->mesh->vertex_count;
+    double load, all, lost, typical = 0.5 * gproji_support_radius(form, work, work + form->mesh->vertex_count);
+    size_t count = 3 * p->vertices;
     s->load_scale = 1;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     load = gproji_mean_load(form, p->load);
@@ -13161,12 +13147,12 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     if (gproji_hangs(form, p->upper)) typical = -typical;
     if (!gproji_solve_balance(form, x, gproji_force_damping, typical, p)) return false;
     gproji_unbalanced(form, x, NULL, p->load, p->b);
-    all = gproji_norm(p->b, count);
+    all = gproji_dot(p->b, p->b, count);
     gproji_unbalanced(form, x, p->force, p->load, p->b);
-    s->lost = all > 0 ? gproji_norm(p->b, count) / all : 0;
-    if (s->lost > gproji_force_lost) gproji_set_uniform(form, 2 * typical, p);
+    lost = all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
+    if (lost > gproji_force_lost) gproji_set_uniform(form, 2 * typical, p);
     gproji_take_forces(form, p);
-    return s->lost > gproji_force_lost;
+    return lost > gproji_force_lost;
 }
 
 /* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise.
@@ -13299,17 +13285,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
 
 /* out += the forces' sum in each vertex, at the mesh's positions. */
 GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t e, c;
-    for (e = 0; e < mesh->edge_count; ++e) {
-        const double *a = mesh->position + 3 * (size_t)mesh->origin[2 * e],
-                     *b = mesh->position + 3 * (size_t)mesh->origin[2 * e + 1];
-        double w = gproji_force_density(form, e);
-        for (c = 0; c < 3; ++c) {
-            out[3 * (size_t)mesh->origin[2 * e] + (size_t)c] += w * (a[c] - b[c]);
-            out[3 * (size_t)mesh->origin[2 * e + 1] + (size_t)c] -= w * (a[c] - b[c]);
-        }
-    }
+    int32_t e;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        gproji_add_force(form->mesh, form->mesh->position, e, gproji_force_density(form, e), out);
 }
 
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions) {
@@ -13477,11 +13455,10 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
         gproji_fail_memory(&form->error);
         return;
     }
-    form->guard->group = gproji_new_group(form, "guard", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, NULL);
+    form->guard->group = gproji_new_group(form, "guard", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, form);
     if (form->guard->group < 0) return;
     form->system->group[form->guard->group].guard = true;
     form->system->group[form->guard->group].slack = gproji_guard_slack;
-    form->system->group[form->guard->group].refresh_user = form;
     form->system->refuse_step = gproji_refuse_turned;
     form->system->refuse_user = form;
     for (f = 0, count = 0; f < form->mesh->face_count; ++f) {

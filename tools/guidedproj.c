@@ -2138,8 +2138,8 @@ static double support_movement(const tool *t) {
 /* The measures that some options ask for. */
 static void print_asked(const tool *t) {
     const gproj_measures *b = &t->before, *a = &t->after;
-    if (t->equilibrium.given && support_movement(t) > 1e-9 * b->mean_edge)
-        printf("supports      moved by up to %.3g; --fix or --glide holds them\n", support_movement(t));
+    double moved = t->equilibrium.given ? support_movement(t) : 0;
+    if (moved > 1e-9 * b->mean_edge) printf("supports      moved by up to %.3g; --fix or --glide holds them\n", moved);
     if (t->edge_length.given || t->equal_lengths.given)
         printf("lengths       %.6g to %.6g -> %.6g to %.6g\n", b->min_edge, b->max_edge, a->min_edge, a->max_edge);
     if (t->face_area.given || t->equal_areas.given)
