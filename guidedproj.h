@@ -461,10 +461,10 @@ typedef struct gproj_group_info {
 } gproj_group_info;
 
 typedef enum gproj_phase {
-    GPROJ_PHASE_ANALYSE, /* pattern, ordering, symbolic factorisation: once */
-    GPROJ_PHASE_REFRESH, /* refresh callbacks, evaluation of rows */
-    GPROJ_PHASE_ASSEMBLE,
-    GPROJ_PHASE_FACTOR,
+    GPROJ_PHASE_ANALYSE,  /* pattern, ordering, symbolic factorisation: once */
+    GPROJ_PHASE_REFRESH,  /* refresh callbacks, evaluation of rows */
+    GPROJ_PHASE_ASSEMBLE, /* right-hand sides */
+    GPROJ_PHASE_FACTOR,   /* the matrix, front by front, its factor, and half of the solution */
     GPROJ_PHASE_SOLVE,
     GPROJ_PHASE_COUNT,
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
@@ -1997,22 +1997,19 @@ typedef double gproji_lanes_at __attribute__((vector_size(8 * GPROJI_LANES), ali
 #define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + (j) * ldc];
 
 /* For a tile of T vectors by B columns:
-   gproji_tile_update_T:  C = -A B' (add false) or C - A B' (add true); A has k columns and the tile's rows, B has k
-   columns and B rows;
+   gproji_tile_update_T:  C = C - A B'; A has k columns and the tile's rows, B has k columns and B rows;
    gproji_tile_solve_T:   C = (C - A B') L^-T, with the lower triangle L (stride ldc like C) and the inverses of its
    diagonal. */
 #define GPROJI_DEFINE_TILE(T)                                                                                       \
     GPROJI_KERNEL void gproji_tile_update_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,            \
-                                              ptrdiff_t ldb, double *c, ptrdiff_t ldc, bool add) {                  \
+                                              ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                            \
         const gproji_lanes zero = {0};                                                                              \
         GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                        \
         for (; k > 0; --k, a += lda, b += ldb) {                                                                    \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                  \
             GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                   \
         }                                                                                                           \
-        if (add) {                                                                                                  \
-            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                        \
-        }                                                                                                           \
+        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                            \
         GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                            \
     }                                                                                                               \
     GPROJI_KERNEL void gproji_tile_solve_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,             \
@@ -2057,8 +2054,8 @@ GPROJI_DEFINE_TILE(4)
 
 /* The tile kernels for 1..GPROJI_TILE_BLOCKS blocks of rows. */
 GPROJI_INLINE void gproji_tile_update(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
-                                      ptrdiff_t ldb, double *c, ptrdiff_t ldc, bool add) {
-    GPROJI_TILE_SWITCH(gproji_tile_update_, (k, a, lda, b, ldb, c, ldc, add))
+                                      ptrdiff_t ldb, double *c, ptrdiff_t ldc) {
+    GPROJI_TILE_SWITCH(gproji_tile_update_, (k, a, lda, b, ldb, c, ldc))
 }
 
 GPROJI_INLINE void gproji_tile_solve(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
@@ -2153,10 +2150,18 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
     return panel->values + row + (ptrdiff_t)column * panel->stride;
 }
 
-/* A strip of C = [C] - A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, `rows` rows. A
-   has k columns and the strip's rows; B is the upper end of A. */
+/* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
+   r >= at is the r-th. */
+GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return gproji_panel_at(panel, 0, at - panel->shift);
+    return panel->update - pivot_end + gproji_update_offset(panel->rows - pivot_end, at - pivot_end);
+}
+
+/* A strip of C -= A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, `rows` rows. A has k
+   columns and the strip's rows; B is the upper end of A. */
 GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t k, const double *a, ptrdiff_t lda,
-                                         double *c, ptrdiff_t ldc, bool add) {
+                                         double *c, ptrdiff_t ldc) {
     const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
     int32_t begin, column, row;
     for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
@@ -2164,13 +2169,13 @@ GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t 
         for (column = 0; column < gproji_min(columns, end); column += GPROJI_BLOCK) {
             for (row = gproji_max(begin, column); row < end; row += tile) {
                 int32_t blocks = gproji_min(GPROJI_TILE_BLOCKS, (end - row) / GPROJI_BLOCK);
-                gproji_tile_update(blocks, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc, add);
+                gproji_tile_update(blocks, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
             }
         }
     }
 }
 
-/* Strip `index` of the update matrix: U = - L2 L2', where L2 stands below the pivots. A task. */
+/* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
@@ -2179,7 +2184,7 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     for (first = 0; first < panel->w; first = last) {
         last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
         gproji_strip_update(rows, gproji_min(GPROJI_STRIP, rows), last - first,
-                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, rows, first > 0);
+                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, rows);
     }
 }
 
@@ -2189,7 +2194,7 @@ GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
     gproji_strip_update(panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column), panel->last - panel->first,
                         gproji_panel_at(panel, row, panel->first), panel->stride, gproji_panel_at(panel, row, column),
-                        panel->stride, true);
+                        panel->stride);
 }
 
 /* A chunk's columns in some of the rows below its pivots, tile by tile: X = (C - A B') L^-T. A task. */
@@ -2221,7 +2226,7 @@ GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel, int32_t 
         const double *strip = gproji_panel_at(panel, at, panel->first);
         double *corner = gproji_panel_at(panel, at, start), *inverse = panel->inverse + start;
         next = at + GPROJI_BLOCK - shift;
-        if (k > 0) gproji_tile_update(1, k, strip, stride, strip, stride, corner, stride, true);
+        if (k > 0) gproji_tile_update(1, k, strip, stride, strip, stride, corner, stride);
         failed = gproji_tile_factor(next - start, gproji_panel_at(panel, start + shift, start), stride, inverse);
         if (failed >= 0) return start + failed;
         if (start == 0 && shift > 0) {
@@ -2283,11 +2288,11 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
         int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows);
         next = first + columns;
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 0.0, strip,
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 1.0, strip,
                     rows);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->stride, l2, panel->stride, 0.0, strip + columns, rows);
+                        panel->stride, l2, panel->stride, 1.0, strip + columns, rows);
     }
 }
 #else
@@ -2857,6 +2862,7 @@ typedef struct gproji_front {
     int64_t panel;  /* where its panel begins in the values of L */
     int64_t update; /* where its update matrix begins in the work memory */
     int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int64_t side;   /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
     int32_t row_nodes;
     int32_t first_place, end_place; /* its pivot nodes */
     int32_t first;                  /* its first column of L */
@@ -2888,6 +2894,7 @@ typedef struct gproji_symbolic {
     int64_t *runs_start; /* tasks + 2: where the groups' room for runs begins (in int32_t) */
     int64_t work_size;   /* doubles for all update matrices */
     int64_t values_size; /* doubles for all panels */
+    int64_t side_size;   /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
     int32_t most_width;
@@ -3279,7 +3286,9 @@ GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
         front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
         front->update_rows = (front->below + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
         front->panel = out->values_size;
+        front->side = out->side_size;
         out->values_size += w * front->stride;
+        out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, front->stride);
         out->most_width = gproji_max(out->most_width, front->width);
@@ -3449,55 +3458,40 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     return done;
 }
 
-/* Where the block of nodes a and b stands in the values of L: its entry in row r of the later node and column q of the
-   earlier one is at offset + r + q * stride. swapped: b is the later one. For a = b the lower triangle is meant. */
-GPROJI_INTERNAL void gproji_locate_block(const gproji_symbolic *sy, int32_t a, int32_t b, int64_t *offset,
-                                         int32_t *stride, bool *swapped) {
-    int32_t early = sy->place[a], late = sy->place[b], row;
-    const gproji_front *front;
-    *swapped = late > early;
-    if (!*swapped) early = sy->place[b], late = sy->place[a];
-    front = &sy->front[sy->front_of[early]];
-    if (late < front->end_place) {
-        row = sy->column[late] - front->first + gproji_panel_shift(front->width);
-    } else {
-        const int32_t *list = sy->row_node + front->rows;
-        int32_t low = 0, high = front->row_nodes - 1;
-        while (low < high) {
-            int32_t middle = low + (high - low) / 2;
-            if (list[middle] < late)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        GPROJ_ASSERT(list[low] == late);
-        row = sy->row_at[front->rows + low];
-    }
-    *offset = front->panel + (int64_t)(sy->column[early] - front->first) * front->stride + row;
-    *stride = front->stride;
+/* The storage rows of a front's nodes in its panel: at[node] is that of the node's first variable. */
+GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int32_t *at) {
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width), k;
+    int64_t r;
+    for (k = front->first_place; k < front->end_place; ++k) at[sy->order[k]] = sy->column[k] - front->first + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) at[sy->order[sy->row_node[r]]] = sy->row_at[r];
 }
 
 /* ============================================================================================================
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, dense,
    ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, where A's values have
-   been put; the update matrices of its children are added to them; then they are eliminated, and what they do to the
-   rows below becomes the front's own update matrix, on a stack. The children's matrices are added in two steps: what
-   meets pivot columns before the elimination, the rest after the update matrix has been written by the product of the
-   panel with itself, so that it needs no clearing.
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix on a
+   stack. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
+   effect on the rows below is taken off. All that happens while the front is in the cache; right-hand sides that are
+   known then take part.
 
    Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
-   of them is cut into strips. Both depend on the matrix alone.
+   of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
+   to its parent's part of a right-hand side, not to a common vector.
 
    A matrix in compressed columns is first compressed: columns with the same entries become one node. The system section
-   gives its nodes itself and adds its values to gproji_cholesky_entries.
+   gives its nodes itself and adds its values to each front when it is asked (gproji_load).
 
    Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
     GPROJI_SOLVE_BATCH = 4
 }; /* right-hand sides solved together */
+
+/* Adds the matrix's values that belong to a front to its cleared panel and update matrix (see gproji_panel_column). Each
+   value once, in a front that has both of its variables. Called from several threads. */
+typedef void (*gproji_load)(void *user, int32_t front, const gproji_panel *panel);
 
 struct gproj_cholesky {
     gproji_heap own;
@@ -3517,13 +3511,18 @@ struct gproj_cholesky {
     int64_t *entry_start; /* fronts + 1: where each front's entries begin */
     const double *source; /* during gproj_cholesky_factor: the values of A */
 
+    gproji_load load; /* during a factorisation */
+    void *load_user;
+    int32_t sides; /* the right-hand sides at work */
+
     double *values;   /* symbolic.values_size: all panels */
     double *work;     /* symbolic.work_size: all update matrices */
     double *inverse;  /* (tasks + 1) * most_width: inverses of pivots, for each group of fronts */
     int32_t *runs;    /* see gproji_find_runs, for each group of fronts */
     int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
     double *solution; /* columns * GPROJI_SOLVE_BATCH: right-hand sides in the order of L */
-    double *rows;     /* symbolic.most_rows: one front's part of a right-hand side */
+    double *side;     /* symbolic.side_size * GPROJI_SOLVE_BATCH: what fronts take off the rows below their pivots */
+    double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
 };
 
 /* -- life -- */
@@ -3592,8 +3591,8 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.exact_entries = sy->exact_entries;
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
-    work = (double)sy->work_size + (double)GPROJI_SOLVE_BATCH * sy->columns + sy->most_rows +
-           (sy->tasks + 1.0) * sy->most_width + 0.5 * (double)sy->runs_start[sy->tasks + 1];
+    work = (double)sy->work_size + (double)GPROJI_SOLVE_BATCH * ((double)sy->side_size + sy->columns) +
+           (sy->tasks + 1.0) * ((double)sy->most_width + sy->most_rows) + 0.5 * (double)sy->runs_start[sy->tasks + 1];
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -3648,11 +3647,6 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     }
     c->analysed = true;
     return GPROJ_OK;
-}
-
-GPROJI_INTERNAL void gproji_cholesky_locate_block(const gproj_cholesky *c, int32_t node_a, int32_t node_b,
-                                                  int64_t *offset, int32_t *stride, bool *swapped) {
-    gproji_locate_block(&c->symbolic, node_a, node_b, offset, stride, swapped);
 }
 
 /* Are the arrays a matrix in compressed columns? */
@@ -3947,27 +3941,17 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     if (c->values) return true;
     c->work = gproji_take_aligned(&c->numeric, sy->work_size);
     c->inverse = gproji_take_aligned(&c->numeric, groups * sy->most_width);
-    c->rows = gproji_take_aligned(&c->numeric, sy->most_rows);
+    c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * GPROJI_SOLVE_BATCH);
+    c->side = gproji_take_aligned(&c->numeric, sy->side_size * GPROJI_SOLVE_BATCH);
     c->runs = (int32_t *)gproji_pool_take(&c->numeric, sy->runs_start[groups], sizeof(int32_t));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size);
-    if (c->work && c->inverse && c->rows && c->solution && c->runs && c->failed && c->values) return true;
+    if (c->work && c->inverse && c->rows && c->solution && c->side && c->runs && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
     return false;
-}
-
-/* The values of L, to which A's values are added before gproji_cholesky_factor_entries. NULL: there is no memory. */
-GPROJI_INTERNAL double *gproji_cholesky_entries(gproj_cholesky *c) {
-    GPROJ_ASSERT(c->analysed);
-    return gproji_cholesky_take_numeric(c) ? c->values : NULL;
-}
-
-GPROJI_INTERNAL void gproji_cholesky_clear(gproj_cholesky *c) {
-    memset(c->values, 0, (size_t)c->symbolic.values_size * sizeof(double));
-    c->factored = false;
 }
 
 #if GPROJI_LANES == 8
@@ -4019,59 +4003,47 @@ GPROJI_INLINE void gproji_add_column(int32_t k, int32_t j, int32_t runs, const i
     for (i = k + 1; i < runs; ++i) gproji_add_run(count[i], source + from[i], column + to[i]);
 }
 
-/* A child's update matrix on its way to its parent's panel, or to its parent's update matrix. */
+/* A child's update matrix on its way to its parent. */
 typedef struct gproji_addition {
-    const gproj_cholesky *c;
-    const gproji_front *child, *front;
+    const double *update;
+    int32_t rows; /* of the update matrix */
+    const gproji_panel *panel;
     int32_t runs;
     int32_t *from, *to, *count; /* see gproji_find_runs */
-    bool to_panel;
 } gproji_addition;
 
-/* Adds strip `index` of the child's matrix: those of its columns that meet pivots, or all others. Different columns go
-   to different columns. A task. */
+/* Adds strip `index` of the child's matrix. Different columns go to different columns. A task. */
 GPROJI_KERNEL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
-    const gproji_front *child = add->child, *front = add->front;
     const int32_t *from = add->from, *to = add->to, *count = add->count;
-    const double *update = add->c->work + child->update;
-    int32_t shift = gproji_panel_shift(front->width), pivot_end = shift + front->width, k, j;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
-    for (k = 0; k < add->runs; ++k) {
-        if ((to[k] < pivot_end) != add->to_panel) continue;
-        for (j = gproji_max(0, begin - from[k]); j < gproji_min(count[k], end - from[k]); ++j) {
-            const double *source = update + gproji_update_offset(child->update_rows, from[k] + j);
-            double *column;
-            if (add->to_panel)
-                column = add->c->values + front->panel + (ptrdiff_t)(to[k] + j - shift) * front->stride;
-            else
-                column = add->c->work + front->update - pivot_end +
-                         gproji_update_offset(front->update_rows, to[k] + j - pivot_end);
-            gproji_add_column(k, j, add->runs, from, to, count, source, column);
-        }
-    }
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k, j;
+    for (k = 0; k < add->runs; ++k)
+        for (j = gproji_max(0, begin - from[k]); j < gproji_min(count[k], end - from[k]); ++j)
+            gproji_add_column(k, j, add->runs, from, to, count,
+                              add->update + gproji_update_offset(add->rows, from[k] + j),
+                              gproji_panel_column(add->panel, to[k] + j));
 }
 
-/* Adds the children's update matrices: to the pivot columns, or to the front's own update matrix. */
-GPROJI_INTERNAL void gproji_add_children(gproj_cholesky *c, const gproji_front *front, const gproj_parallel *parallel,
-                                         int32_t *runs, bool to_panel) {
-    int32_t pivot_end = gproji_panel_shift(front->width) + front->width, i;
+/* Adds the children's update matrices to a front. */
+GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
+                                         const gproj_parallel *parallel, int32_t *runs) {
+    int32_t pivot_end = panel->w + panel->shift, i;
     for (i = front->child; i >= 0; i = c->symbolic.front[i].sibling) {
+        const gproji_front *child = &c->symbolic.front[i];
         gproji_addition add;
-        double rows = c->symbolic.front[i].below;
-        add.c = c, add.front = front, add.child = &c->symbolic.front[i], add.to_panel = to_panel;
-        add.from = runs, add.to = runs + add.child->row_nodes, add.count = add.to + add.child->row_nodes;
-        add.runs = gproji_find_runs(&c->symbolic, add.child, pivot_end, add.from, add.to, add.count);
-        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(add.child->below, GPROJI_STRIP), gproji_add_task,
-                         &add);
+        add.update = c->work + child->update, add.rows = child->update_rows, add.panel = panel;
+        add.from = runs, add.to = runs + child->row_nodes, add.count = add.to + child->row_nodes;
+        add.runs = gproji_find_runs(&c->symbolic, child, pivot_end, add.from, add.to, add.count);
+        gproji_run_tasks(parallel, 20.0 * child->below * child->below, gproji_pieces(child->below, GPROJI_STRIP),
+                         gproji_add_task, &add);
     }
 }
 
-/* Puts A's values into a front's panel, right before they are used. */
-GPROJI_INTERNAL void gproji_load_front(gproj_cholesky *c, int32_t f) {
-    const gproji_front *front = &c->symbolic.front[f];
+/* Adds A's values to a front, where A is in compressed columns. */
+GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_panel *panel) {
+    const gproj_cholesky *c = (const gproj_cholesky *)user;
     int64_t r;
-    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
+    (void)panel;
     for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) c->values[c->target[r]] += c->source[c->entry[r]];
 }
 
@@ -4081,38 +4053,150 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel;
     int32_t failed;
-    if (c->source) gproji_load_front(c, f);
-    gproji_add_children(c, front, parallel, runs, true);
     panel.w = front->width, panel.shift = gproji_panel_shift(front->width);
     panel.rows = panel.shift + panel.w + front->update_rows, panel.stride = front->stride;
     panel.values = c->values + front->panel, panel.inverse = inverse, panel.update = c->work + front->update;
+    memset(panel.values, 0, (size_t)panel.w * (size_t)panel.stride * sizeof(double));
+    memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
+    c->load(c->load_user, f, &panel);
+    gproji_add_children(c, front, &panel, parallel, runs);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
-    if (front->below == 0) return -1;
-    gproji_panel_update(parallel, &panel);
-    gproji_add_children(c, front, parallel, runs, false);
+    if (front->below > 0) gproji_panel_update(parallel, &panel);
     return -1;
 }
 
-/* Eliminates the fronts of one group: a task's, or those on top. */
+/* -- right-hand sides -- */
+
+GPROJI_INLINE double *gproji_front_side(const gproj_cholesky *c, const gproji_front *front, int32_t side) {
+    return c->side + front->side * GPROJI_SOLVE_BATCH + (int64_t)side * front->below;
+}
+
+/* What the children take off the front's rows, added to its storage rows z. */
+GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t f, i;
+    for (f = front->child; f >= 0; f = sy->front[f].sibling) {
+        const gproji_front *child = &sy->front[f];
+        const double *from = gproji_front_side(c, child, side), *end = from + child->below;
+        const int32_t *relative = sy->relative + child->rows, *at = sy->row_at + child->rows;
+        for (; from < end; from += i, ++relative, ++at) {
+            int32_t count =
+                at + 1 < sy->row_at + child->rows + child->row_nodes ? at[1] - at[0] : (int32_t)(end - from);
+            for (i = 0; i < count; ++i) z[*relative + i] += from[i];
+        }
+    }
+}
+
+/* Sets the storage rows of z to 0, and its pivot rows to the front's part of x. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_start_rows(const gproji_front *front, const double *x, double *z) {
+    int32_t shift = gproji_panel_shift(front->width), rows = shift + front->width + front->update_rows;
+    memset(z, 0, (size_t)rows * sizeof(double));
+    memcpy(z + shift, x + front->first, (size_t)front->width * sizeof(double));
+    return rows;
+}
+
+/* One front of L y = b; z: work. */
+GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
+    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns;
+    int32_t shift = gproji_panel_shift(front->width), rows = gproji_start_rows(front, x, z);
+    gproji_add_sides(c, front, side, z);
+    gproji_panel_forward(rows, front->width, c->values + front->panel, front->stride, z);
+    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
+    memcpy(gproji_front_side(c, front, side), z + shift + front->width, (size_t)front->below * sizeof(double));
+}
+
+/* One front of L' x = y. */
+GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
+                                           double *z) {
+    const gproji_symbolic *sy = &c->symbolic;
+    double *x = c->solution + (size_t)side * (size_t)sy->columns, *to;
+    int32_t shift = gproji_panel_shift(front->width), rows = gproji_start_rows(front, x, z), i, k;
+    const int32_t *node = sy->row_node + front->rows;
+    for (k = 0, to = z + shift + front->width; k < front->row_nodes; ++k)
+        for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
+    gproji_panel_backward(rows, front->width, c->values + front->panel, front->stride, z);
+    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
+}
+
+/* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
+   right-hand sides. Tasks. */
+GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
+    const gproj_cholesky *c = (const gproj_cholesky *)data;
+    const gproji_symbolic *sy = &c->symbolic;
+    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
+    int32_t k, side;
+    for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k)
+        for (side = 0; side < c->sides; ++side) gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
+}
+
+GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
+    const gproj_cholesky *c = (const gproj_cholesky *)data;
+    const gproji_symbolic *sy = &c->symbolic;
+    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
+    int32_t k, side;
+    for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k)
+        for (side = 0; side < c->sides; ++side) gproji_backward_front(c, &sy->front[sy->schedule[k]], side, z);
+}
+
+/* Takes up to GPROJI_SOLVE_BATCH right-hand sides in the order of L. */
+GPROJI_INTERNAL void gproji_cholesky_take_sides(gproj_cholesky *c, int32_t count, const double *b) {
+    size_t n = (size_t)c->symbolic.columns, i;
+    int32_t r;
+    c->sides = count;
+    for (r = 0; r < count; ++r)
+        for (i = 0; i < n; ++i) c->solution[(size_t)r * n + i] = b[(size_t)r * n + (size_t)c->permutation[i]];
+}
+
+/* From L y = b, solved already, to x. */
+GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
+    const gproji_symbolic *sy = &c->symbolic;
+    size_t n = (size_t)sy->columns, i;
+    int32_t r;
+    gproji_backward_group(c, sy->tasks);
+    gproji_for(&c->parallel, sy->tasks, gproji_backward_group, c);
+    for (r = 0; r < c->sides; ++r)
+        for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
+}
+
+/* Solves for up to GPROJI_SOLVE_BATCH right-hand sides. */
+GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+    gproji_cholesky_take_sides(c, count, b);
+    gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
+    gproji_forward_group(c, c->symbolic.tasks);
+    gproji_cholesky_finish(c, x);
+}
+
+/* -- all fronts -- */
+
+/* Eliminates the fronts of one group, a task's or those on top, and takes the right-hand sides along. */
 GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     double *inverse = c->inverse + (size_t)group * (size_t)sy->most_width;
+    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
     int32_t *runs = c->runs + sy->runs_start[group];
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
-    int32_t k, failed = -1;
-    for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k)
+    int32_t k, side, failed = -1;
+    for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         failed = gproji_factor_front(c, sy->schedule[k], parallel, inverse, runs);
+        for (side = 0; failed < 0 && side < c->sides; ++side)
+            gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
+    }
     c->failed[group] = failed;
 }
 
-/* Factors the matrix whose values stand in gproji_cholesky_entries. */
-GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_entries(gproj_cholesky *c) {
+/* Factors the matrix that `load` adds to the fronts, and solves L y = b for up to GPROJI_SOLVE_BATCH right-hand sides:
+   gproji_cholesky_finish gives their solutions. All memory has been taken. */
+GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky *c, gproji_load load, void *user,
+                                                                 int32_t sides, const double *b) {
     const gproji_symbolic *sy = &c->symbolic;
     int32_t g, failed = -1;
     GPROJ_ASSERT(c->analysed && c->values);
     c->factored = false;
+    c->load = load;
+    c->load_user = user;
+    gproji_cholesky_take_sides(c, sides, b);
     gproji_for(&c->parallel, sy->tasks, gproji_factor_group, c);
     for (g = 0; g < sy->tasks; ++g)
         if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
@@ -4127,8 +4211,6 @@ GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_entries(gproj_choles
 
 GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, const double *values) {
     gproj_cholesky *c = cholesky;
-    static const double none[1] = {0}; /* of a matrix without entries */
-    gproj_factor_outcome outcome;
     if (!c) return GPROJ_FACTOR_FAILED;
     gproji_error_clear(&c->error);
     if (!c->analysed || (c->symbolic.columns > 0 && !c->target)) {
@@ -4140,76 +4222,11 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
         return GPROJ_FACTOR_FAILED;
     }
     if (!gproji_cholesky_take_numeric(c)) return GPROJ_FACTOR_FAILED;
-    c->source = values ? values : none;
-    outcome = gproji_cholesky_factor_entries(c);
-    c->source = NULL;
-    return outcome;
+    c->source = values;
+    return gproji_cholesky_factor_with(c, gproji_load_columns, c, 0, NULL);
 }
 
 /* -- solution -- */
-
-/* x (in the order of L) -> z: the front's rows of x. */
-GPROJI_INTERNAL void gproji_gather_rows(const gproji_symbolic *sy, const gproji_front *front, const double *x,
-                                        double *z) {
-    int32_t pivot_end = front->width + gproji_panel_shift(front->width), k;
-    const int32_t *node = sy->row_node + front->rows;
-    double *to = z + pivot_end;
-    for (k = 0; k < front->row_nodes; ++k) {
-        int32_t i = sy->column[node[k]], end = sy->column[node[k] + 1];
-        for (; i < end; ++i) *to++ = x[i];
-    }
-}
-
-/* Sets the storage rows of z that are no rows of the front to 0, and its pivot rows to x. */
-GPROJI_INTERNAL int32_t gproji_gather_pivots(const gproji_front *front, const double *x, double *z) {
-    int32_t shift = gproji_panel_shift(front->width), pivot_end = front->width + shift, i;
-    int32_t rows = pivot_end + front->update_rows;
-    for (i = 0; i < shift; ++i) z[i] = 0;
-    for (i = 0; i < front->width; ++i) z[shift + i] = x[front->first + i];
-    for (i = pivot_end + front->below; i < rows; ++i) z[i] = 0;
-    return rows;
-}
-
-/* One front of L y = b. */
-GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, double *x) {
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t shift = gproji_panel_shift(front->width), rows, i, k;
-    const int32_t *node = sy->row_node + front->rows;
-    double *z = c->rows, *from = z + shift + front->width;
-    rows = gproji_gather_pivots(front, x, z);
-    for (i = 0; i < front->below; ++i) from[i] = 0;
-    gproji_panel_forward(rows, front->width, c->values + front->panel, front->stride, z);
-    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
-    for (k = 0; k < front->row_nodes; ++k) {
-        int32_t end = sy->column[node[k] + 1];
-        for (i = sy->column[node[k]]; i < end; ++i) x[i] += *from++;
-    }
-}
-
-/* One front of L' x = y. */
-GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, double *x) {
-    double *z = c->rows;
-    int32_t rows = gproji_gather_pivots(front, x, z);
-    gproji_gather_rows(&c->symbolic, front, x, z);
-    gproji_panel_backward(rows, front->width, c->values + front->panel, front->stride, z);
-    memcpy(x + front->first, z + gproji_panel_shift(front->width), (size_t)front->width * sizeof(double));
-}
-
-/* Solves for `count` <= GPROJI_SOLVE_BATCH right-hand sides: every panel is read once, and is still in the cache for
-   the second and later ones. */
-GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
-    const gproji_symbolic *sy = &c->symbolic;
-    size_t n = (size_t)sy->columns, i;
-    int32_t r, k;
-    for (r = 0; r < count; ++r)
-        for (i = 0; i < n; ++i) c->solution[(size_t)r * n + i] = b[(size_t)r * n + (size_t)c->permutation[i]];
-    for (k = 0; k < sy->fronts; ++k)
-        for (r = 0; r < count; ++r) gproji_forward_front(c, &sy->front[sy->schedule[k]], c->solution + (size_t)r * n);
-    for (k = sy->fronts - 1; k >= 0; --k)
-        for (r = 0; r < count; ++r) gproji_backward_front(c, &sy->front[sy->schedule[k]], c->solution + (size_t)r * n);
-    for (r = 0; r < count; ++r)
-        for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
-}
 
 GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x) {
     gproj_cholesky *c = cholesky;
@@ -5016,10 +5033,10 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Rows come in any order and are kept as they were given, group by group. Before a solve they are compiled once:
    - variables are joined to nodes: a block whose variables meet in some row is one node, else each is its own;
-   - every row gets its variables ("locals") in the order of elimination, cut into slots (one per node), and for
-     each pair of its slots the place of that pair's block in the factor;
-   so that an iteration evaluates rows into local gradients and adds their outer products straight into the factor's
-   storage, without a search and without an allocation.
+   - every row gets its variables ("locals"), belongs to the front of the node that is eliminated first, and knows the
+     storage rows of its locals in that front; they are in ascending order of these;
+   so that an iteration evaluates rows into local gradients, and each front takes the outer products of its rows when the
+   factorisation comes to it, without a search and without an allocation.
 
    Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
    a row ends it. Coefficients, constants and weights may change freely. */
@@ -5035,8 +5052,6 @@ enum {
 typedef struct gproji_row {
     int64_t term;
     int64_t local; /* compiled: its variables and its gradient */
-    int64_t slot;  /* compiled: its slots; none for a wide row */
-    int64_t pair;  /* compiled: its blocks: for each slot b all slots a >= b */
     double constant;
     double weight;           /* own * factor, times the group's; 0: the row is left out of everything */
     double own;              /* what the row itself asks for */
@@ -5072,11 +5087,14 @@ typedef struct gproji_group {
 
     gproji_term_local *term_local; /* one per term; as many as term_local_count */
     int32_t *local_variable;       /* of every row, one row after the other */
+    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
     double *local_gradient;        /* at the last evaluation */
-    int64_t *slot_local;           /* first local of every slot */
-    int64_t *pair_entry;           /* where the pair's block begins in the factor's entries */
-    size_t term_local_count, local_capacity, gradient_count, slot_count, pair_count;
+    size_t term_local_count, local_capacity, gradient_count;
 } gproji_group;
+
+typedef struct gproji_row_name {
+    int32_t group, row;
+} gproji_row_name;
 
 /* Nearest: is x no good, seen from s->saved? */
 typedef bool (*gproji_refuse_step)(void *user, const gproj_system *system);
@@ -5112,11 +5130,11 @@ struct gproj_system {
     bool compiled;
     int32_t compiled_variables; /* the size of the arrays below */
     int32_t node_count, wide_count;
-    int32_t *node;         /* of each variable */
-    int32_t *node_first;   /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
-    int32_t *node_stride;  /* distance of columns in the factor's entries, of each node's diagonal block */
-    int64_t *node_entry;   /* where that block begins */
-    int32_t *position;     /* of each variable in the order of elimination */
+    int32_t *node;              /* of each variable */
+    int32_t *node_first;        /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
+    int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
+    gproji_row_name *front_row; /* all narrow rows */
+    size_t front_count, front_row_count;
     double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
     double *step;          /* dx */
     double *saved;         /* x before the step */
@@ -5150,13 +5168,11 @@ GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
     gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
     gproji_give(heap, g->local_variable, g->local_capacity, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->gradient_count, sizeof *g->local_gradient);
-    gproji_give(heap, g->slot_local, g->slot_count, sizeof *g->slot_local);
-    gproji_give(heap, g->pair_entry, g->pair_count, sizeof *g->pair_entry);
+    gproji_give(heap, g->local_at, g->gradient_count, sizeof *g->local_at);
     g->term_local = NULL;
     g->local_variable = NULL;
     g->local_gradient = NULL;
-    g->slot_local = NULL;
-    g->pair_entry = NULL;
+    g->local_at = NULL;
     g->local_capacity = 0;
 }
 
@@ -5167,9 +5183,8 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) gproji_group_forget(&s->own, &s->group[i]);
     gproji_give(&s->own, s->node, n, sizeof *s->node);
     gproji_give(&s->own, s->node_first, n + 1, sizeof *s->node_first);
-    gproji_give(&s->own, s->node_stride, n, sizeof *s->node_stride);
-    gproji_give(&s->own, s->node_entry, n, sizeof *s->node_entry);
-    gproji_give(&s->own, s->position, n, sizeof *s->position);
+    gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
+    gproji_give(&s->own, s->front_row, s->front_row_count, sizeof *s->front_row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
     gproji_give(&s->own, s->step, n, sizeof *s->step);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
@@ -5179,8 +5194,9 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
     gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
-    s->node = s->node_first = s->node_stride = s->position = NULL;
-    s->node_entry = NULL;
+    s->node = s->node_first = NULL;
+    s->front_start = NULL;
+    s->front_row = NULL;
     s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
     s->wide_response = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
@@ -5573,9 +5589,9 @@ GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, int
     return true;
 }
 
-/* Step 2: joins the variables of coupled blocks to nodes. Uses `position` as marks: coupled[first of block]. */
+/* Step 2: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
 GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
-    int32_t *coupled = s->position;
+    int32_t *coupled = s->node;
     int32_t i, r, v;
     int64_t l;
     memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
@@ -5590,11 +5606,11 @@ GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
         }
     }
     s->node_count = 0;
-    for (v = 0; v < s->variable_count; ++v) {
+    for (v = 0; v < s->variable_count; ++v)
         if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
-        s->node[v] = s->node_count - 1;
-    }
     s->node_first[s->node_count] = s->variable_count;
+    for (i = 0; i < s->node_count; ++i)
+        for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
 }
 
 /* The nodes of all narrow rows, row after row, and the rows of each node: the incidence that gives the graph. */
@@ -5706,13 +5722,48 @@ done:
     return code;
 }
 
-/* The place of a variable among the locals of a row that are sorted by position. */
-GPROJI_INTERNAL int32_t gproji_find_local(const gproj_system *s, const int32_t *local, int32_t count,
-                                          int32_t variable) {
-    int32_t low = 0, high = count - 1, position = s->position[variable];
+/* Step 4: all that the fronts need. */
+
+/* The front of a narrow row; -1 where it has no variables. */
+GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t first = INT32_MAX;
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) first = gproji_min(first, sy->place[s->node[g->local_variable[l]]]);
+    return first == INT32_MAX ? -1 : sy->front_of[first];
+}
+
+/* Sorts the narrow rows by their fronts. */
+GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
+    int32_t i, r, f, pass;
+    s->front_count = (size_t)s->cholesky->symbolic.fronts;
+    s->front_row_count = 0;
+    for (i = 0; i < s->group_count; ++i) s->front_row_count += (size_t)s->group[i].row_count;
+    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
+    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_count, sizeof *s->front_row);
+    if (!s->front_start || !s->front_row) return false;
+    for (pass = 0; pass < 2; ++pass) { /* count, fill */
+        for (i = 0; i < s->group_count; ++i) {
+            const gproji_group *g = &s->group[i];
+            for (r = 0; r < g->row_count; ++r) {
+                f = g->row[r].wide ? -1 : gproji_front_of_row(s, g, &g->row[r]);
+                if (f >= 0 && pass == 0) s->front_start[f + 2]++;
+                if (f < 0 || pass == 0) continue;
+                s->front_row[s->front_start[f + 1]].group = i;
+                s->front_row[s->front_start[f + 1]++].row = r;
+            }
+        }
+        for (f = 0; pass == 0 && f < (int32_t)s->front_count; ++f) s->front_start[f + 2] += s->front_start[f + 1];
+    }
+    return true;
+}
+
+/* The first entry of an ascending list that is not less than `value`. */
+GPROJI_INTERNAL int32_t gproji_find_ascending(const int32_t *list, int32_t count, int32_t value) {
+    int32_t low = 0, high = count - 1;
     while (low < high) {
         int32_t middle = (low + high) / 2;
-        if (s->position[local[middle]] < position) {
+        if (list[middle] < value) {
             low = middle + 1;
         } else {
             high = middle;
@@ -5721,77 +5772,66 @@ GPROJI_INTERNAL int32_t gproji_find_local(const gproj_system *s, const int32_t *
     return low;
 }
 
-/* Sorts the locals of every row by the order of elimination and counts slots and pairs. `order`: the variable at each
-   position; `scratch` has room for a row. */
-GPROJI_INTERNAL void gproji_compile_slots(gproj_system *s, gproji_group *g, const int32_t *order, int32_t *scratch) {
-    int64_t slots = 0, pairs = 0, l;
-    int32_t r;
-    for (r = 0; r < g->row_count; ++r) {
-        gproji_row *row = &g->row[r];
-        int32_t *local = g->local_variable + row->local, count = (int32_t)(row[1].local - row->local), last = -1;
-        int64_t own_slots = 0;
-        for (l = 0; l < count; ++l) scratch[l] = s->position[local[l]];
-        gproji_sort_unique(scratch, count);
-        for (l = 0; l < count; ++l) local[l] = order[scratch[l]];
-        row->slot = slots;
-        row->pair = pairs;
-        if (row->wide) continue;
-        for (l = 0; l < count; ++l) {
-            own_slots += s->node[local[l]] != last;
-            last = s->node[local[l]];
-        }
-        slots += own_slots;
-        pairs += own_slots * (own_slots + 1) / 2;
-    }
-    g->row[g->row_count].slot = slots;
-    g->row[g->row_count].pair = pairs;
-}
-
-/* Fills the slots, the places of the blocks and the places of the terms' variables. */
-GPROJI_INTERNAL void gproji_compile_places(gproj_system *s, gproji_group *g) {
-    int32_t r;
-    int64_t l, t, a, b;
-    for (r = 0; r < g->row_count; ++r) {
-        const gproji_row *row = &g->row[r];
-        const int32_t *local = g->local_variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local), last = -1;
-        int64_t slot = row->slot, pair = row->pair;
-        for (t = row->term; t < row[1].term; ++t) {
-            g->term_local[t].i = gproji_find_local(s, local, count, g->term[t].i);
-            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_find_local(s, local, count, g->term[t].j);
-        }
-        if (row->wide) continue;
-        for (l = 0; l < count; ++l) {
-            if (s->node[local[l]] != last) g->slot_local[slot++] = row->local + l;
-            last = s->node[local[l]];
-        }
-        for (b = row->slot; b < slot; ++b) {
-            for (a = b; a < slot; ++a) {
-                int32_t stride;
-                bool swapped;
-                gproji_cholesky_locate_block(s->cholesky, s->node[g->local_variable[g->slot_local[a]]],
-                                             s->node[g->local_variable[g->slot_local[b]]], &g->pair_entry[pair++],
-                                             &stride, &swapped);
-            }
+/* Where the terms' variables are among the locals: key[l] ascends over them and is key_of(variable) = base[node] +
+   place in the node; base NULL: the variable itself. */
+GPROJI_INTERNAL void gproji_place_terms(const gproj_system *s, gproji_group *g, const gproji_row *row,
+                                        const int32_t *key, const int32_t *base) {
+    int32_t count = (int32_t)(row[1].local - row->local), end;
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        int32_t *place = &g->term_local[t].i, variable = g->term[t].i;
+        for (end = 0; end < 2; ++end, place = &g->term_local[t].j, variable = g->term[t].j) {
+            int32_t node = variable < 0 ? 0 : s->node[variable];
+            int32_t wanted = base ? base[node] + variable - s->node_first[node] : variable;
+            *place = variable < 0 ? -1 : gproji_find_ascending(key, count, wanted);
         }
     }
 }
 
-/* Step 4: every row's places in the factor. */
-GPROJI_INTERNAL bool gproji_compile_group(gproj_system *s, gproji_group *g, const int32_t *order, int32_t *scratch) {
+/* The storage rows of a narrow row's locals, and its locals in their order. at: of the front's nodes. */
+GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row,
+                                      const int32_t *at) {
+    int32_t *local = g->local_variable + row->local, *key = g->local_at + row->local;
+    int32_t count = (int32_t)(row[1].local - row->local), i, j;
+    for (i = 0; i < count; ++i) {
+        int32_t variable = local[i], node = s->node[variable];
+        int32_t own = at[node] + variable - s->node_first[node];
+        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
+        key[j] = own;
+        local[j] = variable;
+    }
+    gproji_place_terms(s, g, row, key, at);
+}
+
+/* Fills the places of the locals and of the terms' variables of all rows. */
+GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
+    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), i, r, f;
+    int64_t k;
+    if (!at) return false;
+    for (f = 0; f < (int32_t)s->front_count; ++f) {
+        gproji_map_front(&s->cholesky->symbolic, f, at);
+        for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
+            gproji_group *g = &s->group[s->front_row[k].group];
+            gproji_place_row(s, g, &g->row[s->front_row[k].row], at);
+        }
+    }
+    gproji_give(&s->own, at, (size_t)s->node_count, sizeof *at);
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r) {
+            gproji_group *g = &s->group[i];
+            if (g->row[r].wide) gproji_place_terms(s, g, &g->row[r], g->local_variable + g->row[r].local, NULL);
+        }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_take_compiled_group(gproj_system *s, gproji_group *g) {
     const gproji_row *end = &g->row[g->row_count];
-    gproji_compile_slots(s, g, order, scratch);
     g->term_local_count = (size_t)end->term;
     g->gradient_count = (size_t)end->local;
-    g->slot_count = (size_t)end->slot;
-    g->pair_count = (size_t)end->pair;
     g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
+    g->local_at = (int32_t *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_at);
     g->local_gradient = (double *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_gradient);
-    g->slot_local = (int64_t *)gproji_take(&s->own, g->slot_count, sizeof *g->slot_local);
-    g->pair_entry = (int64_t *)gproji_take(&s->own, g->pair_count, sizeof *g->pair_entry);
-    if (!g->term_local || !g->local_gradient || !g->slot_local || !g->pair_entry) return false;
-    gproji_compile_places(s, g);
-    return true;
+    return g->term_local && g->local_at && g->local_gradient;
 }
 
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
@@ -5799,16 +5839,12 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     s->compiled_variables = s->variable_count;
     s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
     s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
-    s->node_stride = (int32_t *)gproji_take(&s->own, n, sizeof *s->node_stride);
-    s->node_entry = (int64_t *)gproji_take(&s->own, n, sizeof *s->node_entry);
-    s->position = (int32_t *)gproji_take(&s->own, n, sizeof *s->position);
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
     s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
     s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
-    return s->node && s->node_first && s->node_stride && s->node_entry && s->position && s->gradient && s->step &&
-           s->saved && s->residual && s->correction;
+    return s->node && s->node_first && s->gradient && s->step && s->saved && s->residual && s->correction;
 }
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
@@ -5831,7 +5867,6 @@ GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
 
 /* All steps; `scratch` has room for a row. */
 GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratch) {
-    const int32_t *order;
     gproj_code code;
     int32_t i;
     s->wide_count = 0;
@@ -5842,15 +5877,10 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratc
     gproji_compile_nodes(s);
     code = gproji_compile_graph(s);
     if (code) return code;
-    if (!gproji_cholesky_entries(s->cholesky)) return GPROJ_ERROR_MEMORY;
-    order = gproj_cholesky_permutation(s->cholesky);
-    for (i = 0; i < s->variable_count; ++i) s->position[order[i]] = i;
+    if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
     for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_group(s, &s->group[i], order, scratch)) return GPROJ_ERROR_MEMORY;
-    for (i = 0; i < s->node_count; ++i) {
-        bool swapped;
-        gproji_cholesky_locate_block(s->cholesky, i, i, &s->node_entry[i], &s->node_stride[i], &swapped);
-    }
+        if (!gproji_take_compiled_group(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
+    if (!gproji_compile_fronts(s) || !gproji_compile_places(s)) return GPROJ_ERROR_MEMORY;
     return GPROJ_OK;
 }
 
@@ -5998,49 +6028,60 @@ GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
 
 /* -- the matrix -- */
 
-/* The end of a slot's locals. The next slot may belong to a later row, with the locals of wide rows in between. */
-GPROJI_INLINE int64_t gproji_slot_end(const gproji_group *g, const gproji_row *row, int64_t slot) {
-    return slot + 1 < row[1].slot ? g->slot_local[slot + 1] : row[1].local;
-}
+/* What a front is to load: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature:
+   w^2 y (Hessian of phi) with the multipliers y of what must hold, and y = phi of wishes. */
+typedef struct gproji_loading {
+    const gproj_system *system;
+    double epsilon;
+    bool curved;
+} gproji_loading;
 
-/* Adds the outer product w2 g g' of one narrow row: for each pair of slots the block g_a g_b', lower triangle. */
-GPROJI_INTERNAL void gproji_assemble_row(const gproj_system *s, const gproji_group *g, const gproji_row *row, double w2,
-                                         double *entries) {
-    const int64_t *place = g->pair_entry + row->pair;
-    int64_t a, b, p, q;
-    for (b = row->slot; b < row[1].slot; ++b) {
-        int32_t node = s->node[g->local_variable[g->slot_local[b]]], first_b = s->node_first[node];
-        int64_t stride = s->node_stride[node], end_b = gproji_slot_end(g, row, b);
-        for (a = b; a < row[1].slot; ++a) {
-            int32_t first_a = s->node_first[s->node[g->local_variable[g->slot_local[a]]]];
-            int64_t end_a = gproji_slot_end(g, row, a);
-            double *block = entries + *place++;
-            for (q = g->slot_local[b]; q < end_b; ++q) {
-                double *column = block + (g->local_variable[q] - first_b) * stride;
-                double scale = w2 * g->local_gradient[q];
-                for (p = a == b ? q : g->slot_local[a]; p < end_a; ++p)
-                    column[g->local_variable[p] - first_a] += scale * g->local_gradient[p];
-            }
-        }
+/* w^2 g g', lower triangle */
+GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
+    const double *gradient = g->local_gradient + row->local;
+    const int32_t *at = g->local_at + row->local;
+    int32_t count = (int32_t)(row[1].local - row->local), p, q;
+    double w2 = gproji_weight2(g, row);
+    for (q = 0; q < count; ++q) {
+        double *column = gproji_panel_column(panel, at[q]), scale = w2 * gradient[q];
+        for (p = q; p < count; ++p) column[at[p]] += scale * gradient[p];
     }
 }
 
-/* The sum of w^2 g g' over narrow rows that act, and eps^2 on the diagonal, in the factor's storage. */
-GPROJI_INTERNAL void gproji_assemble(gproj_system *s, double epsilon) {
-    double *entries = gproji_cholesky_entries(s->cholesky);
-    int32_t i, r, v;
-    gproji_cholesky_clear(s->cholesky);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
-            if (!g->row[r].wide && g->row[r].active)
-                gproji_assemble_row(s, g, &g->row[r], gproji_weight2(g, &g->row[r]), entries);
+/* w^2 y (Hessian of phi), lower triangle */
+GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
+    const int32_t *at = g->local_at + row->local;
+    double w2y = gproji_weight2(g, row) * (g->kind == GPROJ_WISH ? row->phi : row->multiplier);
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        int32_t i = g->term_local[t].i, j = g->term_local[t].j;
+        if (j < 0) continue;
+        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
     }
-    for (v = 0; v < s->variable_count; ++v) {
-        int32_t node = s->node[v];
-        entries[s->node_entry[node] + (int64_t)(v - s->node_first[node]) * (s->node_stride[node] + 1)] +=
-            epsilon * epsilon;
+}
+
+/* See gproji_load. */
+GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel) {
+    const gproji_loading *loading = (const gproji_loading *)user;
+    const gproj_system *s = loading->system;
+    int32_t j;
+    int64_t k;
+    for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
+        const gproji_group *g = &s->group[s->front_row[k].group];
+        const gproji_row *row = &g->row[s->front_row[k].row];
+        if (!(g->weight > 0) || !row->active) continue;
+        gproji_load_square(g, row, panel);
+        if (loading->curved) gproji_load_curvature(g, row, panel);
     }
+    for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += loading->epsilon * loading->epsilon;
+}
+
+/* Factors A; right-hand sides as for gproji_cholesky_factor_with. */
+GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool curved, int32_t sides,
+                                          const double *b) {
+    gproji_loading loading;
+    loading.system = s, loading.epsilon = epsilon, loading.curved = curved;
+    return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, b) == GPROJ_FACTORED;
 }
 
 /* out = A v, A = sum w^2 g g' + eps^2 I over narrow rows that act. */
@@ -6138,21 +6179,31 @@ GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide) {
         for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
 }
 
-/* The step with the factor of A. The columns of U and the right-hand side are solved for together, which costs little
-   more than one of them. Returns the number of wide rows. */
-GPROJI_INTERNAL int32_t gproji_solve_step(gproj_system *s) {
+/* The right-hand sides of a step: the columns of U, and -gradient. Returns the number of wide rows. */
+GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     size_t n = (size_t)s->variable_count, v;
     int32_t wide = gproji_for_wide_rows(s, gproji_wide_column);
     double *last = s->wide_response + n * (size_t)wide;
     for (v = 0; v < n; ++v) last[v] = -s->gradient[v];
-    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
+    return wide;
+}
+
+/* The step from what A^-1 makes of its right-hand sides. */
+GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide) {
+    size_t n = (size_t)s->variable_count;
     gproji_for_wide_rows(s, gproji_wide_products);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
     memset(s->step, 0, n * sizeof *s->step);
-    memcpy(s->correction, last, n * sizeof *last);
+    memcpy(s->correction, s->wide_response + n * (size_t)wide, n * sizeof *s->step);
     gproji_wide_correct(s, wide);
     memcpy(s->step, s->correction, n * sizeof *s->step);
-    return wide;
+}
+
+/* The step with the factor of A. */
+GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) {
+    int32_t wide = gproji_step_sides(s);
+    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
+    gproji_finish_step(s, wide);
 }
 
 /* correction += U m at this step. */
@@ -6372,15 +6423,22 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    gproj_factor_outcome outcome;
-    gproji_assemble(s, epsilon);
+    int32_t wide;
+    bool fused, factored;
     gproji_merit_gradient(s);
+    wide = gproji_step_sides(s);
+    fused = wide < GPROJI_SOLVE_BATCH;
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    outcome = gproji_cholesky_factor_entries(s->cholesky);
+    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->wide_response);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
-    if (outcome != GPROJ_FACTORED) return false;
-    gproji_refine_step(s, gproji_solve_step(s), epsilon, GPROJI_REFINEMENTS);
+    if (!factored) return false;
+    if (fused)
+        gproji_cholesky_finish(s->cholesky, s->wide_response);
+    else
+        gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
+    gproji_finish_step(s, wide);
+    gproji_refine_step(s, wide, epsilon, GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -6819,39 +6877,6 @@ GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_ro
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
 }
 
-/* Adds w2 y (Hessian of phi) of a narrow row to the matrix, lower triangle. */
-GPROJI_INTERNAL void gproji_assemble_curvature(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                               double w2y, double *entries) {
-    int64_t slots = row[1].slot - row->slot, t, a, b;
-    for (t = row->term; t < row[1].term; ++t) {
-        const gproji_term_local *place = &g->term_local[t];
-        int32_t low = gproji_min(place->i, place->j), high = gproji_max(place->i, place->j), p, q;
-        double *column;
-        if (g->term[t].j < 0) continue;
-        for (b = 0; b + 1 < slots && g->slot_local[row->slot + b + 1] <= row->local + low;) ++b;
-        for (a = b; a + 1 < slots && g->slot_local[row->slot + a + 1] <= row->local + high;) ++a;
-        q = g->local_variable[row->local + low];
-        p = g->local_variable[row->local + high];
-        column = entries + g->pair_entry[row->pair + b * slots - b * (b - 1) / 2 + (a - b)] +
-                 (int64_t)(q - s->node_first[s->node[q]]) * s->node_stride[s->node[q]];
-        column[p - s->node_first[s->node[p]]] += (low == high ? 2 : 1) * w2y * g->term[t].a;
-    }
-}
-
-/* The curvature of all narrow rows: y phi of constraints, phi^2 / 2 of wishes. */
-GPROJI_INTERNAL void gproji_assemble_curvatures(gproj_system *s) {
-    double *entries = gproji_cholesky_entries(s->cholesky);
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            double y = g->kind == GPROJ_WISH ? row->phi : row->multiplier;
-            if (!row->wide && row->active) gproji_assemble_curvature(s, g, row, gproji_weight2(g, row) * y, entries);
-        }
-    }
-}
-
 /* Before the first solve of a slide: phi + y in place of phi. Rows without a weight forget their multipliers, and so do
    bounds that do not act: their multipliers fall to 0. */
 GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
@@ -6894,18 +6919,16 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     gproj_system *s = loop->system;
     double *sum = s->residual, first = 0, left = HUGE_VAL;
     int32_t round, v;
-    gproj_factor_outcome outcome;
+    bool factored;
     double follows = gproji_epsilon_max;
     if (curved) follows = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_nearest_epsilon), follows);
     loop->iteration.epsilon = sqrt(follows * follows + gproji_nearest_scale * gproji_nearest_scale * shift);
-    gproji_assemble(s, loop->iteration.epsilon);
-    if (curved) gproji_assemble_curvatures(s);
     gproji_add_multipliers(s);
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    outcome = gproji_cholesky_factor_entries(s->cholesky);
+    factored = gproji_factor_matrix(s, loop->iteration.epsilon, curved, 0, NULL);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
-    if (outcome != GPROJ_FACTORED) return false;
+    if (!factored) return false;
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
     for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
         gproji_merit_gradient(s);

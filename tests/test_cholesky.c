@@ -552,24 +552,55 @@ GPROJT_TEST(ordering_is_deterministic) {
 
 /* -- analysis by blocks, the door of the system section -- */
 
+enum {
+    NODES = 120
+};
+
+typedef struct block_matrix {
+    const matrix *matrix;
+    const gproji_symbolic *sy;
+    const int32_t *first;   /* the first variable of each node */
+    const int32_t *node_of; /* the node of each variable */
+} block_matrix;
+
+/* A gproji_load: the entries whose earlier node is a pivot of the front. */
+static void load_blocks(void *user, int32_t front, const gproji_panel *panel) {
+    const block_matrix *blocks = (const block_matrix *)user;
+    const matrix *m = blocks->matrix;
+    int32_t at[NODES], k, j, node[2];
+    int64_t p;
+    gproji_map_front(blocks->sy, front, at);
+    for (j = 0; j < m->n; ++j)
+        for (p = m->start[j]; p < m->start[j + 1]; ++p) {
+            int32_t variable[2], row[2];
+            variable[0] = m->row[p], variable[1] = j;
+            for (k = 0; k < 2; ++k) node[k] = blocks->node_of[variable[k]];
+            k = blocks->sy->place[node[0]] < blocks->sy->place[node[1]] ? 0 : 1;
+            if (blocks->sy->front_of[blocks->sy->place[node[k]]] != front) continue;
+            for (k = 0; k < 2; ++k) row[k] = at[node[k]] + variable[k] - blocks->first[node[k]];
+            gproji_panel_column(panel, row[0] < row[1] ? row[0] : row[1])[row[0] < row[1] ? row[1] : row[0]] +=
+                m->value[p];
+        }
+}
+
 GPROJT_TEST(cholesky_blocks) {
-    enum {
-        NODES = 120
-    };
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     uint64_t seed = 11;
     int32_t trial;
     for (trial = 0; trial < 30; ++trial) {
-        int32_t size[NODES], first[NODES + 1], i, j, a, b, n,
+        int32_t size[NODES], first[NODES + 1], node_of[8 * NODES], i, j, a, b, n,
             *adjacent = (int32_t *)malloc(NODES * NODES * sizeof(int32_t));
         int64_t start[NODES + 1], count = 0;
         unsigned char linked[NODES][NODES];
         matrix m;
-        double *entries, *x, *y;
+        block_matrix blocks;
+        double *x, *y;
         memset(linked, 0, sizeof linked);
         for (i = 0, first[0] = 0; i < NODES; ++i)
             size[i] = 1 + gprojt_below(&seed, 8), first[i + 1] = first[i] + size[i];
         n = first[NODES];
+        for (i = 0; i < NODES; ++i)
+            for (j = first[i]; j < first[i + 1]; ++j) node_of[j] = i;
         for (i = 0; i < 2 * NODES; ++i) {
             a = gprojt_below(&seed, NODES), b = gprojt_below(&seed, trial % 2 ? NODES : 10) + a - 5;
             b = b < 0 ? 0 : b % NODES;
@@ -582,33 +613,22 @@ GPROJT_TEST(cholesky_blocks) {
         }
         start[NODES] = count;
         GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, NODES, size, start, adjacent, NULL) == GPROJ_OK);
-        entries = gproji_cholesky_entries(c);
-        GPROJT_REQUIRE(entries);
-        gproji_cholesky_clear(c);
+        GPROJT_REQUIRE(gproji_cholesky_take_numeric(c));
         m = matrix_empty(n);
         for (i = 0; i < NODES; ++i)
-            for (j = 0; j <= i; ++j) {
-                int64_t offset;
-                int32_t stride, late = i, early = j;
-                bool swapped;
-                if (i != j && !linked[i][j]) continue;
-                gproji_cholesky_locate_block(c, i, j, &offset, &stride, &swapped);
-                if (swapped) late = j, early = i;
-                for (a = 0; a < size[late]; ++a)
-                    for (b = 0; b < size[early]; ++b) {
-                        int32_t r = first[late] + a, q = first[early] + b;
-                        double v = r == q ? 200.0 : gprojt_uniform(&seed);
-                        if (i == j && a < b) continue;
-                        entries[offset + a + (int64_t)b * stride] += v;
-                        matrix_add(&m, r, q, v);
-                    }
-            }
+            for (j = 0; j <= i; ++j)
+                for (a = 0; a < size[i] && (i == j || linked[i][j]); ++a)
+                    for (b = 0; b < (i == j ? a + 1 : size[j]); ++b)
+                        matrix_add(&m, first[i] + a, first[j] + b, i == j && a == b ? 200.0 : gprojt_uniform(&seed));
         matrix_finish(&m);
-        GPROJT_CHECK(gproji_cholesky_factor_entries(c) == GPROJ_FACTORED);
-        x = (double *)malloc((size_t)n * sizeof(double)), y = (double *)malloc((size_t)n * sizeof(double));
-        for (i = 0; i < n; ++i) y[i] = sin((double)i);
-        GPROJT_CHECK(gproj_cholesky_solve(c, 1, y, x) == GPROJ_OK);
-        GPROJT_CHECK(gproj_cholesky_refine(c, m.start, m.row, m.value, y, x, 0) < 1e-11);
+        blocks.matrix = &m, blocks.sy = &c->symbolic, blocks.first = first, blocks.node_of = node_of;
+        y = (double *)malloc((size_t)n * 3 * sizeof(double)), x = (double *)malloc((size_t)n * 3 * sizeof(double));
+        for (i = 0; i < 3 * n; ++i) y[i] = sin((double)i);
+        GPROJT_CHECK(gproji_cholesky_factor_with(c, load_blocks, &blocks, 2, y) == GPROJ_FACTORED);
+        gproji_cholesky_finish(c, x); /* right-hand sides known before the factorisation */
+        GPROJT_CHECK(gproj_cholesky_solve(c, 1, y + 2 * n, x + 2 * n) == GPROJ_OK);
+        for (i = 0; i < 3; ++i)
+            GPROJT_CHECK(gproj_cholesky_refine(c, m.start, m.row, m.value, y + i * n, x + i * n, 0) < 1e-11);
         GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_FACTOR_FAILED); /* there is no pattern in columns */
         free(x), free(y), free(adjacent);
         matrix_free(&m);
@@ -822,10 +842,10 @@ GPROJT_TEST(cholesky_sizes) {
     GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 3, half, alone, nothing, NULL) == GPROJ_ERROR_SIZE);
     GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_get_info(c).factor_entries == (int64_t)60000 * 60001 / 2 + 1);
-    GPROJT_CHECK(gproji_cholesky_entries(c) == NULL); /* 29 GB */
+    GPROJT_CHECK(!gproji_cholesky_take_numeric(c)); /* 29 GB */
     GPROJT_CHECK(gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY);
     GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 1, wide + 1, alone, nothing, NULL) == GPROJ_OK);
-    GPROJT_CHECK(gproji_cholesky_entries(c) != NULL);
+    GPROJT_CHECK(gproji_cholesky_take_numeric(c));
     gproj_cholesky_destroy(c);
     memset(&host, 0, sizeof host);
     for (step = 2; step < 12; ++step) { /* an analysis by blocks without memory */
