@@ -1068,9 +1068,18 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
 #define GPROJI_NOINLINE __attribute__((noinline))
+#define GPROJI_ALWAYS __attribute__((always_inline)) static inline /* gcc drops calls of functions that only prefetch */
 #else
 #define GPROJI_INLINE static inline
 #define GPROJI_NOINLINE
+#define GPROJI_ALWAYS static inline
+#endif
+
+/* Asks for a line of memory that will be needed soon. */
+#if defined(__GNUC__) || defined(__clang__)
+#define GPROJI_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define GPROJI_PREFETCH(address) ((void)(address))
 #endif
 
 #if defined(__cplusplus)
@@ -5042,9 +5051,10 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    a row ends it. Coefficients, constants and weights may change freely. */
 
 enum {
-    GPROJI_BLOCK_MAX = 8,       /* variables of a block */
-    GPROJI_WIDE_ROW = 512,      /* a row with more variables than this is treated as a global one */
-    GPROJI_ROWS_PER_TASK = 2048 /* of the evaluation */
+    GPROJI_BLOCK_MAX = 8,        /* variables of a block */
+    GPROJI_WIDE_ROW = 512,       /* a row with more variables than this is treated as a global one */
+    GPROJI_ROWS_PER_TASK = 2048, /* of the evaluation */
+    GPROJI_ROWS_AHEAD = 16       /* see gproji_expect_rows */
 };
 
 /* Row r of a group has the terms term[row[r].term .. row[r + 1].term - 1], and likewise for the other starts; the array
@@ -5089,7 +5099,7 @@ typedef struct gproji_group {
     int32_t *local_variable;       /* of every row, one row after the other */
     int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
     double *local_gradient;        /* at the last evaluation */
-    size_t term_local_count, local_capacity, gradient_count;
+    size_t term_local_count, local_count;
 } gproji_group;
 
 typedef struct gproji_row_name {
@@ -5134,7 +5144,7 @@ struct gproj_system {
     int32_t *node_first;        /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
     int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
     gproji_row_name *front_row; /* all narrow rows */
-    size_t front_count, front_row_count;
+    size_t front_count, front_row_count, front_row_room;
     double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
     double *step;          /* dx */
     double *saved;         /* x before the step */
@@ -5166,14 +5176,13 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
 /* Gives back what compilation made of a group. */
 GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
     gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
-    gproji_give(heap, g->local_variable, g->local_capacity, sizeof *g->local_variable);
-    gproji_give(heap, g->local_gradient, g->gradient_count, sizeof *g->local_gradient);
-    gproji_give(heap, g->local_at, g->gradient_count, sizeof *g->local_at);
+    gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
+    gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
+    gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
     g->term_local = NULL;
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
-    g->local_capacity = 0;
 }
 
 /* Ends the compiled state and gives its memory back. */
@@ -5184,7 +5193,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->node, n, sizeof *s->node);
     gproji_give(&s->own, s->node_first, n + 1, sizeof *s->node_first);
     gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
-    gproji_give(&s->own, s->front_row, s->front_row_count, sizeof *s->front_row);
+    gproji_give(&s->own, s->front_row, s->front_row_room, sizeof *s->front_row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
     gproji_give(&s->own, s->step, n, sizeof *s->step);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
@@ -5525,61 +5534,43 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-GPROJI_INTERNAL int gproji_compare_int32(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
+/* A mark on a variable: the row that named it last, and its place among that row's locals. */
+typedef struct gproji_named {
+    int32_t row, local;
+} gproji_named;
 
-/* Sorts and removes what is repeated; returns the new count. */
-GPROJI_INTERNAL int32_t gproji_sort_unique(int32_t *item, int32_t count) {
-    int32_t i, j, kept = 0;
-    if (count > 32) {
-        qsort(item, (size_t)count, sizeof *item, gproji_compare_int32);
-    } else {
-        for (i = 1; i < count; ++i) {
-            int32_t moving = item[i];
-            for (j = i; j > 0 && item[j - 1] > moving; --j) item[j] = item[j - 1];
-            item[j] = moving;
-        }
+/* The place of a variable among the `count` locals of row r; a new one where the row has not named it before. */
+GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *count) {
+    gproji_named *mark = &named[variable];
+    if (mark->row != r) {
+        mark->row = r;
+        mark->local = (*count)++;
     }
-    for (i = 0; i < count; ++i)
-        if (kept == 0 || item[kept - 1] != item[i]) item[kept++] = item[i];
-    return kept;
+    return mark->local;
 }
 
-/* The largest number of variables that a row names, repeated ones counted each time. */
-GPROJI_INTERNAL int32_t gproji_longest_row(const gproj_system *s) {
-    int64_t longest = 0;
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            int64_t count = 2 * (g->row[r + 1].term - g->row[r].term);
-            if (count > longest) longest = count;
-        }
-    }
-    return longest > INT32_MAX ? INT32_MAX : (int32_t)longest;
+/* Takes all marks off. */
+GPROJI_INTERNAL void gproji_unname(const gproj_system *s, gproji_named *named) {
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) named[v].row = -1;
 }
 
-/* Step 1: every row's variables, each once, ascending; which rows are wide. `scratch` has room for a row. */
-GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, int32_t *scratch) {
+/* Step 1: where the terms' variables are among the variables of their rows, in the order in which they are named; how
+   many each row has; which rows are wide. */
+GPROJI_INTERNAL bool gproji_compile_terms(gproj_system *s, gproji_group *g, gproji_named *named) {
     int64_t filled = 0, t;
     int32_t r;
+    g->term_local_count = (size_t)g->row[g->row_count].term;
+    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
+    if (!g->term_local) return false;
+    gproji_unname(s, named);
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         int32_t count = 0;
-        void *locals = g->local_variable;
-        bool enough;
         for (t = row->term; t < row[1].term; ++t) {
-            scratch[count++] = g->term[t].i;
-            if (g->term[t].j >= 0) scratch[count++] = g->term[t].j;
+            g->term_local[t].i = gproji_name_local(named, r, g->term[t].i, &count);
+            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_name_local(named, r, g->term[t].j, &count);
         }
-        count = gproji_sort_unique(scratch, count);
-        enough =
-            gproji_reserve(&s->own, &locals, &g->local_capacity, (size_t)(filled + count), sizeof *g->local_variable);
-        g->local_variable = (int32_t *)locals;
-        if (!enough) return false;
-        if (count) memcpy(g->local_variable + filled, scratch, (size_t)count * sizeof *scratch);
         row->wide = g->global || count > GPROJI_WIDE_ROW;
         s->wide_count += row->wide;
         row->local = filled;
@@ -5589,19 +5580,39 @@ GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, int
     return true;
 }
 
-/* Step 2: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
-GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+/* Step 2: the variables of all rows. */
+GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g) {
+    int64_t t;
+    int32_t r;
+    g->local_count = (size_t)g->row[g->row_count].local;
+    g->local_variable = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_variable);
+    g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
+    g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
+    if (!g->local_variable || !g->local_at || !g->local_gradient) return false;
+    for (r = 0; r < g->row_count; ++r)
+        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+            const gproji_term_local *place = &g->term_local[t];
+            g->local_variable[g->row[r].local + place->i] = g->term[t].i;
+            if (place->j >= 0) g->local_variable[g->row[r].local + place->j] = g->term[t].j;
+        }
+    return true;
+}
+
+/* Step 3: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
+GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s, gproji_named *named) {
     int32_t *coupled = s->node;
     int32_t i, r, v;
     int64_t l;
     memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
+        gproji_unname(s, named);
         for (r = 0; r < g->row_count; ++r) {
             if (g->row[r].wide) continue;
-            for (l = g->row[r].local + 1; l < g->row[r + 1].local; ++l) {
+            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
                 int32_t block = s->block[g->local_variable[l]];
-                if (s->block[g->local_variable[l - 1]] == block) coupled[block] = 1;
+                if (named[block].row == r) coupled[block] = 1;
+                named[block].row = r;
             }
         }
     }
@@ -5613,81 +5624,93 @@ GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
         for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
 }
 
-/* The nodes of all narrow rows, row after row, and the rows of each node: the incidence that gives the graph. */
+/* The nodes that meet in narrow rows, and the rows of each node: the incidence that gives the graph. */
 typedef struct gproji_incidence {
-    int64_t row_count, entry_count;
-    int64_t *row_start;  /* row_count + 1 */
-    int32_t *row_node;   /* entry_count: nodes of each row */
-    int64_t *node_start; /* node_count + 1 */
-    int64_t *node_row;   /* entry_count: rows of each node */
     int32_t node_count;
+    int64_t row_count;
+    size_t row_room, entry_room, node_entry_room;
+    int64_t *row_start;  /* row_count + 1 */
+    int32_t *row_node;   /* nodes of each row */
+    int64_t *node_start; /* node_count + 1 */
+    int64_t *node_row;   /* rows of each node */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
-    gproji_give(heap, in->row_start, (size_t)in->row_count + 1, sizeof *in->row_start);
-    gproji_give(heap, in->row_node, (size_t)in->entry_count, sizeof *in->row_node);
+    gproji_give(heap, in->row_start, in->row_room, sizeof *in->row_start);
+    gproji_give(heap, in->row_node, in->entry_room, sizeof *in->row_node);
     gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
-    gproji_give(heap, in->node_row, (size_t)in->entry_count, sizeof *in->node_row);
+    gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
 }
 
-/* Calls for each narrow row of the system; with `row_node` NULL only counts. */
-GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in) {
-    int32_t i, r;
-    int64_t l;
-    in->row_count = in->entry_count = 0;
+/* The nodes of each row, without rows that have the nodes of the row before. mark: node_count entries. */
+GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, int64_t *mark) {
+    int32_t i, r, v;
+    int64_t l, entries = 0, before = 0; /* where the nodes of the row before begin */
+    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
-            int32_t last = -1;
+            int64_t begin = entries;
             if (g->row[r].wide) continue;
-            if (in->row_start) in->row_start[in->row_count] = in->entry_count;
             for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
                 int32_t node = s->node[g->local_variable[l]];
-                if (node == last) continue;
-                if (in->row_node) in->row_node[in->entry_count] = node;
-                in->entry_count++;
-                last = node;
+                if (mark[node] == begin) continue;
+                mark[node] = begin;
+                in->row_node[entries++] = node;
             }
-            in->row_count++;
+            if (entries - begin == begin - before &&
+                memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) == 0) {
+                for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
+                entries = begin;
+                continue;
+            }
+            in->row_start[in->row_count++] = before = begin;
         }
     }
-    if (in->row_start) in->row_start[in->row_count] = in->entry_count;
+    in->row_start[in->row_count] = entries;
 }
 
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
+GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int64_t r, e;
-    int32_t v;
+    int32_t v, i;
     memset(in, 0, sizeof *in);
-    gproji_incidence_scan(s, in);
     in->node_count = s->node_count;
-    in->row_start = (int64_t *)gproji_take(&s->own, (size_t)in->row_count + 1, sizeof *in->row_start);
-    in->row_node = (int32_t *)gproji_take(&s->own, (size_t)in->entry_count, sizeof *in->row_node);
+    in->row_room = 1;
+    for (i = 0; i < s->group_count; ++i) {
+        in->row_room += (size_t)s->group[i].row_count;
+        in->entry_room += s->group[i].local_count;
+    }
+    in->row_start = (int64_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
+    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (int64_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
-    in->node_row = (int64_t *)gproji_take(&s->own, (size_t)in->entry_count, sizeof *in->node_row);
-    if (!in->row_start || !in->row_node || !in->node_start || !in->node_row) return false;
-    gproji_incidence_scan(s, in);
+    if (!in->row_start || !in->row_node || !in->node_start) return false;
+    gproji_incidence_scan(s, in, mark);
+    in->node_entry_room = (size_t)in->row_start[in->row_count];
+    in->node_row = (int64_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
+    if (!in->node_row) return false;
     /* transpose: count, sum up, fill backwards */
-    for (e = 0; e < in->entry_count; ++e) in->node_start[in->row_node[e]]++;
+    for (e = 0; e < in->row_start[in->row_count]; ++e) in->node_start[in->row_node[e]]++;
     for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
     for (r = in->row_count - 1; r >= 0; --r)
         for (e = in->row_start[r]; e < in->row_start[r + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = r;
     return true;
 }
 
-/* Step 3: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
+/* Step 4: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
 GPROJI_INTERNAL gproj_code gproji_compile_graph(gproj_system *s) {
     gproji_incidence in;
     int64_t *start = NULL;
-    int32_t *adjacent = NULL, *size = NULL, *mark = NULL;
+    int64_t *mark = NULL;
+    int32_t *adjacent = NULL, *size = NULL;
     size_t capacity = 0, nodes = (size_t)s->node_count;
     int64_t filled = 0, e, f;
     int32_t v;
     gproj_code code = GPROJ_ERROR_MEMORY;
-    if (!gproji_incidence_take(s, &in)) goto done;
+    memset(&in, 0, sizeof in);
     start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
     size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size);
-    mark = (int32_t *)gproji_take(&s->own, nodes, sizeof *mark);
-    if (!start || !size || !mark) goto done;
+    mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    if (!start || !size || !mark || !gproji_incidence_take(s, &in, mark)) goto done;
     for (v = 0; v < s->node_count; ++v) {
         mark[v] = -1;
         size[v] = s->node_first[v + 1] - s->node_first[v];
@@ -5722,7 +5745,7 @@ done:
     return code;
 }
 
-/* Step 4: all that the fronts need. */
+/* Step 5: all that the fronts need. */
 
 /* The front of a narrow row; -1 where it has no variables. */
 GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
@@ -5737,10 +5760,10 @@ GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_
 GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
     int32_t i, r, f, pass;
     s->front_count = (size_t)s->cholesky->symbolic.fronts;
-    s->front_row_count = 0;
-    for (i = 0; i < s->group_count; ++i) s->front_row_count += (size_t)s->group[i].row_count;
+    s->front_row_room = 0;
+    for (i = 0; i < s->group_count; ++i) s->front_row_room += (size_t)s->group[i].row_count;
     s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
-    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_count, sizeof *s->front_row);
+    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
     if (!s->front_start || !s->front_row) return false;
     for (pass = 0; pass < 2; ++pass) { /* count, fill */
         for (i = 0; i < s->group_count; ++i) {
@@ -5755,83 +5778,65 @@ GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
         }
         for (f = 0; pass == 0 && f < (int32_t)s->front_count; ++f) s->front_start[f + 2] += s->front_start[f + 1];
     }
+    s->front_row_count = (size_t)s->front_start[s->front_count];
     return true;
 }
 
-/* The first entry of an ascending list that is not less than `value`. */
-GPROJI_INTERNAL int32_t gproji_find_ascending(const int32_t *list, int32_t count, int32_t value) {
-    int32_t low = 0, high = count - 1;
-    while (low < high) {
-        int32_t middle = (low + high) / 2;
-        if (list[middle] < value) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
-/* Where the terms' variables are among the locals: key[l] ascends over them and is key_of(variable) = base[node] +
-   place in the node; base NULL: the variable itself. */
-GPROJI_INTERNAL void gproji_place_terms(const gproj_system *s, gproji_group *g, const gproji_row *row,
-                                        const int32_t *key, const int32_t *base) {
-    int32_t count = (int32_t)(row[1].local - row->local), end;
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        int32_t *place = &g->term_local[t].i, variable = g->term[t].i;
-        for (end = 0; end < 2; ++end, place = &g->term_local[t].j, variable = g->term[t].j) {
-            int32_t node = variable < 0 ? 0 : s->node[variable];
-            int32_t wanted = base ? base[node] + variable - s->node_first[node] : variable;
-            *place = variable < 0 ? -1 : gproji_find_ascending(key, count, wanted);
-        }
+/* A front's rows come from all over the memory: asks for those that follow the k-th. */
+GPROJI_ALWAYS void gproji_expect_rows(const gproj_system *s, int64_t k) {
+    if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
+        gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
+        gproji_row_name near_one = s->front_row[k + GPROJI_ROWS_AHEAD / 2];
+        const gproji_row *row = &s->group[far_one.group].row[far_one.row];
+        const gproji_group *g = &s->group[near_one.group];
+        int64_t local = g->row[near_one.row].local;
+        GPROJI_PREFETCH(row);
+        GPROJI_PREFETCH(row + 1);
+        GPROJI_PREFETCH(g->local_at + local);
+        GPROJI_PREFETCH(g->local_gradient + local);
+        GPROJI_PREFETCH(g->local_gradient + local + 8);
     }
 }
 
-/* The storage rows of a narrow row's locals, and its locals in their order. at: of the front's nodes. */
-GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row,
-                                      const int32_t *at) {
+/* The storage rows of a narrow row's locals, ascending, and its locals in their order. at: of the front's nodes;
+   moved: work, where each local goes. */
+GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row, const int32_t *at,
+                                      int32_t moved[GPROJI_WIDE_ROW]) {
     int32_t *local = g->local_variable + row->local, *key = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), i, j;
+    int32_t count = (int32_t)(row[1].local - row->local), i, j, from[GPROJI_WIDE_ROW];
+    int64_t t;
     for (i = 0; i < count; ++i) {
         int32_t variable = local[i], node = s->node[variable];
         int32_t own = at[node] + variable - s->node_first[node];
-        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
+        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1], from[j] = from[j - 1];
         key[j] = own;
         local[j] = variable;
+        from[j] = i;
     }
-    gproji_place_terms(s, g, row, key, at);
+    for (i = 0; i < count; ++i) moved[from[i]] = i;
+    for (t = row->term; t < row[1].term; ++t) {
+        gproji_term_local *place = &g->term_local[t];
+        place->i = moved[place->i];
+        if (place->j >= 0) place->j = moved[place->j];
+    }
 }
 
-/* Fills the places of the locals and of the terms' variables of all rows. */
+/* Gives all narrow rows their places in their fronts. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
-    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), i, r, f;
+    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), f;
+    int32_t moved[GPROJI_WIDE_ROW];
     int64_t k;
     if (!at) return false;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
         gproji_map_front(&s->cholesky->symbolic, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
-            gproji_place_row(s, g, &g->row[s->front_row[k].row], at);
+            gproji_expect_rows(s, k);
+            gproji_place_row(s, g, &g->row[s->front_row[k].row], at, moved);
         }
     }
     gproji_give(&s->own, at, (size_t)s->node_count, sizeof *at);
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r) {
-            gproji_group *g = &s->group[i];
-            if (g->row[r].wide) gproji_place_terms(s, g, &g->row[r], g->local_variable + g->row[r].local, NULL);
-        }
     return true;
-}
-
-GPROJI_INTERNAL bool gproji_take_compiled_group(gproj_system *s, gproji_group *g) {
-    const gproji_row *end = &g->row[g->row_count];
-    g->term_local_count = (size_t)end->term;
-    g->gradient_count = (size_t)end->local;
-    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
-    g->local_at = (int32_t *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_at);
-    g->local_gradient = (double *)gproji_take(&s->own, g->gradient_count, sizeof *g->local_gradient);
-    return g->term_local && g->local_at && g->local_gradient;
 }
 
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
@@ -5865,34 +5870,33 @@ GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
     return s->hinge != NULL;
 }
 
-/* All steps; `scratch` has room for a row. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, int32_t *scratch) {
+/* All steps; `named`: work, one for each variable. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *named) {
     gproj_code code;
     int32_t i;
     s->wide_count = 0;
     for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_locals(s, &s->group[i], scratch)) return GPROJ_ERROR_MEMORY;
+        if (!gproji_compile_terms(s, &s->group[i], named)) return GPROJ_ERROR_MEMORY;
+    for (i = 0; i < s->group_count; ++i)
+        if (!gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
     if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
         return GPROJ_ERROR_MEMORY;
-    gproji_compile_nodes(s);
+    gproji_compile_nodes(s, named);
     code = gproji_compile_graph(s);
     if (code) return code;
     if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_take_compiled_group(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
-    if (!gproji_compile_fronts(s) || !gproji_compile_places(s)) return GPROJ_ERROR_MEMORY;
-    return GPROJ_OK;
+    return gproji_compile_fronts(s) && gproji_compile_places(s) ? GPROJ_OK : GPROJ_ERROR_MEMORY;
 }
 
 /* Makes the rows ready for iterations; nothing to do when they are. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
-    size_t longest = (size_t)gproji_longest_row(s);
-    int32_t *scratch;
+    size_t variables = (size_t)s->variable_count;
+    gproji_named *named;
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled) return GPROJ_OK;
-    scratch = (int32_t *)gproji_take(&s->own, longest, sizeof *scratch);
-    if (scratch) code = gproji_compile_steps(s, scratch);
-    gproji_give(&s->own, scratch, longest, sizeof *scratch);
+    named = (gproji_named *)gproji_take(&s->own, variables, sizeof *named);
+    if (named) code = gproji_compile_steps(s, named);
+    gproji_give(&s->own, named, variables, sizeof *named);
     if (code == GPROJ_OK) {
         s->compiled = true;
         return code;
@@ -6069,6 +6073,7 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
     for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
         const gproji_group *g = &s->group[s->front_row[k].group];
         const gproji_row *row = &g->row[s->front_row[k].row];
+        gproji_expect_rows(s, k);
         if (!(g->weight > 0) || !row->active) continue;
         gproji_load_square(g, row, panel);
         if (loading->curved) gproji_load_curvature(g, row, panel);
