@@ -3496,7 +3496,7 @@ GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int3
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
     GPROJI_SOLVE_BATCH = 4
-}; /* right-hand sides solved together */
+}; /* right-hand sides solved together at most */
 
 /* Adds the matrix's values that belong to a front to its cleared panel and update matrix (see gproji_panel_column). Each
    value once, in a front that has both of its variables. Called from several threads. */
@@ -3522,15 +3522,16 @@ struct gproj_cholesky {
 
     gproji_load load; /* during a factorisation */
     void *load_user;
-    int32_t sides; /* the right-hand sides at work */
+    int32_t batch; /* right-hand sides that there is room for, at most GPROJI_SOLVE_BATCH */
+    int32_t sides; /* those at work */
 
     double *values;   /* symbolic.values_size: all panels */
     double *work;     /* symbolic.work_size: all update matrices */
     double *inverse;  /* (tasks + 1) * most_width: inverses of pivots, for each group of fronts */
     int32_t *runs;    /* see gproji_find_runs, for each group of fronts */
     int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution; /* columns * GPROJI_SOLVE_BATCH: right-hand sides in the order of L */
-    double *side;     /* symbolic.side_size * GPROJI_SOLVE_BATCH: what fronts take off the rows below their pivots */
+    double *solution; /* columns * batch: right-hand sides in the order of L */
+    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
     double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
 };
 
@@ -3547,6 +3548,7 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     c->source = NULL;
     c->entries = 0;
     c->values = NULL;
+    c->batch = GPROJI_SOLVE_BATCH;
 }
 
 GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
@@ -3600,7 +3602,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.exact_entries = sy->exact_entries;
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
-    work = (double)sy->work_size + (double)GPROJI_SOLVE_BATCH * ((double)sy->side_size + sy->columns) +
+    work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) +
            (sy->tasks + 1.0) * ((double)sy->most_width + sy->most_rows) + 0.5 * (double)sy->runs_start[sy->tasks + 1];
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
@@ -3951,8 +3953,8 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->work = gproji_take_aligned(&c->numeric, sy->work_size);
     c->inverse = gproji_take_aligned(&c->numeric, groups * sy->most_width);
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
-    c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * GPROJI_SOLVE_BATCH);
-    c->side = gproji_take_aligned(&c->numeric, sy->side_size * GPROJI_SOLVE_BATCH);
+    c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
+    c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->runs = (int32_t *)gproji_pool_take(&c->numeric, sy->runs_start[groups], sizeof(int32_t));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size);
@@ -4078,7 +4080,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
 /* -- right-hand sides -- */
 
 GPROJI_INLINE double *gproji_front_side(const gproj_cholesky *c, const gproji_front *front, int32_t side) {
-    return c->side + front->side * GPROJI_SOLVE_BATCH + (int64_t)side * front->below;
+    return c->side + front->side * c->batch + (int64_t)side * front->below;
 }
 
 /* What the children take off the front's rows, added to its storage rows z. */
@@ -4148,7 +4150,7 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
         for (side = 0; side < c->sides; ++side) gproji_backward_front(c, &sy->front[sy->schedule[k]], side, z);
 }
 
-/* Takes up to GPROJI_SOLVE_BATCH right-hand sides in the order of L. */
+/* Takes up to c->batch right-hand sides in the order of L. */
 GPROJI_INTERNAL void gproji_cholesky_take_sides(gproj_cholesky *c, int32_t count, const double *b) {
     size_t n = (size_t)c->symbolic.columns, i;
     int32_t r;
@@ -4168,7 +4170,7 @@ GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
         for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
-/* Solves for up to GPROJI_SOLVE_BATCH right-hand sides. */
+/* Solves for up to c->batch right-hand sides. */
 GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
     gproji_cholesky_take_sides(c, count, b);
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
@@ -4195,7 +4197,7 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     c->failed[group] = failed;
 }
 
-/* Factors the matrix that `load` adds to the fronts, and solves L y = b for up to GPROJI_SOLVE_BATCH right-hand sides:
+/* Factors the matrix that `load` adds to the fronts, and solves L y = b for up to c->batch right-hand sides:
    gproji_cholesky_finish gives their solutions. All memory has been taken. */
 GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky *c, gproji_load load, void *user,
                                                                  int32_t sides, const double *b) {
@@ -4249,9 +4251,9 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
         return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "solve: %d right-hand sides, or an array is missing", count);
     if (c->symbolic.columns == 0) return GPROJ_OK;
-    for (r = 0; r < count; r += GPROJI_SOLVE_BATCH) {
+    for (r = 0; r < count; r += c->batch) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
-        gproji_cholesky_solve_batch(c, gproji_min(count - r, GPROJI_SOLVE_BATCH), b + offset, x + offset);
+        gproji_cholesky_solve_batch(c, gproji_min(count - r, c->batch), b + offset, x + offset);
     }
     return GPROJ_OK;
 }
@@ -4291,6 +4293,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
         gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "refine: an array is missing");
         return HUGE_VAL;
     }
+    GPROJ_ASSERT(c->batch > 1);
     residual = c->solution + n; /* the solution of one right-hand side uses only the first n */
     largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     for (step = 0; step < steps; ++step) {
@@ -5870,6 +5873,20 @@ GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
     return s->hinge != NULL;
 }
 
+/* Gives back the room that has been kept for further rows. */
+GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
+    size_t rows = (size_t)g->row_count + 1, terms = (size_t)g->row[g->row_count].term;
+    void *row = gproji_retake(&s->own, g->row, g->row_capacity, rows, sizeof *g->row), *term;
+    if (!row) return false;
+    g->row = (gproji_row *)row;
+    g->row_capacity = rows;
+    term = gproji_retake(&s->own, g->term, g->term_capacity, terms, sizeof *g->term);
+    if (!term) return false;
+    g->term = (gproj_term *)term;
+    g->term_capacity = terms;
+    return true;
+}
+
 /* All steps; `named`: work, one for each variable. */
 GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *named) {
     gproj_code code;
@@ -5878,12 +5895,13 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *n
     for (i = 0; i < s->group_count; ++i)
         if (!gproji_compile_terms(s, &s->group[i], named)) return GPROJ_ERROR_MEMORY;
     for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
+        if (!gproji_trim_rows(s, &s->group[i]) || !gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
     if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
         return GPROJ_ERROR_MEMORY;
     gproji_compile_nodes(s, named);
     code = gproji_compile_graph(s);
     if (code) return code;
+    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
     if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
     return gproji_compile_fronts(s) && gproji_compile_places(s) ? GPROJ_OK : GPROJ_ERROR_MEMORY;
 }
@@ -6432,7 +6450,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     bool fused, factored;
     gproji_merit_gradient(s);
     wide = gproji_step_sides(s);
-    fused = wide < GPROJI_SOLVE_BATCH;
+    fused = wide < s->cholesky->batch;
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->wide_response);
     loop->iteration.attempts++;
