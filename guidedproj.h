@@ -74,7 +74,8 @@
        >>error          one door for all failures
        >>parallel       the host's threads
        >>vector         3-vectors
-       >>dense          small dense kernels
+       >>kernels        tiles in registers, for each kind of vector unit
+       >>dense          panels and update matrices
        >>ordering       approximate minimum degree
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
@@ -1053,6 +1054,9 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #ifdef GPROJ_USE_CBLAS
 #include <cblas.h>
 #endif
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
+#include <cpuid.h>
+#endif
 
 #ifndef GPROJ_ASSERT
 #include <assert.h>
@@ -1902,77 +1906,105 @@ GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
 GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s->low; }
 
 /* ============================================================================================================
-   >>dense   Dense kernels of the Cholesky factorisation: small tiles kept in registers. Uses platform, parallel.
+   >>kernels   Small tiles kept in registers, once for each kind of vector unit. Uses platform.
 
-   All matrices are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
-   ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
-   a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
-   rows [t B, t B + B) with B = GPROJI_BLOCK, and its columns (the first block may have fewer than B). Pivot j stands in
-   storage row j + q. Strides are multiples of B, so every tile is whole and aligned, and no kernel needs a masked edge:
-   what it computes in empty rows is zero, and what it writes above the diagonal of a diagonal tile is never read.
+   Matrices are column-major. A tile is one to three times `block` rows by `block` columns; it stays in registers while
+   the product of two strips is subtracted from it (Goto, van de Geijn 2008). No kernel needs a masked edge: see >>dense
+   for how matrices are padded. A tile of diagonal entries may begin with `skip` < block columns that do not exist: its
+   first column in memory is number `skip`, so that pivot j always stands in row j. The rows of such columns are 0.
 
-   A tile is up to GPROJI_TILE_BLOCKS blocks of rows times one block of columns; it stays in registers while the
-   product of two strips is subtracted from it (Goto, van de Geijn 2008). The vectorised and the scalar version are the
-   same text: in the scalar one a `gproji_lanes` is a double.
+   The text of the kernels is one macro, compiled for each kind of unit: L numbers in a vector, B = `block`. A kind's
+   kernels stand in a constant table. In the scalar kind a vector is a double. On x86-64, where compilers build for the
+   oldest processor unless told otherwise, all kinds are compiled and gproji_choose_kernels asks the processor;
+   elsewhere the compiler's target decides.
 
-   The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
-   is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
+   Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
+typedef struct gproji_kernels {
+    const char *name;
+    int32_t block;
+    int32_t tile_blocks; /* blocks of rows in the tallest tile */
+    /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
+       and block rows. */
+    void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+                   ptrdiff_t ldc);
+    /* X = (C - A B') L^-T for tiles of 1, 2, ... blocks of rows, with the tile L on the diagonal (stride ldc like C) and
+       the inverses of its diagonal. C, L and the inverses begin with column `skip`; then k = 0. */
+    void (*solve[3])(int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+                     ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
+    /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first column
+       (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
+    int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
+    /* One column block of the solutions of L y = b and L' x = y: z[0..block) become the unknowns, and go into, or
+       come from, the other rows up to `rows` (a multiple of block). */
+    void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
+    void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
+} gproji_kernels;
+
+/* The kinds of vector units that are compiled, as a list, the best first. GPROJI_BLOCK is the multiple to which
+   matrices are padded, in x86-64 the same for all kinds. */
 #if !GPROJI_SIMD || (defined(__i386__) && !defined(__SSE2_MATH__)) /* x87 has no vectors */
-#define GPROJI_LANES 1
+#define GPROJI_KINDS(X) X(scalar)
+#define GPROJI_KIND_SCALAR
 #define GPROJI_BLOCK 4
-#define GPROJI_TILE_BLOCKS 1
-#elif defined(__AVX512F__)
-#define GPROJI_LANES 8       /* doubles in a vector register */
-#define GPROJI_BLOCK 8       /* columns in a tile */
-#define GPROJI_TILE_BLOCKS 3 /* blocks of rows in the tallest tile */
-#elif defined(__AVX__)
-#define GPROJI_LANES 4
+#elif !defined(__x86_64__)
+#define GPROJI_KINDS(X) X(two)
+#define GPROJI_KIND_TWO
 #define GPROJI_BLOCK 4
-#define GPROJI_TILE_BLOCKS 3
-#elif defined(__aarch64__)
-#define GPROJI_LANES 2
-#define GPROJI_BLOCK 4
-#define GPROJI_TILE_BLOCKS 2
 #else
-#define GPROJI_LANES 2
-#define GPROJI_BLOCK 4
-#define GPROJI_TILE_BLOCKS 1
+#define GPROJI_BLOCK 8
+#if defined(__AVX512F__)
+#define GPROJI_KINDS(X) X(avx512)
+#elif defined(__AVX2__) && defined(__FMA__)
+#define GPROJI_KINDS(X) X(avx512) X(avx2)
+#define GPROJI_KIND_AVX2
+#else
+#define GPROJI_KINDS(X) X(avx512) X(avx2) X(two)
+#define GPROJI_KIND_AVX2
+#define GPROJI_KIND_TWO
+#endif
+#define GPROJI_KIND_AVX512
 #endif
 
-enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
-    GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
-    GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
-};
-
-#if GPROJI_LANES == 1
-typedef double gproji_lanes;
-#define GPROJI_LOAD(p) (*(p))
-#define GPROJI_STORE(p, v) (*(p) = (v))
-#else
-typedef double gproji_lanes __attribute__((vector_size(8 * GPROJI_LANES)));
-/* the same in memory: aligned like a double only */
-typedef double gproji_lanes_at __attribute__((vector_size(8 * GPROJI_LANES), aligned(8), may_alias));
-#define GPROJI_LOAD(p) (*(const gproji_lanes_at *)(const void *)(p))
-#define GPROJI_STORE(p, v) (*(gproji_lanes_at *)(void *)(p) = (v))
+/* Vectors, and the same in memory: aligned like a double only. */
+typedef double gproji_lanes_1, gproji_lanes_at_1;
+#if GPROJI_SIMD
+typedef double gproji_lanes_2 __attribute__((vector_size(16)));
+typedef double gproji_lanes_4 __attribute__((vector_size(32)));
+typedef double gproji_lanes_8 __attribute__((vector_size(64)));
+typedef double gproji_lanes_at_2 __attribute__((vector_size(16), aligned(8), may_alias));
+typedef double gproji_lanes_at_4 __attribute__((vector_size(32), aligned(8), may_alias));
+typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may_alias));
 #endif
 
-/* A kernel is never inlined, may fuse multiplication and addition, and uses registers of full width. */
-#if defined(__clang__) && GPROJI_LANES == 8
-#define GPROJI_KERNEL __attribute__((noinline, min_vector_width(512), unused)) static
-#elif defined(__clang__)
-#define GPROJI_KERNEL __attribute__((noinline, unused)) static
-#elif defined(__GNUC__) && !defined(__TINYC__)
-#define GPROJI_KERNEL __attribute__((noinline, unused, optimize("fp-contract=fast"))) static
+/* A kernel is compiled for its kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It begins
+   with GPROJI_BEGIN, which says what a vector is. */
+#if defined(__clang__)
+#define GPROJI_KERNEL(target) __attribute__((noinline, unused GPROJI_TARGET_##target)) static
+#define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma"), min_vector_width(512)
+#define GPROJI_FUSE _Pragma("clang fp contract(fast)")
+#elif GPROJI_SIMD
+#define GPROJI_KERNEL(target) \
+    __attribute__((noinline, unused, optimize("fp-contract=fast") GPROJI_TARGET_##target)) static
+#define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma")
+#define GPROJI_FUSE
 #else
-#define GPROJI_KERNEL GPROJI_INTERNAL
+#define GPROJI_KERNEL(target) GPROJI_INTERNAL
+#define GPROJI_FUSE
 #endif
-
+#define GPROJI_TARGET_avx2 , target("avx2,fma")
+#define GPROJI_TARGET_two
+#define GPROJI_TARGET_scalar
 /* clang-format off */
+#define GPROJI_BEGIN(L)                                                                                              \
+    GPROJI_FUSE                                                                                                      \
+    typedef gproji_lanes_##L lanes;                                                                                  \
+    typedef gproji_lanes_at_##L lanes_at;                                                                            \
+    enum { LANES = L };
+#define GPROJI_LOAD(p) (*(const lanes_at *)(const void *)(p))
+#define GPROJI_STORE(p, v) (*(lanes_at *)(void *)(p) = (v))
 
-/* Rows 0..T-1 (vectors) of column j of a tile. The loops are written out, because compilers keep a tile in registers
-   only when every element of it is a variable of its own: tile_r_j is vector r of column j. */
+/* The loops over a tile are written out, because compilers keep it in registers only when every element of it is a
+   variable of its own: tile_r_j is vector r of column j. Vectors 0..T-1 of column j: */
 #define GPROJI_ROWS_1(X, j) X(0, j)
 #define GPROJI_ROWS_2(X, j) X(0, j) X(1, j)
 #define GPROJI_ROWS_3(X, j) X(0, j) X(1, j) X(2, j)
@@ -1982,144 +2014,277 @@ typedef double gproji_lanes_at __attribute__((vector_size(8 * GPROJI_LANES), ali
 #define GPROJI_PAIRS_3(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j)
 #define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
 
-/* all columns of a tile, and the order of a triangular solve: S(j) finishes column j, E(i, j) takes it from column i */
-#if GPROJI_BLOCK == 4
-#define GPROJI_COLUMNS(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
-#define GPROJI_SUBSTITUTE(R, P, S, E) \
-    R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) R(S, 1) P(E, 2, 1) P(E, 3, 1) R(S, 2) P(E, 3, 2) R(S, 3)
-#else
-#define GPROJI_COLUMNS(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
-#define GPROJI_SUBSTITUTE(R, P, S, E)                                                                        \
-    R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) P(E, 4, 0) P(E, 5, 0) P(E, 6, 0) P(E, 7, 0)                      \
-    R(S, 1) P(E, 2, 1) P(E, 3, 1) P(E, 4, 1) P(E, 5, 1) P(E, 6, 1) P(E, 7, 1)                                 \
-    R(S, 2) P(E, 3, 2) P(E, 4, 2) P(E, 5, 2) P(E, 6, 2) P(E, 7, 2)                                            \
-    R(S, 3) P(E, 4, 3) P(E, 5, 3) P(E, 6, 3) P(E, 7, 3)                                                       \
-    R(S, 4) P(E, 5, 4) P(E, 6, 4) P(E, 7, 4) R(S, 5) P(E, 6, 5) P(E, 7, 5) R(S, 6) P(E, 7, 6) R(S, 7)
-#endif
+/* all columns; all that exist; the order of a forward substitution, in which S(j) finishes column j and E(i, j) takes it
+   from column i; and that of a backward one */
+#define GPROJI_COLUMNS_4(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
+#define GPROJI_COLUMNS_8(R, X) GPROJI_COLUMNS_4(R, X) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
+#define GPROJI_EXISTS(j, text) if (skip <= (j)) { text }
+#define GPROJI_EXISTING_4(R, X) \
+    GPROJI_EXISTS(0, R(X, 0)) GPROJI_EXISTS(1, R(X, 1)) GPROJI_EXISTS(2, R(X, 2)) GPROJI_EXISTS(3, R(X, 3))
+#define GPROJI_EXISTING_8(R, X) GPROJI_EXISTING_4(R, X)                                                              \
+    GPROJI_EXISTS(4, R(X, 4)) GPROJI_EXISTS(5, R(X, 5)) GPROJI_EXISTS(6, R(X, 6)) GPROJI_EXISTS(7, R(X, 7))
+#define GPROJI_FORWARD_4(R, P, S, E)                                                                                 \
+    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0)) GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1))       \
+    GPROJI_EXISTS(2, R(S, 2) P(E, 3, 2)) R(S, 3)
+#define GPROJI_FORWARD_8(R, P, S, E)                                                                                 \
+    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) P(E, 4, 0) P(E, 5, 0) P(E, 6, 0) P(E, 7, 0))           \
+    GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1) P(E, 4, 1) P(E, 5, 1) P(E, 6, 1) P(E, 7, 1))                      \
+    GPROJI_EXISTS(2, R(S, 2) P(E, 3, 2) P(E, 4, 2) P(E, 5, 2) P(E, 6, 2) P(E, 7, 2))                                 \
+    GPROJI_EXISTS(3, R(S, 3) P(E, 4, 3) P(E, 5, 3) P(E, 6, 3) P(E, 7, 3))                                            \
+    GPROJI_EXISTS(4, R(S, 4) P(E, 5, 4) P(E, 6, 4) P(E, 7, 4)) GPROJI_EXISTS(5, R(S, 5) P(E, 6, 5) P(E, 7, 5))       \
+    GPROJI_EXISTS(6, R(S, 6) P(E, 7, 6)) R(S, 7)
+#define GPROJI_BACKWARD_4(R, P, S, E)                                                                                \
+    GPROJI_EXISTS(3, R(S, 3) P(E, 2, 3) P(E, 1, 3) P(E, 0, 3)) GPROJI_EXISTS(2, R(S, 2) P(E, 1, 2) P(E, 0, 2))                         \
+    GPROJI_EXISTS(1, R(S, 1) P(E, 0, 1)) GPROJI_EXISTS(0, R(S, 0))
+#define GPROJI_BACKWARD_8(R, P, S, E)                                                                                \
+    R(S, 7) P(E, 6, 7) P(E, 5, 7) P(E, 4, 7) P(E, 3, 7) P(E, 2, 7) P(E, 1, 7) P(E, 0, 7)                             \
+    GPROJI_EXISTS(6, R(S, 6) P(E, 5, 6) P(E, 4, 6) P(E, 3, 6) P(E, 2, 6) P(E, 1, 6) P(E, 0, 6))                      \
+    GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                 \
+    GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
-#define GPROJI_TILE_DECLARE(r, j) gproji_lanes tile_##r##_##j = zero;
-#define GPROJI_TILE_LOAD_A(r, j) gproji_lanes a_##r = GPROJI_LOAD(a + (r) * GPROJI_LANES);
+#define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
+#define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
-#define GPROJI_TILE_PUT(r, j) GPROJI_STORE(c + (r) * GPROJI_LANES + (j) * ldc, tile_##r##_##j);
-#define GPROJI_TILE_ADD(r, j) tile_##r##_##j += GPROJI_LOAD(c + (r) * GPROJI_LANES + (j) * ldc);
-#define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[j];
-#define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + (j) * ldc];
+#define GPROJI_TILE_ADD(r, j) tile_##r##_##j += GPROJI_LOAD(c + (r) * LANES + ((j) - skip) * ldc);
+#define GPROJI_TILE_PUT(r, j) GPROJI_STORE(c + (r) * LANES + ((j) - skip) * ldc, tile_##r##_##j);
+#define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[(j) - skip];
+#define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + ((j) - skip) * ldc];
 
-/* For a tile of T vectors by B columns:
-   gproji_tile_update_T:  C = C - A B'; A has k columns and the tile's rows, B has k columns and B rows;
-   gproji_tile_solve_T:   C = (C - A B') L^-T, with the lower triangle L (stride ldc like C) and the inverses of its
-   diagonal. */
-#define GPROJI_DEFINE_TILE(T)                                                                                       \
-    GPROJI_KERNEL void gproji_tile_update_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,            \
-                                              ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                            \
-        const gproji_lanes zero = {0};                                                                              \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                        \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                    \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                  \
-            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                   \
-        }                                                                                                           \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                            \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                            \
-    }                                                                                                               \
-    GPROJI_KERNEL void gproji_tile_solve_##T(int32_t k, const double *a, ptrdiff_t lda, const double *b,             \
-                                             ptrdiff_t ldb, double *c, ptrdiff_t ldc, const double *triangle,       \
-                                             const double *inverse) {                                               \
-        const gproji_lanes zero = {0};                                                                              \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                        \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                    \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                  \
-            GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                   \
-        }                                                                                                           \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                            \
-        GPROJI_SUBSTITUTE(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)              \
-        GPROJI_COLUMNS(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                            \
+/* A tile of T vectors by B columns: see `update` and `solve`. */
+#define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                            \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,  \
+                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                   \
+        GPROJI_BEGIN(L)                                                                                              \
+        enum { skip = 0 };                                                                                           \
+        const lanes zero = {0};                                                                                      \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                     \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                     \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                   \
+            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                \
+        }                                                                                                            \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                         \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                         \
+    }                                                                                                                \
+    GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                              \
+        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,         \
+        const double *triangle, const double *inverse, int32_t skip) {                                               \
+        GPROJI_BEGIN(L)                                                                                              \
+        const lanes zero = {0};                                                                                      \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                     \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                     \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                   \
+            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                \
+        }                                                                                                            \
+        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                        \
+        GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)              \
+        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                        \
     }
 
-#if GPROJI_LANES >= 4
-GPROJI_DEFINE_TILE(1)
-GPROJI_DEFINE_TILE(2)
-GPROJI_DEFINE_TILE(3)
-#define GPROJI_TILE_SWITCH(name, arguments)   \
-    switch (blocks) {                         \
-    case 1: name##1 arguments; break;         \
-    case 2: name##2 arguments; break;         \
-    default: name##3 arguments; break;        \
+/* See `factor`. The pivots come from a chain as short as possible, 1 / pivot -> factor -> next pivot; the square roots
+   are beside it. */
+#define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                             \
+    GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) { \
+        GPROJI_BEGIN(L)                                                                                              \
+        double *column = tile, pivot = tile[skip];                                                                   \
+        int32_t j, k, r;                                                                                             \
+        for (j = skip; j < B; ++j, column += stride) {                                                               \
+            const double reciprocal = 1.0 / pivot, root = sqrt(pivot), scale = 1.0 / root;                           \
+            double *later = column + stride;                                                                         \
+            if (!(pivot > 0) || !gproji_is_finite(pivot)) return j - skip;                                           \
+            if (j + 1 < B) pivot = later[j + 1] - column[j + 1] * (column[j + 1] * reciprocal);                      \
+            for (k = j + 1; k < B; ++k, later += stride) {                                                           \
+                const double factor = column[k] * reciprocal;                                                        \
+                for (r = 0; r < B; r += LANES) {                                                                     \
+                    const lanes rest = GPROJI_LOAD(later + r) - GPROJI_LOAD(column + r) * factor;                    \
+                    GPROJI_STORE(later + r, rest);                                                                   \
+                }                                                                                                    \
+            }                                                                                                        \
+            for (r = 0; r < B; r += LANES) GPROJI_STORE(column + r, GPROJI_LOAD(column + r) * scale);                \
+            column[j] = root;                                                                                        \
+            inverse[j - skip] = scale;                                                                               \
+        }                                                                                                            \
+        return -1;                                                                                                   \
     }
-#elif GPROJI_TILE_BLOCKS == 2
-GPROJI_DEFINE_TILE(2)
-GPROJI_DEFINE_TILE(4)
-#define GPROJI_TILE_SWITCH(name, arguments) \
-    if (blocks == 1)                        \
-        name##2 arguments;                  \
-    else                                    \
-        name##4 arguments;
-#elif GPROJI_LANES == 2
-GPROJI_DEFINE_TILE(2)
-#define GPROJI_TILE_SWITCH(name, arguments) (void)blocks, name##2 arguments;
-#else
-GPROJI_DEFINE_TILE(4)
-#define GPROJI_TILE_SWITCH(name, arguments) (void)blocks, name##4 arguments;
+
+#define GPROJI_ONE_ROW(X, j) X(j)
+#define GPROJI_ONE_PAIR(X, i, j) X(i, j)
+#define GPROJI_Z_TAKE(j) double z_##j = z[j]; const double *l_##j = l + gproji_max((j) - skip, 0) * stride;
+#define GPROJI_Z_SCALE(j) z_##j *= inverse[(j) - skip]; z[j] = z_##j;
+#define GPROJI_Z_FORWARD(i, j) z_##i -= z_##j * l_##j[i];
+#define GPROJI_Z_BACKWARD(i, j) z_##i -= z_##j * l_##i[j];
+#define GPROJI_Z_SUM(j) lanes sum_##j = zero;
+#define GPROJI_Z_SPREAD(j) sum -= GPROJI_LOAD(l_##j + r) * z_##j;
+#define GPROJI_Z_GATHER(j) sum_##j += GPROJI_LOAD(l_##j + r) * right;
+#define GPROJI_Z_TOTAL_1(j) z_##j -= sum_##j;
+#define GPROJI_Z_TOTAL_2(j) z_##j -= sum_##j[0] + sum_##j[1];
+#define GPROJI_Z_TOTAL_4(j) z_##j -= (sum_##j[0] + sum_##j[2]) + (sum_##j[1] + sum_##j[3]);
+#define GPROJI_Z_TOTAL_8(j)                                                                                           \
+    z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                \
+             ((sum_##j[1] + sum_##j[5]) + (sum_##j[3] + sum_##j[7]));
+
+/* See `forward` and `backward`. A column that does not exist is the first one once more, times 0. */
+#define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                          \
+    GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                  \
+                                                   const double *inverse, int32_t skip, double *z) {                 \
+        GPROJI_BEGIN(L)                                                                                              \
+        int32_t r;                                                                                                   \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                            \
+        GPROJI_FORWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_FORWARD)                        \
+        for (r = B; r < rows; r += LANES) {                                                                          \
+            lanes sum = GPROJI_LOAD(z + r);                                                                          \
+            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SPREAD)                                                      \
+            GPROJI_STORE(z + r, sum);                                                                                \
+        }                                                                                                            \
+    }                                                                                                                \
+    GPROJI_KERNEL(kind) void gproji_backward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                 \
+                                                    const double *inverse, int32_t skip, double *z) {                \
+        GPROJI_BEGIN(L)                                                                                              \
+        const lanes zero = {0};                                                                                      \
+        int32_t r;                                                                                                   \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                            \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SUM)                                                             \
+        for (r = B; r < rows; r += LANES) {                                                                          \
+            const lanes right = GPROJI_LOAD(z + r);                                                                  \
+            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_GATHER)                                                      \
+        }                                                                                                            \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TOTAL_##L)                                                       \
+        GPROJI_BACKWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_BACKWARD)                      \
+    }
+
+/* Rows of tiles: the tallest ones, and what is left. */
+#define GPROJI_DEFINE_UPDATE_1(kind, B, T1)                                                                          \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
+                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
+        for (; rows > 0; rows -= B, a += B, c += B) gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);          \
+    }
+#define GPROJI_DEFINE_UPDATE_2(kind, B, T1, T2)                                                                      \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
+                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
+        for (; rows > B; rows -= 2 * B, a += 2 * B, c += 2 * B)                                                      \
+            gproji_update_##T2##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+        if (rows > 0) gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);                                        \
+    }
+#define GPROJI_DEFINE_UPDATE_3(kind, B, T1, T2, T3)                                                                  \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
+                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
+        for (; rows > 2 * B; rows -= 3 * B, a += 3 * B, c += 3 * B)                                                  \
+            gproji_update_##T3##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+        if (rows > B)                                                                                                \
+            gproji_update_##T2##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+        else if (rows > 0)                                                                                           \
+            gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+    }
+
+/* A kind with tiles of one, two or three heights: their vectors are T1, T2, T3. */
+#define GPROJI_DEFINE_KIND_1(kind, name, L, B, T1)                                                                   \
+    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
+    GPROJI_DEFINE_UPDATE_1(kind, B, T1)                                                                              \
+    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
+    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
+    static const gproji_kernels gproji_kernels_##kind = {                                                            \
+        name, B, 1, gproji_update_##kind, {gproji_solve_##T1##_##kind, NULL, NULL}, gproji_factor_##kind,            \
+        gproji_forward_##kind, gproji_backward_##kind};
+#define GPROJI_DEFINE_KIND_2(kind, name, L, B, T1, T2)                                                               \
+    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
+    GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
+    GPROJI_DEFINE_UPDATE_2(kind, B, T1, T2)                                                                          \
+    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
+    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
+    static const gproji_kernels gproji_kernels_##kind = {                                                            \
+        name, B, 2, gproji_update_##kind, {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, NULL},            \
+        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind};
+#define GPROJI_DEFINE_KIND_3(kind, name, L, B, T1, T2, T3)                                                           \
+    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
+    GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
+    GPROJI_DEFINE_TILE(kind, L, B, T3)                                                                               \
+    GPROJI_DEFINE_UPDATE_3(kind, B, T1, T2, T3)                                                                      \
+    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
+    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
+    static const gproji_kernels gproji_kernels_##kind = {                                                            \
+        name, B, 3, gproji_update_##kind,                                                                            \
+        {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, gproji_solve_##T3##_##kind},                        \
+        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind};
+
+#ifdef GPROJI_KIND_SCALAR
+GPROJI_DEFINE_KIND_1(scalar, "scalar", 1, 4, 4)
 #endif
-
-/* The tile kernels for 1..GPROJI_TILE_BLOCKS blocks of rows. */
-GPROJI_INLINE void gproji_tile_update(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
-                                      ptrdiff_t ldb, double *c, ptrdiff_t ldc) {
-    GPROJI_TILE_SWITCH(gproji_tile_update_, (k, a, lda, b, ldb, c, ldc))
-}
-
-GPROJI_INLINE void gproji_tile_solve(int32_t blocks, int32_t k, const double *a, ptrdiff_t lda, const double *b,
-                                     ptrdiff_t ldb, double *c, ptrdiff_t ldc, const double *triangle,
-                                     const double *inverse) {
-    GPROJI_TILE_SWITCH(gproji_tile_solve_, (k, a, lda, b, ldb, c, ldc, triangle, inverse))
-}
-
+#if defined(GPROJI_KIND_TWO) && defined(__aarch64__)
+GPROJI_DEFINE_KIND_2(two, "2 lanes", 2, 4, 2, 4)
+#elif defined(GPROJI_KIND_TWO)
+GPROJI_DEFINE_KIND_1(two, "2 lanes", 2, 4, 2)
+#endif
+#ifdef GPROJI_KIND_AVX2
+GPROJI_DEFINE_KIND_3(avx2, "AVX2", 4, 4, 1, 2, 3)
+#endif
+#ifdef GPROJI_KIND_AVX512
+GPROJI_DEFINE_KIND_3(avx512, "AVX-512", 8, 8, 1, 2, 3)
+#endif
 /* clang-format on */
 
-/* The number of empty rows before the pivots of a panel with w pivots. */
-GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) {
-    return (GPROJI_BLOCK - w % GPROJI_BLOCK) % GPROJI_BLOCK;
+/* The vector units of this processor whose registers the operating system keeps. */
+#ifdef GPROJI_KIND_AVX512
+typedef struct gproji_units {
+    bool avx2, avx512;
+} gproji_units;
+
+GPROJI_INTERNAL gproji_units gproji_find_units(void) {
+    gproji_units units = {false, false};
+    unsigned a, b, c, d, kept, high;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_OSXSAVE) || !(c & bit_FMA)) return units;
+    __asm__ __volatile__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
+    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d)) return units;
+    units.avx2 = (b & bit_AVX2) && (kept & 0x06) == 0x06;      /* xmm, ymm */
+    units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6; /* and masks, zmm */
+    return units;
 }
+#define GPROJI_HAVE_avx512 units.avx512
+#define GPROJI_HAVE_avx2 units.avx2
+#endif
+#define GPROJI_HAVE_two true
+#define GPROJI_HAVE_scalar true
+
+/* The kernels of kind `index` among those that this processor has, the best first; NULL where there are no more. */
+GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
+#ifdef GPROJI_KIND_AVX512
+    const gproji_units units = gproji_find_units();
+#endif
+#define GPROJI_X(kind) \
+    if (GPROJI_HAVE_##kind && index-- == 0) return &gproji_kernels_##kind;
+    GPROJI_KINDS(GPROJI_X)
+#undef GPROJI_X
+    return NULL;
+}
+
+/* ============================================================================================================
+   >>dense   Dense parts of the Cholesky factorisation: panels, update matrices. Uses platform, parallel, kernels.
+
+   All matrices are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
+   ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
+   a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
+   rows [t B, t B + B) with B = the kernels' block, which divides GPROJI_BLOCK, and its columns (the first block may have
+   fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every tile is whole and aligned:
+   what kernels compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is never read.
+
+   The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
+   is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
+enum {
+    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
+    GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+};
+
+/* The number of pieces of `size` that cover `all`; the next multiple of `size`. */
+GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
+GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return gproji_pieces(all, size) * size; }
+
+/* The number of empty rows before the pivots of a panel with w pivots. */
+GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
 /* A stride of at least `rows`: a multiple of B, and none that maps whole columns to the same few lines of a cache. */
 GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
-    int32_t stride = (rows + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
+    int32_t stride = gproji_round_up(rows, GPROJI_BLOCK);
     return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
-}
-
-/* Cholesky of a diagonal tile in place, count <= B columns; `tile` points at its first pivot. Writes the inverses of
-   the diagonal. Returns -1, or the first column whose pivot is not > 0 (also NaN; an infinite one counts as that). */
-GPROJI_INTERNAL int32_t gproji_tile_factor(int32_t count, double *tile, ptrdiff_t stride, double *inverse) {
-    int32_t i, j, k;
-    for (j = 0; j < count; ++j) {
-        double *column = tile + j * stride, pivot = column[j], scale;
-        if (!(pivot > 0) || !gproji_is_finite(pivot)) return j;
-        pivot = sqrt(pivot);
-        scale = 1.0 / pivot;
-        column[j] = pivot;
-        inverse[j] = scale;
-        for (i = j + 1; i < count; ++i) column[i] *= scale;
-        for (k = j + 1; k < count; ++k) {
-            double *later = tile + k * stride, factor = column[k];
-            for (i = k; i < count; ++i) later[i] -= column[i] * factor;
-        }
-    }
-    return -1;
-}
-
-/* The first column block, which may have fewer than B columns and has nothing before it: storage rows [B, rows) of its
-   `count` columns become X = C L^-T. `shift` is the storage row of the first pivot. */
-GPROJI_KERNEL void gproji_first_block_solve(int32_t rows, int32_t count, int32_t shift, double *panel, ptrdiff_t stride,
-                                            const double *inverse) {
-    int32_t r, i, j;
-    for (r = GPROJI_BLOCK; r < rows; r += GPROJI_LANES) {
-        double *x = panel + r;
-        for (j = 0; j < count; ++j) {
-            gproji_lanes sum = GPROJI_LOAD(x + j * stride);
-            for (i = 0; i < j; ++i) sum -= GPROJI_LOAD(x + i * stride) * panel[shift + j + i * stride];
-            sum *= inverse[j];
-            GPROJI_STORE(x + j * stride, sum);
-        }
-    }
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -2143,17 +2308,33 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of B; columns [first, last) are being
-   eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are ends of
-   column blocks (or 0). */
+/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of the kernels' block B; columns [first, last)
+   are being eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are
+   ends of column blocks (or 0). Where B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `shift` < B
+   empty rows stay. */
 typedef struct gproji_panel {
-    int32_t rows, w, shift;
+    const gproji_kernels *kernels;
+    int32_t w, shift, rows;
     int32_t first, last;
     int32_t stride;
+    int32_t update_rows; /* of the update matrix */
     double *values;
     double *inverse; /* w: inverses of the diagonal of L */
     double *update;  /* the update matrix */
 } gproji_panel;
+
+GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, int32_t stride,
+                                               double *values, double *inverse, double *update) {
+    gproji_panel panel;
+    int32_t block = kernels->block;
+    panel.kernels = kernels;
+    panel.w = w, panel.shift = gproji_round_up(w, block) - w;
+    panel.rows = panel.shift + w + gproji_round_up(below, block);
+    panel.first = panel.last = 0;
+    panel.stride = stride, panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
+    panel.values = values + gproji_panel_shift(w) - panel.shift, panel.inverse = inverse, panel.update = update;
+    return panel;
+}
 
 GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
     return panel->values + row + (ptrdiff_t)column * panel->stride;
@@ -2162,24 +2343,21 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
-    int32_t pivot_end = panel->w + panel->shift;
-    if (at < pivot_end) return gproji_panel_at(panel, 0, at - panel->shift);
-    return panel->update - pivot_end + gproji_update_offset(panel->rows - pivot_end, at - pivot_end);
+    int32_t shift = gproji_panel_shift(panel->w), pivot_end = panel->w + shift;
+    if (at < pivot_end) return gproji_panel_at(panel, panel->shift - shift, at - shift);
+    return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* A strip of C -= A B': `columns` columns (a multiple of B) whose diagonal begins at its corner, `rows` rows. A has k
-   columns and the strip's rows; B is the upper end of A. */
-GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t k, const double *a, ptrdiff_t lda,
-                                         double *c, ptrdiff_t ldc) {
-    const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
-    int32_t begin, column, row;
+/* A strip of C -= A B': `columns` columns (a multiple of the block) whose diagonal begins at its corner, `rows` rows. A
+   has k columns and the strip's rows; B is the upper end of A. */
+GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t rows, int32_t columns, int32_t k,
+                                         const double *a, ptrdiff_t lda, double *c, ptrdiff_t ldc) {
+    int32_t begin, column;
     for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
         int32_t end = gproji_min(rows, begin + GPROJI_ROW_BLOCK);
-        for (column = 0; column < gproji_min(columns, end); column += GPROJI_BLOCK) {
-            for (row = gproji_max(begin, column); row < end; row += tile) {
-                int32_t blocks = gproji_min(GPROJI_TILE_BLOCKS, (end - row) / GPROJI_BLOCK);
-                gproji_tile_update(blocks, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
-            }
+        for (column = 0; column < gproji_min(columns, end); column += kernels->block) {
+            int32_t row = gproji_max(begin, column);
+            kernels->update(end - row, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
         }
     }
 }
@@ -2188,12 +2366,12 @@ GPROJI_INTERNAL void gproji_strip_update(int32_t rows, int32_t columns, int32_t 
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
-    int32_t column = index * GPROJI_STRIP, rows = below - column, first, last;
-    double *strip = panel->update + gproji_update_offset(below, column) + column;
+    int32_t column = index * GPROJI_STRIP, rows = below - column, stride = panel->update_rows - column, first, last;
+    double *strip = panel->update + gproji_update_offset(panel->update_rows, column) + column;
     for (first = 0; first < panel->w; first = last) {
         last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
-        gproji_strip_update(rows, gproji_min(GPROJI_STRIP, rows), last - first,
-                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, rows);
+        gproji_strip_update(panel->kernels, rows, gproji_min(GPROJI_STRIP, rows), last - first,
+                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, stride);
     }
 }
 
@@ -2201,51 +2379,52 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
-    gproji_strip_update(panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column), panel->last - panel->first,
-                        gproji_panel_at(panel, row, panel->first), panel->stride, gproji_panel_at(panel, row, column),
-                        panel->stride);
+    gproji_strip_update(panel->kernels, panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column),
+                        panel->last - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
+                        gproji_panel_at(panel, row, column), panel->stride);
 }
 
-/* A chunk's columns in some of the rows below its pivots, tile by tile: X = (C - A B') L^-T. A task. */
+/* The column block with the first column `start` in `count` blocks of rows from `row` on: X = (C - A B') L^-T. */
+GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t count) {
+    int32_t skip = start == 0 ? panel->shift : 0, at = start == 0 ? 0 : start + panel->shift;
+    panel->kernels->solve[count - 1](start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
+                                     gproji_panel_at(panel, at, panel->first), panel->stride,
+                                     gproji_panel_at(panel, row, start), panel->stride,
+                                     gproji_panel_at(panel, at, start), panel->inverse + start, skip);
+}
+
+/* The first column of the block after the one that begins with column `start`. */
+GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
+    return start + panel->kernels->block - (start == 0 ? panel->shift : 0);
+}
+
+/* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
 GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
-    int32_t end = gproji_min(panel->rows, row + GPROJI_TASK_ROWS), blocks, start;
-    /* the first column block, where it is not whole, has been dealt with: see gproji_pivots_factor */
-    int32_t begin = panel->first == 0 && panel->shift > 0 ? GPROJI_BLOCK - panel->shift : panel->first;
-    for (; row < end; row += blocks * GPROJI_BLOCK) {
-        blocks = gproji_min(GPROJI_TILE_BLOCKS, (end - row) / GPROJI_BLOCK);
-        for (start = begin; start < panel->last; start += GPROJI_BLOCK) {
-            int32_t at = start + panel->shift;
-            gproji_tile_solve(blocks, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                              gproji_panel_at(panel, at, panel->first), panel->stride,
-                              gproji_panel_at(panel, row, start), panel->stride, gproji_panel_at(panel, at, start),
-                              panel->inverse + start);
-        }
+    int32_t block = panel->kernels->block, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
+    int32_t end = gproji_min(panel->rows, row + GPROJI_TASK_ROWS), count, start;
+    for (; row < end; row += count * block) {
+        count = gproji_min(panel->kernels->tile_blocks, (end - row) / block);
+        for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start))
+            gproji_block_solve(panel, start, row, count);
     }
 }
 
-/* The chunk's pivot rows, column block by column block; of a first column block that is not whole, all rows up to
-   `rows`. Returns -1 or the failing column. */
-GPROJI_INTERNAL int32_t gproji_pivots_factor(const gproji_panel *panel, int32_t rows) {
-    const int32_t tile = GPROJI_TILE_BLOCKS * GPROJI_BLOCK;
-    int32_t shift = panel->shift, pivot_end = panel->last + shift, stride = panel->stride, row, start, next, failed;
-    for (start = panel->first; start < panel->last; start = next) {
+/* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
+GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
+    const gproji_kernels *kernels = panel->kernels;
+    int32_t block = kernels->block, shift = panel->shift, end = panel->last + shift, stride = panel->stride;
+    int32_t start, row, count, failed;
+    for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
         int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
         const double *strip = gproji_panel_at(panel, at, panel->first);
-        double *corner = gproji_panel_at(panel, at, start), *inverse = panel->inverse + start;
-        next = at + GPROJI_BLOCK - shift;
-        if (k > 0) gproji_tile_update(1, k, strip, stride, strip, stride, corner, stride);
-        failed = gproji_tile_factor(next - start, gproji_panel_at(panel, start + shift, start), stride, inverse);
+        double *corner = gproji_panel_at(panel, at, start);
+        if (k > 0) kernels->update(block, k, strip, stride, strip, stride, corner, stride);
+        failed = kernels->factor(corner, stride, panel->inverse + start, start == 0 ? shift : 0);
         if (failed >= 0) return start + failed;
-        if (start == 0 && shift > 0) {
-            gproji_first_block_solve(rows, next, shift, panel->values, stride, inverse);
-            continue;
-        }
-        for (row = at + GPROJI_BLOCK; row < pivot_end; row += tile) {
-            int32_t blocks = gproji_min(GPROJI_TILE_BLOCKS, (pivot_end - row) / GPROJI_BLOCK);
-            gproji_tile_solve(blocks, k, gproji_panel_at(panel, row, panel->first), stride, strip, stride,
-                              gproji_panel_at(panel, row, start), stride, corner, inverse);
+        for (row = at + block; row < end; row += count * block) {
+            count = gproji_min(kernels->tile_blocks, (end - row) / block);
+            gproji_block_solve(panel, start, row, count);
         }
     }
     return -1;
@@ -2262,16 +2441,9 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
-/* The number of pieces of `size` that cover `all`. */
-GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
-
 #ifdef GPROJ_USE_CBLAS
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
-GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
-    return gproji_pivots_factor(panel, panel->last + panel->shift);
-}
-
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -2293,22 +2465,18 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end, first, next;
     (void)parallel;
     for (first = 0; first < below; first = next) {
-        double *strip = panel->update + gproji_update_offset(below, first) + first;
+        double *strip = panel->update + gproji_update_offset(panel->update_rows, first) + first;
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
-        int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows);
+        int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows), ldc = panel->update_rows - first;
         next = first + columns;
         cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 1.0, strip,
-                    rows);
+                    ldc);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->stride, l2, panel->stride, 1.0, strip + columns, rows);
+                        panel->stride, l2, panel->stride, 1.0, strip + columns, ldc);
     }
 }
 #else
-GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
-    return gproji_pivots_factor(panel, panel->rows);
-}
-
 /* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
@@ -2339,103 +2507,27 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     return -1;
 }
 
-/* z[from..to) -= the columns of L times x: the forward substitution below a column block. from, to: multiples of B. */
-GPROJI_KERNEL void gproji_columns_forward(int32_t from, int32_t to, int32_t count, const double *l, ptrdiff_t stride,
-                                          const double *x, double *z) {
-    int32_t j = 0, r;
-    for (; j + 4 <= count; j += 4, l += 4 * stride) {
-        const double x0 = x[j], x1 = x[j + 1], x2 = x[j + 2], x3 = x[j + 3];
-        for (r = from; r < to; r += GPROJI_LANES) {
-            const double *a = l + r;
-            gproji_lanes sum = GPROJI_LOAD(z + r);
-            sum -= GPROJI_LOAD(a) * x0;
-            sum -= GPROJI_LOAD(a + stride) * x1;
-            sum -= GPROJI_LOAD(a + 2 * stride) * x2;
-            sum -= GPROJI_LOAD(a + 3 * stride) * x3;
-            GPROJI_STORE(z + r, sum);
-        }
-    }
-    for (; j < count; ++j, l += stride) {
-        const double x0 = x[j];
-        for (r = from; r < to; r += GPROJI_LANES) {
-            gproji_lanes sum = GPROJI_LOAD(z + r);
-            sum -= GPROJI_LOAD(l + r) * x0;
-            GPROJI_STORE(z + r, sum);
-        }
-    }
-}
-
-/* The sum of a vector's lanes, always in the same order. */
-#if GPROJI_LANES == 1
-#define GPROJI_SUM_LANES(v) (v)
-#else
-#define GPROJI_SUM_LANES(v) gproji_sum_lanes(&(v))
-GPROJI_INLINE double gproji_sum_lanes(const gproji_lanes *v) {
-    double part[GPROJI_LANES], sum = 0;
-    int32_t i;
-    memcpy(part, v, sizeof part);
-    for (i = 0; i < GPROJI_LANES; ++i) sum += part[i];
-    return sum;
-}
-#endif
-
-/* x[j] -= the product of column j of L with z, rows from..to: the backward substitution of a column block. */
-GPROJI_KERNEL void gproji_columns_backward(int32_t from, int32_t to, int32_t count, const double *l, ptrdiff_t stride,
-                                           const double *z, double *x) {
-    const gproji_lanes zero = {0};
-    int32_t j = 0, r;
-    for (; j + 4 <= count; j += 4, l += 4 * stride) {
-        gproji_lanes s0 = zero, s1 = zero, s2 = zero, s3 = zero;
-        for (r = from; r < to; r += GPROJI_LANES) {
-            const double *a = l + r;
-            gproji_lanes right = GPROJI_LOAD(z + r);
-            s0 += GPROJI_LOAD(a) * right;
-            s1 += GPROJI_LOAD(a + stride) * right;
-            s2 += GPROJI_LOAD(a + 2 * stride) * right;
-            s3 += GPROJI_LOAD(a + 3 * stride) * right;
-        }
-        x[j] -= GPROJI_SUM_LANES(s0);
-        x[j + 1] -= GPROJI_SUM_LANES(s1);
-        x[j + 2] -= GPROJI_SUM_LANES(s2);
-        x[j + 3] -= GPROJI_SUM_LANES(s3);
-    }
-    for (; j < count; ++j, l += stride) {
-        gproji_lanes s0 = zero;
-        for (r = from; r < to; r += GPROJI_LANES) s0 += GPROJI_LOAD(l + r) * GPROJI_LOAD(z + r);
-        x[j] -= GPROJI_SUM_LANES(s0);
-    }
-}
-
 /* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
    what it takes from the rows below. */
-GPROJI_INTERNAL void gproji_panel_forward(int32_t rows, int32_t w, const double *panel, ptrdiff_t stride, double *z) {
-    int32_t shift = gproji_panel_shift(w), start, next, i, j;
-    for (start = 0; start < w; start = next) {
-        int32_t block_end = start + shift - (start ? 0 : shift) + GPROJI_BLOCK;
-        next = block_end - shift;
-        for (j = start; j < next; ++j) {
-            const double *column = panel + j * stride;
-            double value = z[j + shift] / column[j + shift];
-            z[j + shift] = value;
-            for (i = j + 1 + shift; i < block_end; ++i) z[i] -= column[i] * value;
-        }
-        gproji_columns_forward(block_end, rows, next - start, panel + start * stride, stride, z + start + shift, z);
+GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) {
+    int32_t start, shift = panel->shift;
+    z += gproji_panel_shift(panel->w) - shift;
+    for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
+        int32_t skip = start == 0 ? shift : 0, at = start == 0 ? 0 : start + shift;
+        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
+                                panel->inverse + start, skip, z + at);
     }
 }
 
 /* z = L^-T z on all storage rows of a panel, where the part below is known. */
-GPROJI_INTERNAL void gproji_panel_backward(int32_t rows, int32_t w, const double *panel, ptrdiff_t stride, double *z) {
-    int32_t shift = gproji_panel_shift(w), start, next, i, j;
-    for (next = w; next > 0; next = start) {
-        int32_t block_end = next + shift;
-        start = gproji_max(0, next - GPROJI_BLOCK);
-        gproji_columns_backward(block_end, rows, next - start, panel + start * stride, stride, z, z + start + shift);
-        for (j = next - 1; j >= start; --j) {
-            const double *column = panel + j * stride;
-            double value = z[j + shift];
-            for (i = j + 1 + shift; i < block_end; ++i) value -= column[i] * z[i];
-            z[j + shift] = value / column[j + shift];
-        }
+GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z) {
+    int32_t start, shift = panel->shift, block = panel->kernels->block, at = panel->w + shift - block;
+    z += gproji_panel_shift(panel->w) - shift;
+    for (; at >= 0; at -= block) {
+        int32_t skip = at == 0 ? shift : 0;
+        start = at == 0 ? 0 : at - shift;
+        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
+                                 panel->inverse + start, skip, z + at);
     }
 }
 
@@ -2906,7 +2998,6 @@ typedef struct gproji_symbolic {
     int64_t side_size;   /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
-    int32_t most_width;
     double flops;
 } gproji_symbolic;
 
@@ -3300,7 +3391,6 @@ GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
         out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, front->stride);
-        out->most_width = gproji_max(out->most_width, front->width);
     }
 }
 
@@ -3511,6 +3601,7 @@ struct gproj_cholesky {
     int32_t failed_column;
     gproji_pool kept;    /* what the analysis has made */
     gproji_pool numeric; /* what factorisation and solution need */
+    const gproji_kernels *kernels;
     gproji_symbolic symbolic;
     int32_t *permutation; /* columns: the column of A at each column of L */
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
@@ -3527,7 +3618,7 @@ struct gproj_cholesky {
 
     double *values;   /* symbolic.values_size: all panels */
     double *work;     /* symbolic.work_size: all update matrices */
-    double *inverse;  /* (tasks + 1) * most_width: inverses of pivots, for each group of fronts */
+    double *inverse;  /* columns: the inverses of the diagonal of L */
     int32_t *runs;    /* see gproji_find_runs, for each group of fronts */
     int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
     double *solution; /* columns * batch: right-hand sides in the order of L */
@@ -3555,6 +3646,7 @@ GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
     gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c);
     if (!c) return NULL;
     if (host) c->parallel = host->parallel;
+    c->kernels = gproji_kernels_of(0);
     gproji_error_clear(&c->error);
     gproji_pool_start(&c->kept, &c->own);
     gproji_pool_start(&c->numeric, &c->own);
@@ -3602,8 +3694,8 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.exact_entries = sy->exact_entries;
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
-    work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) +
-           (sy->tasks + 1.0) * ((double)sy->most_width + sy->most_rows) + 0.5 * (double)sy->runs_start[sy->tasks + 1];
+    work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
+           (sy->tasks + 1.0) * sy->most_rows + 0.5 * (double)sy->runs_start[sy->tasks + 1];
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -3951,7 +4043,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     int64_t groups = (int64_t)sy->tasks + 1;
     if (c->values) return true;
     c->work = gproji_take_aligned(&c->numeric, sy->work_size);
-    c->inverse = gproji_take_aligned(&c->numeric, groups * sy->most_width);
+    c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
@@ -3965,23 +4057,10 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     return false;
 }
 
-#if GPROJI_LANES == 8
-typedef double gproji_four_at __attribute__((vector_size(32), aligned(8), may_alias));
-#endif
-
 /* d += s */
 GPROJI_INLINE void gproji_add_run(int32_t count, const double *s, double *d) {
-    int32_t i = 0;
-#if GPROJI_LANES > 1
-    for (; i + GPROJI_LANES <= count; i += GPROJI_LANES) GPROJI_STORE(d + i, GPROJI_LOAD(d + i) + GPROJI_LOAD(s + i));
-#endif
-#if GPROJI_LANES == 8 /* runs are short: the rest, too, in few steps */
-    if (i + 4 <= count) {
-        *(gproji_four_at *)(void *)(d + i) += *(const gproji_four_at *)(const void *)(s + i);
-        i += 4;
-    }
-#endif
-    for (; i < count; ++i) d[i] += s[i];
+    int32_t i;
+    for (i = 0; i < count; ++i) d[i] += s[i];
 }
 
 /* The runs of a front's update matrix in its parent's panel: the count[k] rows of the matrix from from[k] on meet the
@@ -4024,7 +4103,7 @@ typedef struct gproji_addition {
 } gproji_addition;
 
 /* Adds strip `index` of the child's matrix. Different columns go to different columns. A task. */
-GPROJI_KERNEL void gproji_add_task(void *data, int32_t index) {
+GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
     const int32_t *from = add->from, *to = add->to, *count = add->count;
     int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k, j;
@@ -4038,7 +4117,7 @@ GPROJI_KERNEL void gproji_add_task(void *data, int32_t index) {
 /* Adds the children's update matrices to a front. */
 GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
                                          const gproj_parallel *parallel, int32_t *runs) {
-    int32_t pivot_end = panel->w + panel->shift, i;
+    int32_t pivot_end = front->width + gproji_panel_shift(front->width), i;
     for (i = front->child; i >= 0; i = c->symbolic.front[i].sibling) {
         const gproji_front *child = &c->symbolic.front[i];
         gproji_addition add;
@@ -4058,16 +4137,18 @@ GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_pan
     for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) c->values[c->target[r]] += c->source[c->entry[r]];
 }
 
+GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
+    return gproji_make_panel(c->kernels, front->width, front->below, front->stride, c->values + front->panel,
+                             c->inverse + front->first, c->work + front->update);
+}
+
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
-                                            double *inverse, int32_t *runs) {
+                                            int32_t *runs) {
     const gproji_front *front = &c->symbolic.front[f];
-    gproji_panel panel;
+    gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    panel.w = front->width, panel.shift = gproji_panel_shift(front->width);
-    panel.rows = panel.shift + panel.w + front->update_rows, panel.stride = front->stride;
-    panel.values = c->values + front->panel, panel.inverse = inverse, panel.update = c->work + front->update;
-    memset(panel.values, 0, (size_t)panel.w * (size_t)panel.stride * sizeof(double));
+    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
     gproji_add_children(c, front, &panel, parallel, runs);
@@ -4099,35 +4180,39 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
     }
 }
 
-/* Sets the storage rows of z to 0, and its pivot rows to the front's part of x. Returns their number. */
-GPROJI_INTERNAL int32_t gproji_start_rows(const gproji_front *front, const double *x, double *z) {
-    int32_t shift = gproji_panel_shift(front->width), rows = shift + front->width + front->update_rows;
-    memset(z, 0, (size_t)rows * sizeof(double));
+/* Sets the storage rows of z to 0, and its pivot rows to the front's part of x. */
+GPROJI_INTERNAL void gproji_start_rows(const gproji_front *front, const double *x, double *z) {
+    int32_t shift = gproji_panel_shift(front->width);
+    memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
     memcpy(z + shift, x + front->first, (size_t)front->width * sizeof(double));
-    return rows;
 }
 
 /* One front of L y = b; z: work. */
 GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
-    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns;
-    int32_t shift = gproji_panel_shift(front->width), rows = gproji_start_rows(front, x, z);
+    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns, *pivots;
+    gproji_panel panel = gproji_front_panel(c, front);
+    pivots = z + gproji_panel_shift(front->width);
+    gproji_start_rows(front, x, z);
     gproji_add_sides(c, front, side, z);
-    gproji_panel_forward(rows, front->width, c->values + front->panel, front->stride, z);
-    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
-    memcpy(gproji_front_side(c, front, side), z + shift + front->width, (size_t)front->below * sizeof(double));
+    gproji_panel_forward(&panel, z);
+    memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
+    memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof(double));
 }
 
 /* One front of L' x = y. */
 GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
                                            double *z) {
     const gproji_symbolic *sy = &c->symbolic;
-    double *x = c->solution + (size_t)side * (size_t)sy->columns, *to;
-    int32_t shift = gproji_panel_shift(front->width), rows = gproji_start_rows(front, x, z), i, k;
+    double *x = c->solution + (size_t)side * (size_t)sy->columns, *pivots, *to;
     const int32_t *node = sy->row_node + front->rows;
-    for (k = 0, to = z + shift + front->width; k < front->row_nodes; ++k)
+    int32_t i, k;
+    gproji_panel panel = gproji_front_panel(c, front);
+    pivots = z + gproji_panel_shift(front->width);
+    gproji_start_rows(front, x, z);
+    for (k = 0, to = pivots + front->width; k < front->row_nodes; ++k)
         for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
-    gproji_panel_backward(rows, front->width, c->values + front->panel, front->stride, z);
-    memcpy(x + front->first, z + shift, (size_t)front->width * sizeof(double));
+    gproji_panel_backward(&panel, z);
+    memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
 }
 
 /* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
@@ -4184,13 +4269,12 @@ GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t coun
 GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    double *inverse = c->inverse + (size_t)group * (size_t)sy->most_width;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
     int32_t *runs = c->runs + sy->runs_start[group];
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
-        failed = gproji_factor_front(c, sy->schedule[k], parallel, inverse, runs);
+        failed = gproji_factor_front(c, sy->schedule[k], parallel, runs);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
     }

@@ -28,24 +28,14 @@ static void naive_partial(int32_t n, int32_t w, double *a) {
 #undef A
 }
 
-static int32_t round_up(int32_t rows) { return (rows + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK; }
-
 /* Storage row of row i of a panel with w pivots. */
 static int32_t storage(int32_t w, int32_t i) { return i + gproji_panel_shift(w); }
 
-static gproji_panel panel_of(int32_t rows, int32_t w, double *values, int32_t stride, double *inverse, double *update) {
-    gproji_panel panel;
-    memset(&panel, 0, sizeof panel);
-    panel.rows = rows, panel.w = w, panel.shift = gproji_panel_shift(w), panel.stride = stride;
-    panel.values = values, panel.inverse = inverse, panel.update = update;
-    return panel;
-}
-
 /* Factors a panel with w pivots and u rows below, forms the update matrix, solves with it: all against the loops. */
-static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
-    int32_t n = w + u, rows = storage(w, w) + round_up(u), i, j;
+static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u, uint64_t *seed) {
+    int32_t n = w + u, update_rows = gproji_round_up(u, GPROJI_BLOCK), rows = storage(w, w) + update_rows, i, j;
     int32_t stride = gproji_stride(rows);
-    size_t panel_size = (size_t)stride * (size_t)w, update_size = (size_t)gproji_update_entries(round_up(u)) + 1;
+    size_t panel_size = (size_t)stride * (size_t)w, update_size = (size_t)gproji_update_entries(update_rows) + 1;
     double *a = (double *)malloc((size_t)n * (size_t)n * sizeof(double));
     double *panel = (double *)calloc(panel_size, sizeof(double)),
            *inverse = (double *)malloc((size_t)w * sizeof(double));
@@ -58,7 +48,7 @@ static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
         for (i = j; i < n; ++i) panel[at(storage(w, i), j, stride)] = a[at(i, j, n)];
     for (i = 0; i < (int32_t)update_size; ++i) update[i] = 0.25; /* what is there before the product */
     naive_partial(n, w, a);
-    job = panel_of(rows, w, panel, stride, inverse, update);
+    job = gproji_make_panel(kernels, w, u, stride, panel, inverse, update);
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
     for (j = 0; j < w; ++j) {
         for (i = j; i < n; ++i) error = fmax(error, fabs(panel[at(storage(w, i), j, stride)] - a[at(i, j, n)]));
@@ -72,14 +62,14 @@ static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
                 double sum = 0.25;
                 int32_t k;
                 for (k = 0; k < w; ++k) sum -= a[at(w + i, k, n)] * a[at(w + j, k, n)];
-                error = fmax(error, fabs(sum - update[gproji_update_offset(round_up(u), j) + i]));
+                error = fmax(error, fabs(sum - update[gproji_update_offset(update_rows, j) + i]));
             }
     }
     GPROJT_CHECK(u == 0 || update[update_size - 1] == 7.0);
     /* forward: [L1; L2] y = b on the pivots, b2 - L2 y below */
     for (i = 0; i < n; ++i) b[i] = 2.0 * gprojt_uniform(seed) - 1.0;
     for (i = 0; i < w; ++i) z[storage(w, i)] = b[i];
-    gproji_panel_forward(rows, w, panel, stride, z);
+    gproji_panel_forward(&job, z);
     for (j = 0; j < w; ++j) {
         b[j] /= a[at(j, j, n)];
         for (i = j + 1; i < w; ++i) b[i] -= a[at(i, j, n)] * b[j];
@@ -92,15 +82,24 @@ static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
     }
     /* backward: L1' x = y - L2' x2 */
     for (i = w; i < n; ++i) z[storage(w, i)] = b[i];
-    gproji_panel_backward(rows, w, panel, stride, z);
+    gproji_panel_backward(&job, z);
     for (j = w - 1; j >= 0; --j) {
         for (i = j + 1; i < n; ++i) b[j] -= a[at(i, j, n)] * b[i];
         b[j] /= a[at(j, j, n)];
         error = fmax(error, fabs(b[j] - z[storage(w, j)]));
     }
-    if (!(error <= bound)) printf("  w = %d, u = %d: error %g\n", (int)w, (int)u, error);
+    if (!(error <= bound)) printf("  %s, w = %d, u = %d: error %g\n", kernels->name, (int)w, (int)u, error);
     GPROJT_CHECK(error <= bound);
     free(a), free(panel), free(inverse), free(update), free(z), free(b);
+}
+
+/* The kernels of this processor, one kind after the other. */
+#define FOR_ALL_KERNELS for (kind = 0; (kernels = gproji_kernels_of(kind)) != NULL; ++kind)
+
+static void check_panel(int32_t w, int32_t u, uint64_t *seed) {
+    const gproji_kernels *kernels;
+    int32_t kind;
+    FOR_ALL_KERNELS check_panel_with(kernels, w, u, seed);
 }
 
 GPROJT_TEST(dense_panels) {
@@ -122,61 +121,72 @@ GPROJT_TEST(dense_failing_pivots) {
         STRIDE = 200
     };
     double *panel = (double *)malloc(sizeof(double) * W * STRIDE), inverse[W];
-    int32_t w = W, column, i, kind;
-    for (column = 0; column < w; column += 7)
-        for (kind = 0; kind < 4; ++kind) {
-            int32_t shift = gproji_panel_shift(w);
-            gproji_panel job;
-            memset(panel, 0, sizeof(double) * W * STRIDE);
-            for (i = 0; i < w; ++i) panel[at(i + shift, i, STRIDE)] = i == column ? bad[kind] : 4.0;
-            job = panel_of(w + shift, w, panel, STRIDE, inverse, NULL);
-            GPROJT_CHECK(gproji_panel_factor(NULL, &job) == column);
-        }
+    const gproji_kernels *kernels;
+    int32_t column, i, kind, b;
+    FOR_ALL_KERNELS for (column = 0; column < W; column += 7) for (b = 0; b < 4; ++b) {
+        gproji_panel job = gproji_make_panel(kernels, W, 0, STRIDE, panel, inverse, NULL);
+        memset(panel, 0, sizeof(double) * W * STRIDE);
+        for (i = 0; i < W; ++i) panel[at(storage(W, i), i, STRIDE)] = i == column ? bad[b] : 4.0;
+        GPROJT_CHECK(gproji_panel_factor(NULL, &job) == column);
+    }
     free(panel);
 }
 
-/* One tile: C = [C] - A B', and C = (C - A B') L^-T, for every height and depth. */
-GPROJT_TEST(dense_tiles) {
+/* C -= A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing columns. */
+static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
     enum {
-        MOST = GPROJI_TILE_BLOCKS * GPROJI_BLOCK,
+        MOST = 64,
         DEEP = 20,
-        B = GPROJI_BLOCK
+        WIDE = 8
     };
-    static double a[MOST * DEEP], b[B * DEEP], c[MOST * B], was[MOST * B], triangle[MOST * B];
-    double inverse[B];
-    int32_t blocks, k, i, j, t, mode;
-    uint64_t seed = 2;
-    for (blocks = 1; blocks <= GPROJI_TILE_BLOCKS; ++blocks)
+    static double a[MOST * DEEP], b[WIDE * DEEP], c[MOST * WIDE], was[MOST * WIDE], triangle[MOST * WIDE];
+    const int32_t B = kernels->block;
+    double inverse[WIDE];
+    int32_t blocks, k, i, j, t, skip; /* skip < 0: an update */
+    for (blocks = 1; blocks <= MOST / B; ++blocks)
         for (k = 0; k <= DEEP; ++k)
-            for (mode = 0; mode < 2; ++mode) {
-                int32_t rows = blocks * B;
+            for (skip = -1; skip < (k == 0 ? B : 1); ++skip) {
+                int32_t rows = blocks * B, columns = B - gproji_max(skip, 0), first = B - columns;
                 double error = 0;
-                for (i = 0; i < MOST * DEEP; ++i) a[i] = gprojt_uniform(&seed);
-                for (i = 0; i < B * DEEP; ++i) b[i] = gprojt_uniform(&seed);
-                for (i = 0; i < MOST * B; ++i)
-                    c[i] = was[i] = gprojt_uniform(&seed), triangle[i] = gprojt_uniform(&seed);
-                for (j = 0; j < B; ++j) triangle[j + j * MOST] += 1.0, inverse[j] = 1.0 / triangle[j + j * MOST];
-                if (mode == 0)
-                    gproji_tile_update(blocks, k, a, MOST, b, B, c, MOST);
+                if (skip >= 0 && blocks > kernels->tile_blocks) continue;
+                for (i = 0; i < MOST * DEEP; ++i) a[i] = gprojt_uniform(seed);
+                for (i = 0; i < WIDE * DEEP; ++i) b[i] = gprojt_uniform(seed);
+                for (i = 0; i < MOST * WIDE; ++i)
+                    c[i] = was[i] = gprojt_uniform(seed), triangle[i] = gprojt_uniform(seed);
+                for (j = 0; j < columns; ++j) triangle[at(first + j, j, MOST)] += 1.0;
+                for (j = 0; j < columns; ++j) inverse[j] = 1.0 / triangle[at(first + j, j, MOST)];
+                if (skip < 0)
+                    kernels->update(rows, k, a, MOST, b, WIDE, c, MOST);
                 else
-                    gproji_tile_solve(blocks, k, a, MOST, b, B, c, MOST, triangle, inverse);
+                    kernels->solve[blocks - 1](k, a, MOST, b, WIDE, c, MOST, triangle, inverse, skip);
                 for (i = 0; i < MOST; ++i)
-                    for (j = 0; j < B; ++j) {
-                        double sum = was[i + j * MOST];
-                        if (i >= rows) { /* no row of the tile: nothing is written there */
-                            GPROJT_CHECK(c[i + j * MOST] == was[i + j * MOST]);
+                    for (j = 0; j < WIDE; ++j) {
+                        double sum = was[at(i, j, MOST)];
+                        if (i >= rows || j >= columns) { /* not in the tile: nothing is written there */
+                            GPROJT_CHECK(c[at(i, j, MOST)] == sum);
                             continue;
                         }
-                        for (t = 0; t < k; ++t) sum -= a[i + t * MOST] * b[j + t * B];
-                        if (mode == 1) {
-                            for (t = 0; t < j; ++t) sum -= was[i + t * MOST] * triangle[j + t * MOST];
+                        for (t = 0; t < k; ++t) sum -= a[at(i, t, MOST)] * b[at(j, t, WIDE)];
+                        if (skip >= 0) {
+                            for (t = 0; t < j; ++t) sum -= was[at(i, t, MOST)] * triangle[at(first + j, t, MOST)];
                             sum *= inverse[j];
                         }
-                        was[i + j * MOST] = sum;
-                        error = fmax(error, fabs(sum - c[i + j * MOST]));
+                        was[at(i, j, MOST)] = sum;
+                        error = fmax(error, fabs(sum - c[at(i, j, MOST)]));
                     }
                 GPROJT_CHECK(error < 1e-11);
             }
+}
+
+GPROJT_TEST(dense_tiles) {
+    const gproji_kernels *kernels;
+    uint64_t seed = 2;
+    int32_t kind;
+    FOR_ALL_KERNELS {
+        printf("  kernels: %s\n", kernels->name);
+        check_tiles(kernels, &seed);
+    }
+    GPROJT_CHECK(kind > 0);
 }
 
 GPROJT_TEST(dense_strides) {
