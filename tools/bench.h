@@ -54,11 +54,11 @@ typedef struct bench_rows {
 typedef struct bench_facts {
     int32_t vertices, unknowns;
     double entries;       /* of L, without padding */
-    double flops;         /* of one factorisation, sum of squared column counts */
-    double rows_seconds;  /* making a form and adding its rows; CHOLMOD: pattern and places */
-    double setup_seconds; /* all that comes before the first iteration, rows included */
-    double rows_bytes;    /* the rows alone */
-    double peak_bytes;
+    double flops;         /* of one factorisation: the sum of squared column counts */
+    double part_seconds;  /* of set-up: ours, making a form and its rows; CHOLMOD's, pattern and places */
+    double setup_seconds; /* all that comes before the first iteration, but for the mesh; CHOLMOD's without the rows */
+    double rows_bytes;    /* the rows alone: ours as quadratic equations, CHOLMOD's linearised */
+    double peak_bytes;    /* ours with rows, CHOLMOD's without */
 } bench_facts;
 
 /* After an iteration of ours: its times, and the step that it took. */
@@ -75,9 +75,10 @@ typedef bool (*bench_visit)(void *user, const bench_step *step);
 typedef struct bench_form bench_form;
 
 /* One build of our solver. `create` makes a mesh, a form and its rows; `solve` goes back to where it began and takes
-   steps; `rows`, in a visit: the rows from which the next step will come (the arrays are made at the first call). */
+   steps, or none, which is set-up only; `rows`, in a visit: the rows from which the next step will come (the arrays are
+   made at the first call). `load` reads a mesh from a file. */
 typedef struct bench_solver {
-    const char *name;
+    bool (*load)(const char *path, bench_mesh *mesh);
     bench_form *(*create)(const bench_mesh *mesh, bench_task task, int32_t workers);
     void (*destroy)(bench_form *form);
     bool (*solve)(bench_form *form, int32_t iterations, bench_visit visit, void *user);
@@ -87,9 +88,6 @@ typedef struct bench_solver {
 
 extern const bench_solver bench_simd, bench_cblas, bench_scalar;
 
-/* A polygon mesh of a file; false where there is none. */
-bool bench_load(const char *path, bench_mesh *mesh);
-
 typedef struct bench_cholmod bench_cholmod;
 
 /* Pattern and analysis; NULL where there is no memory. */
@@ -97,11 +95,19 @@ bench_cholmod *bench_cholmod_create(const bench_rows *rows);
 void bench_cholmod_destroy(bench_cholmod *c);
 /* One step: assembly, factorisation, solution. dx: rows->variables numbers. */
 bool bench_cholmod_step(bench_cholmod *c, const bench_rows *rows, double seconds[BENCH_PHASES], double *dx);
+/* Iterative refinement of a solution, one round with longer residuals: what dx should have been. */
+bool bench_cholmod_refine(bench_cholmod *c, const bench_rows *rows, double *dx);
 bench_facts bench_cholmod_facts(const bench_cholmod *c);
 
-/* The machine and the libraries in a few lines; `peak`: dgemm's best rate in flops a second. */
-void bench_describe(FILE *file, double peak);
+/* dgemm's best rate over several sizes, in flops a second. */
 double bench_dgemm_peak(void);
+
+/* What runs here. */
+typedef struct bench_machine {
+    char processor[128], compiler[64], cholmod[32], openblas[128], kernels[32];
+    double peak; /* bench_dgemm_peak */
+} bench_machine;
+bench_machine bench_this_machine(void);
 
 static inline double bench_now(void) {
     struct timespec t;

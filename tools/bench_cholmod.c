@@ -5,7 +5,6 @@
 
 extern char *openblas_get_config(void);
 extern char *openblas_get_corename(void);
-extern void openblas_set_num_threads(int count);
 
 struct bench_cholmod {
     cholmod_common common;
@@ -201,13 +200,33 @@ bool bench_cholmod_step(bench_cholmod *c, const bench_rows *rows, double seconds
     return true;
 }
 
+bool bench_cholmod_refine(bench_cholmod *c, const bench_rows *rows, double *dx) {
+    int32_t n = rows->variables, r, j;
+    long double *residual = (long double *)bench_take((size_t)n, sizeof *residual);
+    int64_t l;
+    bool solved;
+    for (j = 0; j < n; ++j) residual[j] = -(long double)BENCH_EPSILON * BENCH_EPSILON * dx[j];
+    for (r = 0; r < rows->rows; ++r) { /* - w^2 (phi + g'dx) g */
+        long double pull = rows->phi[r];
+        for (l = rows->start[r]; l < rows->start[r + 1]; ++l)
+            pull += (long double)rows->gradient[l] * dx[rows->variable[l]];
+        pull *= rows->weight2[r];
+        for (l = rows->start[r]; l < rows->start[r + 1]; ++l) residual[rows->variable[l]] -= pull * rows->gradient[l];
+    }
+    for (j = 0; j < n; ++j) ((double *)c->b->x)[j] = (double)residual[j];
+    free(residual);
+    solved = cholmod_solve2(CHOLMOD_A, c->factor, c->b, NULL, &c->x, NULL, &c->y, &c->e, &c->common);
+    for (j = 0; solved && j < n; ++j) dx[j] += ((const double *)c->x->x)[j];
+    return solved;
+}
+
 bench_facts bench_cholmod_facts(const bench_cholmod *c) {
     bench_facts facts;
     memset(&facts, 0, sizeof facts);
     facts.unknowns = (int32_t)c->matrix.ncol;
     facts.entries = c->common.lnz;
     facts.flops = c->common.fl;
-    facts.rows_seconds = c->pattern_seconds;
+    facts.part_seconds = c->pattern_seconds;
     facts.setup_seconds = c->setup_seconds;
     facts.rows_bytes = c->rows_bytes;
     facts.peak_bytes = (double)c->common.memory_usage + c->pattern_bytes;
@@ -218,16 +237,18 @@ bench_facts bench_cholmod_facts(const bench_cholmod *c) {
 
 double bench_dgemm_peak(void) {
     static const int sizes[] = {256, 384, 512, 768, 1024};
-    double best = 0;
-    double *a = (double *)bench_take(3 * 1024 * 1024, sizeof *a);
+    enum {
+        LARGEST = 1024 * 1024
+    };
+    double best = 0, *a = (double *)bench_take(3 * LARGEST, sizeof *a);
     int s, run, i;
-    for (i = 0; i < 2 * 1024 * 1024; ++i) a[i] = 1.0 / (1 + i % 17);
+    for (i = 0; i < 2 * LARGEST; ++i) a[i] = 1.0 / (1 + i % 17);
     for (s = 0; s < 5; ++s) {
         int n = sizes[s], runs = n < 512 ? 12 : 5;
         for (run = 0; run < runs; ++run) {
             double began = bench_now(), rate;
-            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, n, n, n, 1, a, n, a + 1024 * 1024, n, 0,
-                        a + 2 * 1024 * 1024, n);
+            cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, n, n, n, 1, a, n, a + LARGEST, n, 0, a + 2 * LARGEST,
+                        n);
             rate = 2.0 * n * n * n / (bench_now() - began);
             if (rate > best) best = rate;
         }
@@ -244,18 +265,26 @@ static void bench_processor(char *name, size_t size) {
     while (file && fgets(line, sizeof line, file)) {
         if (strncmp(line, "model name", 10) != 0 || !(colon = strchr(line, ':'))) continue;
         colon[strcspn(colon, "\n")] = 0;
-        snprintf(name, size, "%s", colon + 2);
+        snprintf(name, size, "%.*s", (int)size - 1, colon + 2);
         break;
     }
     if (file) fclose(file);
 }
 
-void bench_describe(FILE *file, double peak) {
-    char name[256];
+bench_machine bench_this_machine(void) {
+    bench_machine machine;
     int version[3];
+    memset(&machine, 0, sizeof machine);
     cholmod_version(version);
-    bench_processor(name, sizeof name);
-    fprintf(file, "%s, compiler %s\n", name, __VERSION__);
-    fprintf(file, "CHOLMOD %d.%d.%d, supernodal, AMD; %s; kernels %s, dgemm %.1f GFlop/s, one thread\n", version[0],
-            version[1], version[2], openblas_get_config(), openblas_get_corename(), 1e-9 * peak);
+    bench_processor(machine.processor, sizeof machine.processor);
+#ifdef __clang__
+    snprintf(machine.compiler, sizeof machine.compiler, "clang %d.%d", __clang_major__, __clang_minor__);
+#else
+    snprintf(machine.compiler, sizeof machine.compiler, "gcc %d.%d", __GNUC__, __GNUC_MINOR__);
+#endif
+    snprintf(machine.cholmod, sizeof machine.cholmod, "%d.%d.%d", version[0], version[1], version[2]);
+    snprintf(machine.openblas, sizeof machine.openblas, "%s", openblas_get_config());
+    snprintf(machine.kernels, sizeof machine.kernels, "%s", openblas_get_corename());
+    machine.peak = bench_dgemm_peak();
+    return machine;
 }
