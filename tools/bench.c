@@ -98,6 +98,7 @@ typedef struct bench_run {
     bool apart;     /* ours is measured alone, CHOLMOD after a step that warms the caches */
     bool failed;    /* there is no CHOLMOD, or it failed: no memory */
     bool expecting; /* `next` is the step to come */
+    bool compared;  /* a whole solve: all others have the same steps */
     int32_t iterations;
     bench_rows rows;
     bench_cholmod *cholmod;
@@ -150,6 +151,7 @@ static bool bench_foresee(bench_run *run) {
     if (run->apart && !bench_cholmod_step(run->cholmod, &run->rows, seconds, run->step)) return false;
     if (!bench_cholmod_step(run->cholmod, &run->rows, seconds, run->step)) return false;
     bench_add_sample(&run->theirs, seconds);
+    if (run->compared) return true;
     memcpy(run->next, run->step, (size_t)run->rows.variables * sizeof *run->next);
     run->expecting = bench_cholmod_refine(run->cholmod, &run->rows, run->next);
     return run->expecting;
@@ -167,13 +169,14 @@ static bool bench_visit_step(void *user, const bench_step *step) {
 /* Solves until there are enough samples, and longer where they take no time. False where nothing can be sampled. */
 static bool bench_solves(bench_run *run, bool alone, int samples, double seconds) {
     bench_samples *wanted = alone ? &run->ours : &run->theirs;
-    double began = bench_now();
+    double began = bench_wall();
     while (wanted->count < samples ||
-           (bench_now() - began < seconds && wanted->count + BENCH_ITERATIONS <= BENCH_SAMPLES_MAX)) {
+           (bench_wall() - began < seconds && wanted->count + BENCH_ITERATIONS <= BENCH_SAMPLES_MAX)) {
         int before = wanted->count;
         run->alone = alone;
         if (!run->solver->solve(run->form, run->iterations, bench_visit_step, run)) return false;
         run->expecting = false;
+        run->compared = run->compared || !alone;
         if (run->failed || wanted->count == before) return false;
     }
     return true;
@@ -181,7 +184,7 @@ static bool bench_solves(bench_run *run, bool alone, int samples, double seconds
 
 /* Rounds of ours alone and of CHOLMOD, so that a slow spell of the machine falls on both. */
 static bool bench_both(bench_run *run, int samples, double seconds) {
-    int rounds = run->apart ? 3 : 1, i;
+    int rounds = run->apart ? 2 : 1, i;
     for (i = 1; i <= rounds; ++i) {
         int share = (samples * i + rounds - 1) / rounds;
         if (run->apart && !bench_solves(run, true, share, seconds / rounds)) return false;
@@ -247,11 +250,11 @@ static bool bench_measure_both(const bench_mesh *mesh, bench_task task, const be
     bool measured = false;
     double set_up = 0;
     run->set_ups = mesh->vertex_count <= 15000 && !options->quick ? 9 : 3;
-    run->form = bench_set_up(&bench_simd, mesh, task, 1, run->set_ups, &set_up);
+    run->form = bench_set_up(&bench_simd, mesh, task, 0, run->set_ups, &set_up);
     if (run->form) {
         result->ours = bench_simd.facts(run->form);
         run->apart = 8 * result->ours.entries < bench_apart_bytes;
-        measured = bench_both(run, options->samples, options->quick ? 0.3 : 1);
+        measured = bench_both(run, options->samples, options->quick ? 0.2 : 1);
         if (run->failed) fputs("bench: no memory for CHOLMOD\n", stderr);
     }
     if (measured) {
@@ -274,11 +277,12 @@ static bool bench_measure_both(const bench_mesh *mesh, bench_task task, const be
 /* The same system in other ways. */
 static void bench_measure_others(const bench_mesh *mesh, bench_task task, int samples, bench_result *result) {
     if (mesh->vertex_count > 15000 && samples > 3) samples = 3;
-    result->cblas = bench_whole(&bench_cblas, mesh, task, 1, samples);
-    result->scalar = bench_whole(&bench_scalar, mesh, task, 1, samples);
+    result->cblas = bench_whole(&bench_cblas, mesh, task, 0, samples);
+    result->scalar = bench_whole(&bench_scalar, mesh, task, 0, samples);
     if (mesh->vertex_count < 25000) return;
     bench_pin(false);
-    result->workers = bench_whole(&bench_simd, mesh, task, 2, samples);
+    result->one_worker = bench_whole(&bench_simd, mesh, task, 1, samples);
+    result->two_workers = bench_whole(&bench_simd, mesh, task, 2, samples);
     bench_pin(true);
 }
 
@@ -287,7 +291,7 @@ static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *op
     bench_run *run = bench_begin_run(&bench_simd, options->samples);
     double set_up;
     bool measured;
-    run->form = bench_set_up(&bench_simd, mesh, BENCH_VOLUME, 1, 1, &set_up);
+    run->form = bench_set_up(&bench_simd, mesh, BENCH_VOLUME, 0, 1, &set_up);
     measured = run->form && bench_solves(run, true, options->samples, 0.3);
     if (measured) {
         result->ours = bench_simd.facts(run->form);
@@ -295,7 +299,7 @@ static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *op
         bench_medians(&run->ours, result->our_seconds);
     }
     bench_end_run(run);
-    if (measured) result->without = bench_whole(&bench_simd, mesh, BENCH_PLANARITY, 1, options->samples);
+    if (measured) result->without = bench_whole(&bench_simd, mesh, BENCH_PLANARITY, 0, options->samples);
     return measured;
 }
 
@@ -383,23 +387,27 @@ static int bench_run_files(const bench_options *options, bench_result *result, i
 
 /* -- options -- */
 
-static const char bench_help[] = "usage: tools/bench [options]\n"
-                                 "\n"
-                                 "Iterations of guided projection by this library and by CHOLMOD (supernodal, AMD)\n"
-                                 "on OpenBLAS: the same systems in one process, on one core; medians. Prints\n"
-                                 "\"ratio PROBLEM V X\" for each case, X our whole iteration over CHOLMOD's, and\n"
-                                 "tables. Without options everything is measured, which takes about an hour.\n"
-                                 "\n"
-                                 "  --quick         five problems up to 10000 vertices, ours and CHOLMOD's only\n"
-                                 "  --problem NAME  only this one; may be repeated: quad, closed, hex, statics,\n"
-                                 "                  fairness, hybrid, volume, or a real mesh in the folder\n"
-                                 "                  GPROJ_DATA or ../shared/data\n"
-                                 "  --size V        only with about V vertices; may be repeated\n"
-                                 "  --samples N     at least N samples of each time (9)\n"
-                                 "  --json FILE     writes all that was measured (without options: bench.json)\n"
-                                 "  --svg FILE      draws times over V (without options: bench.svg)\n"
-                                 "  --markdown      prints the README's section on speed instead of tables\n"
-                                 "  --help          prints this\n";
+/* clang-format off */
+static const char bench_help[] =
+    "usage: tools/bench [options]\n"
+    "\n"
+    "Iterations of guided projection by this library and by CHOLMOD (supernodal, AMD)\n"
+    "on OpenBLAS: the same systems in one process on one core, medians of processor\n"
+    "time. Prints \"ratio PROBLEM V X\" for each case, X our whole iteration over\n"
+    "CHOLMOD's, and tables. Without options everything is measured, which takes about\n"
+    "an hour.\n"
+    "\n"
+    "  --quick         five problems up to 10000 vertices, ours and CHOLMOD's only\n"
+    "  --problem NAME  only this one; may be repeated: quad, closed, hex, statics,\n"
+    "                  fairness, hybrid, volume, or a real mesh in the folder\n"
+    "                  GPROJ_DATA or ../shared/data\n"
+    "  --size V        only with about V vertices; may be repeated\n"
+    "  --samples N     at least N samples of each time (9)\n"
+    "  --json FILE     writes all that was measured (without options: bench.json)\n"
+    "  --svg FILE      draws times over V (without options: bench.svg)\n"
+    "  --markdown      prints the README's section on speed instead of tables\n"
+    "  --help          prints this\n";
+/* clang-format on */
 
 static void bench_wrong(const char *what) {
     fprintf(stderr, "bench: %s; see tools/bench --help\n", what);

@@ -76,7 +76,8 @@ typedef struct bench_form bench_form;
 
 /* One build of our solver. `create` makes a mesh, a form and its rows; `solve` goes back to where it began and takes
    steps, or none, which is set-up only; `rows`, in a visit: the rows from which the next step will come (the arrays are
-   made at the first call). `load` reads a mesh from a file. */
+   made at the first call). `load` reads a mesh from a file. Times are processor times; with `workers` >= 1, that many
+   threads, they are wall times. */
 typedef struct bench_solver {
     bool (*load)(const char *path, bench_mesh *mesh);
     bench_form *(*create)(const bench_mesh *mesh, bench_task task, int32_t workers);
@@ -109,11 +110,16 @@ typedef struct bench_machine {
 } bench_machine;
 bench_machine bench_this_machine(void);
 
-static inline double bench_now(void) {
+static inline double bench_clock(clockid_t clock) {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+/* Processor time of all threads, which other programs on the same core leave alone; and what a clock on the wall says, for
+   several threads. */
+static inline double bench_now(void) { return bench_clock(CLOCK_PROCESS_CPUTIME_ID); }
+static inline double bench_wall(void) { return bench_clock(CLOCK_MONOTONIC); }
 
 /* Memory, or the end. */
 static inline void *bench_take(size_t count, size_t size) {

@@ -51,7 +51,7 @@ static inline void bench_grid_points(bench_mesh *mesh, int32_t columns, int32_t 
             bench_set(mesh, j * columns + i, x, y, height);
         }
     }
-    bench_shake(mesh, 0.05 * 2 / columns);
+    bench_shake(mesh, (dome ? 0.005 : 0.05) * 2 / columns); /* forces magnify what is out of shape */
 }
 
 /* Quads; with `cut`, every third one is cut into two triangles. */

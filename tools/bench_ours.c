@@ -17,10 +17,8 @@ struct bench_form {
     void *user;
 };
 
-static double bench_clock(void *user) {
-    (void)user;
-    return bench_now();
-}
+static double bench_processor_time(void *user) { return (void)user, bench_now(); }
+static double bench_wall_time(void *user) { return (void)user, bench_wall(); }
 
 /* Memory that is counted: gproj_form_memory adds up the peaks of its parts, which need not come together. */
 static void *bench_count(bench_form *f, void *block, size_t old_size, size_t new_size) {
@@ -81,7 +79,7 @@ static bench_form *bench_create_form(const bench_mesh *mesh, bench_task task, in
     gproj_error error;
     double began;
     memset(&host, 0, sizeof host);
-    host.clock.now = bench_clock;
+    host.clock.now = workers ? bench_wall_time : bench_processor_time;
     host.allocator.allocate = bench_allocate;
     host.allocator.reallocate = bench_reallocate;
     host.allocator.release = bench_release;

@@ -57,6 +57,7 @@ static gprojx_frame gprojx_plot_frame(int count, const gprojx_curve *curve, cons
             frame.low = fmin(frame.low, floor(power)), frame.high = fmax(frame.high, ceil(power));
             frame.left = fmin(frame.left, across), frame.right = fmax(frame.right, across);
         }
+    if (frame.low > frame.high) frame.low = frame.high = frame.left = frame.right = 0; /* nothing to draw */
     if (!(frame.right > frame.left)) frame.left -= 0.5, frame.right = frame.left + 1;
     if (!(frame.high > frame.low)) frame.high = frame.low + 1;
     return frame;
