@@ -472,8 +472,8 @@ int main(int argc, char **argv) {
     bench_report report;
     bench_options options;
     int i, code = 0;
-    bench_prepare(argv);
     options = bench_read_options(argc, argv);
+    bench_prepare(argv);
     bench_pin(true);
     report.machine = bench_this_machine();
     report.result = result;
