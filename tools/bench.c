@@ -276,7 +276,7 @@ static bool bench_measure_both(const bench_mesh *mesh, bench_task task, const be
 
 /* The same system in other ways. */
 static void bench_measure_others(const bench_mesh *mesh, bench_task task, int samples, bench_result *result) {
-    if (mesh->vertex_count > 15000 && samples > 3) samples = 3;
+    if (mesh->vertex_count > 15000 && samples > 5) samples = 5; /* one solve */
     result->cblas = bench_whole(&bench_cblas, mesh, task, 0, samples);
     result->scalar = bench_whole(&bench_scalar, mesh, task, 0, samples);
     if (mesh->vertex_count < 25000) return;
