@@ -73,10 +73,10 @@ static void gprojx_plot_upright(FILE *file, const gprojx_frame *frame, double ac
 
 /* Lines of the grid with their powers of ten and iterations; 1, 2, 5, 10, 20, ... on a logarithmic scale. */
 static void gprojx_plot_grid(FILE *file, const gprojx_frame *frame) {
-    int i, step = frame->high - frame->low > 8 ? 2 : 1, last = (int)frame->right;
+    int low = (int)frame->low, high = (int)frame->high, last = (int)frame->right, i, step = high - low > 8 ? 2 : 1;
     double decade, digit;
-    for (i = (int)frame->high; i >= frame->low; i -= step) {
-        int y = gprojx_plot_y(frame, i);
+    for (i = high; i >= low; i -= step) {
+        int y = GPROJX_PLOT_TOP + (high - i) * GPROJX_PLOT_HIGH / (high - low);
         fprintf(file, "<path stroke=\"#ddd\" d=\"M%d %dh%d\"/>\n", GPROJX_PLOT_LEFT, y, GPROJX_PLOT_WIDE);
         fprintf(file,
                 "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">10<tspan dy=\"-5\" font-size=\"10\">%d</tspan></text>\n",
