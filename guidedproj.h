@@ -2947,6 +2947,104 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     return true;
 }
 
+/* -- condensation -- */
+
+enum {
+    GPROJI_CONDENSED_DEGREE = 24 /* weight of the neighbours of a node that is condensed */
+};
+
+/* A graph without some of its nodes. */
+typedef struct gproji_condensation {
+    gproji_pool pool;
+    gproji_graph rest;
+    int32_t count;   /* nodes that are eliminated first */
+    int32_t *first;  /* all nodes: those, then the others, as `rest` numbers them */
+    int32_t *number; /* all nodes: place in `first` */
+} gproji_condensation;
+
+/* Chooses nodes with light neighbours, no two of them adjacent, the lightest first: the normals of faces, say. */
+GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
+    int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
+    int64_t e;
+    unsigned char *taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1); /* chosen, or next to one */
+    degree = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    sorted = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->first = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    x->number = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
+    if (!taken || !degree || !sorted || !x->first || !x->number) return false;
+    memset(start, 0, sizeof start);
+    for (i = 0; i < n; ++i) {
+        int64_t weight = 0;
+        for (e = graph->start[i]; e < graph->start[i + 1] && weight <= GPROJI_CONDENSED_DEGREE; ++e)
+            weight += graph->weight[graph->adjacent[e]];
+        degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
+        start[degree[i] + 1]++;
+    }
+    for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start[d + 1] += start[d];
+    for (i = 0; i < n; ++i) sorted[start[degree[i]]++] = i;
+    for (k = 0; k < n && degree[sorted[k]] <= GPROJI_CONDENSED_DEGREE; ++k) {
+        i = sorted[k];
+        if (taken[i]) continue;
+        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) taken[graph->adjacent[e]] = 1;
+        x->first[x->count++] = i;
+    }
+    for (i = 0; i < n; ++i) x->number[i] = -1;
+    for (k = 0; k < x->count; ++k) x->number[x->first[k]] = k;
+    for (i = 0, k = x->count; i < n; ++i)
+        if (x->number[i] < 0) x->first[k] = i, x->number[i] = k++;
+    return true;
+}
+
+/* Writes the neighbours of node i in the graph that is left to `to` and returns their number; mark: of all nodes. */
+GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x, const gproji_graph *graph, int32_t i,
+                                                    int32_t *mark, int32_t *to) {
+    int64_t e, f, count = 0;
+    mark[i] = i;
+    for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
+        int32_t j = graph->adjacent[e];
+        int64_t from = x->number[j] < x->count ? graph->start[j] : e,
+                end = x->number[j] < x->count ? graph->start[j + 1] : e + 1;
+        for (f = from; f < end; ++f) { /* those of a condensed node, or the node itself */
+            int32_t other = graph->adjacent[f];
+            if (mark[other] == i) continue;
+            mark[other] = i;
+            to[count++] = x->number[other] - x->count;
+        }
+    }
+    return count;
+}
+
+/* The graph without a first set of nodes, whose elimination is taken into account: the neighbours of each of them have
+   become adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). What remains is half the size
+   where normals have gone, and shows the mesh to a dissection. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
+    int32_t i, k, left, *mark, *adjacent, *weight;
+    int64_t *start, room = 0, e;
+    memset(x, 0, sizeof *x);
+    gproji_pool_start(&x->pool, heap);
+    if (!gproji_choose_condensed(x, graph)) return false;
+    left = graph->nodes - x->count;
+    for (k = x->count; k < graph->nodes; ++k)
+        for (e = graph->start[x->first[k]]; e < graph->start[x->first[k] + 1]; ++e) {
+            int32_t j = graph->adjacent[e];
+            room += x->number[j] < x->count ? graph->start[j + 1] - graph->start[j] : 1;
+        }
+    start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
+    adjacent = (int32_t *)gproji_pool_take(&x->pool, room, sizeof(int32_t));
+    weight = (int32_t *)gproji_pool_take(&x->pool, left, sizeof(int32_t));
+    mark = (int32_t *)gproji_pool_take(&x->pool, graph->nodes, sizeof(int32_t));
+    if (!start || !adjacent || !weight || !mark) return false;
+    for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
+    start[0] = 0;
+    for (k = 0; k < left; ++k) {
+        i = x->first[x->count + k];
+        weight[k] = graph->weight[i];
+        start[k + 1] = start[k] + gproji_condensed_neighbours(x, graph, i, mark, adjacent + start[k]);
+    }
+    x->rest.nodes = left, x->rest.start = start, x->rest.adjacent = adjacent, x->rest.weight = weight;
+    return true;
+}
+
 /* ============================================================================================================
    >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering.
 
@@ -3503,11 +3601,26 @@ GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     }
 }
 
+/* An order that keeps the factor small. */
+GPROJI_INTERNAL bool gproji_find_order(gproji_analysis *an) {
+    int32_t *order = an->out->order, k, total = an->out->columns;
+    gproji_condensation condensed;
+    bool done = gproji_condense(&condensed, an->keep->heap, an->graph);
+    for (k = 0; done && k < condensed.count; ++k) {
+        order[k] = condensed.first[k];
+        total -= an->graph->weight[order[k]];
+    }
+    done = done && gproji_amd_order(an->keep->heap, &condensed.rest, total, order + condensed.count);
+    for (k = condensed.count; done && k < an->graph->nodes; ++k) order[k] = condensed.first[condensed.count + order[k]];
+    gproji_pool_give_all(&condensed.pool);
+    return done;
+}
+
 /* The order of elimination asked for. permutation: of nodes. */
 GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
     gproji_symbolic *out = an->out;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_AMD) return gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order);
+    if (ordering == GPROJ_ORDERING_AMD) return gproji_find_order(an);
     for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
     return true;
 }
@@ -5869,19 +5982,19 @@ GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
     return true;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th. */
-GPROJI_ALWAYS void gproji_expect_rows(const gproj_system *s, int64_t k) {
+/* A front's rows come from all over the memory: asks for those that follow the k-th, with what their places are made
+   of, or with their gradients. */
+GPROJI_ALWAYS void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
         gproji_row_name near_one = s->front_row[k + GPROJI_ROWS_AHEAD / 2];
-        const gproji_row *row = &s->group[far_one.group].row[far_one.row];
         const gproji_group *g = &s->group[near_one.group];
-        int64_t local = g->row[near_one.row].local;
+        const gproji_row *row = &s->group[far_one.group].row[far_one.row], *next = &g->row[near_one.row];
         GPROJI_PREFETCH(row);
         GPROJI_PREFETCH(row + 1);
-        GPROJI_PREFETCH(g->local_at + local);
-        GPROJI_PREFETCH(g->local_gradient + local);
-        GPROJI_PREFETCH(g->local_gradient + local + 8);
+        GPROJI_PREFETCH(g->local_at + next->local);
+        GPROJI_PREFETCH(placing ? (const void *)(g->local_variable + next->local) : g->local_gradient + next->local);
+        GPROJI_PREFETCH(placing ? (const void *)(g->term_local + next->term) : g->local_gradient + next->local + 8);
     }
 }
 
@@ -5918,7 +6031,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
         gproji_map_front(&s->cholesky->symbolic, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
-            gproji_expect_rows(s, k);
+            gproji_expect_rows(s, k, true);
             gproji_place_row(s, g, &g->row[s->front_row[k].row], at, moved);
         }
     }
@@ -6175,7 +6288,7 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
     for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
         const gproji_group *g = &s->group[s->front_row[k].group];
         const gproji_row *row = &g->row[s->front_row[k].row];
-        gproji_expect_rows(s, k);
+        gproji_expect_rows(s, k, false);
         if (!(g->weight > 0) || !row->active) continue;
         gproji_load_square(g, row, panel);
         if (loading->curved) gproji_load_curvature(g, row, panel);
