@@ -2962,7 +2962,8 @@ typedef struct gproji_condensation {
     int32_t *number; /* all nodes: place in `first` */
 } gproji_condensation;
 
-/* Chooses nodes with light neighbours, no two of them adjacent, the lightest first: the normals of faces, say. */
+/* Chooses nodes with at least 4 light neighbours, no two of them adjacent, the lightest first: the normals of faces,
+   say. (Chains and trees are left to the minimum degree ordering, which orders them without fill.) */
 GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
     int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
     int64_t e;
@@ -2974,7 +2975,7 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     if (!taken || !degree || !sorted || !x->first || !x->number) return false;
     memset(start, 0, sizeof start);
     for (i = 0; i < n; ++i) {
-        int64_t weight = 0;
+        int64_t weight = graph->start[i + 1] - graph->start[i] < 4 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
         for (e = graph->start[i]; e < graph->start[i + 1] && weight <= GPROJI_CONDENSED_DEGREE; ++e)
             weight += graph->weight[graph->adjacent[e]];
         degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
