@@ -76,7 +76,7 @@
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
        >>dense          panels and update matrices
-       >>ordering       approximate minimum degree
+       >>ordering       minimum degree, nested dissection
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
        >>least-squares  linear least squares with bounds
@@ -273,9 +273,10 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_AMD,     /* approximate minimum degree on the compressed graph */
-    GPROJ_ORDERING_GIVEN,   /* `permutation` of the options */
-    GPROJ_ORDERING_NATURAL, /* as the matrix stands */
+    GPROJ_ORDERING_DISSECTION, /* nested dissection of the compressed graph, approximate minimum degree within its parts */
+    GPROJ_ORDERING_AMD,        /* approximate minimum degree alone */
+    GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
+    GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
 } gproj_ordering;
 
@@ -2532,10 +2533,11 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
 }
 
 /* ============================================================================================================
-   >>ordering   The order of elimination: graphs of nodes, approximate minimum degree. Uses platform, memory.
+   >>ordering   The order of elimination: minimum degree, nested dissection. Uses platform, memory.
 
    A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
-   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
+   variables. First go nodes of small degree; what remains is cut by nested dissection, and the parts are ordered by
+   minimum degree. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
    ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
    mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
    are broken by the order in which nodes reach a degree list. */
@@ -2610,26 +2612,34 @@ typedef struct gproji_amd {
     int32_t nodes;
     int32_t total;  /* weight of all nodes that are not dense */
     int32_t left;   /* of it, not yet eliminated */
-    int32_t lowest; /* no variable has a smaller degree */
+    int32_t lowest; /* no variable in the lists has a smaller degree */
+    int32_t now;    /* the stage */
+    int32_t turn;   /* weight of the variables of this stage that are not yet eliminated */
     int64_t free;   /* space[free..size-1] is unused */
     int64_t size;
-    int64_t stamp;       /* marks below it are old */
-    int32_t *space;      /* size: all lists */
-    int64_t *list;       /* nodes: where the list begins */
-    int32_t *length;     /* nodes */
-    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
-    int32_t *weight;     /* nodes */
-    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
-    unsigned char *kind; /* nodes */
-    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
-    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
-    int32_t buckets;     /* total + 1 */
-    int32_t *next;       /* nodes: in a degree list, in a hash list */
-    int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
-    int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;      /* nodes: next node of that chain, or -1 */
+    int64_t stamp;        /* marks below it are old */
+    int32_t *space;       /* size: all lists */
+    int64_t *list;        /* nodes: where the list begins */
+    int32_t *length;      /* nodes */
+    int32_t *elements;    /* nodes: of a variable, the elements at the head of its list */
+    int32_t *weight;      /* nodes */
+    int32_t *degree;      /* nodes: variable: bound of the external degree; element: weight of its list */
+    unsigned char *kind;  /* nodes */
+    int64_t *mark;        /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int32_t *head;        /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t buckets;      /* total + 1 */
+    int32_t *next;        /* nodes: in a degree list, in a hash list */
+    int32_t *previous;    /* nodes: in a degree list; while comparing, the hash value */
+    int32_t *hash_head;   /* nodes: first variable with a hash value, or -1 */
+    int32_t *tail;        /* nodes: last node of the chain that a representative has absorbed */
+    int32_t *chain;       /* nodes: next node of that chain, or -1 */
+    const int32_t *stage; /* nodes: when it is its turn; NULL: all at once */
 } gproji_amd;
+
+/* Is it the turn of variable i? Only then it is in a degree list. */
+GPROJI_INTERNAL bool gproji_amd_in_turn(const gproji_amd *amd, int32_t i) {
+    return !amd->stage || amd->stage[i] == amd->now;
+}
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
     int32_t d = amd->degree[i], first = amd->head[d];
@@ -2691,7 +2701,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
         amd->weight[i] = -weight;
         amd->degree[pivot] += weight;
         amd->space[amd->free++] = i;
-        gproji_amd_list_remove(amd, i);
+        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_remove(amd, i);
     }
 }
 
@@ -2738,7 +2748,7 @@ GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
 
 /* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
    not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
-   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
+   -1 when the variable can be eliminated with the pivot: it is its turn, and it has nothing outside the new element. */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -2765,7 +2775,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
         hash += (uint32_t)j;
         list[to++] = j;
     }
-    if (degree == 0) return -1;
+    if (degree == 0 && gproji_amd_in_turn(amd, i)) return -1;
     /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
     GPROJ_ASSERT(to < own);
     moved = list[heads];
@@ -2784,6 +2794,7 @@ GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j
     const int32_t *list = amd->space + amd->list[j];
     int32_t k;
     if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
+    if (amd->stage && amd->stage[i] != amd->stage[j]) return false;
     for (k = 1; k < amd->length[j]; ++k)
         if (amd->mark[list[k]] != amd->stamp) return false;
     return true;
@@ -2811,6 +2822,7 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t k, to = 0, *element;
     amd->left -= amd->weight[pivot];
+    amd->turn -= amd->weight[pivot];
     gproji_amd_form_element(amd, pivot);
     element = amd->space + amd->list[pivot];
     gproji_amd_scan(amd, pivot);
@@ -2819,6 +2831,7 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         if (hash < 0) { /* mass elimination */
             int32_t weight = -amd->weight[i];
             amd->left -= weight;
+            amd->turn -= weight;
             amd->degree[pivot] -= weight;
             amd->weight[pivot] += weight;
             gproji_amd_absorb(amd, pivot, i);
@@ -2844,7 +2857,7 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         degree = (int64_t)amd->degree[i] + amd->degree[pivot] - weight;
         if (degree > amd->left - weight) degree = amd->left - weight;
         amd->degree[i] = (int32_t)degree;
-        gproji_amd_list_add(amd, i);
+        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_add(amd, i);
         element[to++] = i;
     }
     if (amd->list[pivot] + amd->length[pivot] == amd->free) amd->free = amd->list[pivot] + to;
@@ -2881,9 +2894,11 @@ GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t n
 }
 
 /* Dense nodes, more than 10 sqrt(n) variables next to them, are put last without looking at them: they would make every
-   degree meaningless and the search slow. Fills the lists with the others. */
+   degree meaningless and the search slow. */
+GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
+
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
-    double dense = gproji_fmax(16.0, 10.0 * sqrt((double)amd->buckets - 1.0));
+    double dense = gproji_dense_degree(amd->buckets - 1);
     int32_t i;
     int64_t k;
     amd->stamp = 1;
@@ -2912,14 +2927,27 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->degree[i] = degree;
     }
     amd->left = amd->total;
-    for (i = amd->nodes - 1; i >= 0; --i)
-        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
+}
+
+/* The turn of the next stage, whose nodes are order[from..]: puts them into the degree lists. */
+GPROJI_INTERNAL void gproji_amd_next_stage(gproji_amd *amd, const int32_t *order, int32_t from) {
+    int32_t k, end = from;
+    if (amd->stage) amd->now = amd->stage[order[from]];
+    while (end < amd->nodes && gproji_amd_in_turn(amd, order[end])) ++end;
+    for (k = end - 1; k >= from; --k) {
+        int32_t i = order[k];
+        if (amd->kind[i] != GPROJI_AMD_VARIABLE) continue;
+        gproji_amd_list_add(amd, i);
+        amd->turn += amd->weight[i];
+    }
     amd->lowest = 0;
 }
 
-/* Writes the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes. False when
-   there is no memory. */
-GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes. With stages, all
+   nodes of a stage are eliminated before those of a later one; on entry they stand by ascending stages in `order`, with
+   dense nodes behind them. Without (NULL), on entry any permutation stands there. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, const int32_t *stage,
+                                      int32_t *order) {
     gproji_pool pool;
     gproji_amd amd;
     int32_t i, count = 0;
@@ -2927,6 +2955,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     memset(&amd, 0, sizeof amd);
     amd.nodes = graph->nodes;
     amd.buckets = total + 1;
+    amd.stage = stage;
     if (!gproji_amd_take(&amd, &pool, graph)) {
         gproji_pool_give_all(&pool);
         return false;
@@ -2934,6 +2963,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     gproji_amd_start(&amd, graph);
     while (amd.left > 0) {
         int32_t pivot, member;
+        if (amd.turn == 0) gproji_amd_next_stage(&amd, order, count);
         while (amd.head[amd.lowest] < 0) amd.lowest++;
         pivot = amd.head[amd.lowest];
         gproji_amd_list_remove(&amd, pivot);
@@ -2962,7 +2992,7 @@ typedef struct gproji_condensation {
     int32_t *number; /* all nodes: place in `first` */
 } gproji_condensation;
 
-/* Chooses nodes with at least 4 light neighbours, no two of them adjacent, the lightest first: the normals of faces,
+/* Chooses nodes with at least 3 light neighbours, no two of them adjacent, the lightest first: the normals of faces,
    say. (Chains and trees are left to the minimum degree ordering, which orders them without fill.) */
 GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
     int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
@@ -2975,7 +3005,7 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     if (!taken || !degree || !sorted || !x->first || !x->number) return false;
     memset(start, 0, sizeof start);
     for (i = 0; i < n; ++i) {
-        int64_t weight = graph->start[i + 1] - graph->start[i] < 4 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
+        int64_t weight = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
         for (e = graph->start[i]; e < graph->start[i + 1] && weight <= GPROJI_CONDENSED_DEGREE; ++e)
             weight += graph->weight[graph->adjacent[e]];
         degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
@@ -3044,6 +3074,279 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
     }
     x->rest.nodes = left, x->rest.start = start, x->rest.adjacent = adjacent, x->rest.weight = weight;
     return true;
+}
+
+/* -- dissection -- */
+
+/* Nested dissection (George 1973) of a graph by its distances. From two nodes a, b far from each other, and two others
+   c, d far from both, u = d_a - d_b and v = d_c - d_d are coordinates of the nodes: on a grid whose nodes have 8
+   neighbours exactly its diagonals, and u + v, u - v its axes. A part is cut where one of these four passes a threshold
+   near its middle; the separator is the boundary of one side. Parts that are small enough are left to the minimum degree
+   ordering, which takes the separators into account and orders them, too. */
+enum {
+    GPROJI_PART_WEIGHT = 1500 /* parts up to this weight are not cut */
+};
+
+typedef struct gproji_region {
+    int32_t first, count; /* its nodes are list[first .. first + count - 1] */
+    int32_t depth;        /* cuts above it */
+} gproji_region;
+
+typedef struct gproji_separation {
+    double cost;
+    int32_t a, b;      /* x = a u + b v */
+    int32_t threshold; /* x < threshold is the low side */
+    bool low;          /* the separator is the low side's boundary */
+} gproji_separation;
+
+typedef struct gproji_dissection {
+    gproji_pool pool;
+    const gproji_graph *graph;
+    int32_t *list;  /* nodes, by parts */
+    int32_t *other; /* work: nodes */
+    int32_t *part;  /* nodes: where the part begins that they are in; -1: in a separator, in a finished part, dense */
+    int32_t *u, *v;
+    int32_t *distance[3];      /* nodes; of nodes of the part at work; -1: not reached */
+    int32_t *x;                /* nodes: the coordinate at work */
+    int32_t *sum, *low, *high; /* 4 nodes + 8 each: sums over a coordinate */
+    gproji_region *stack;      /* nodes + 1 */
+    int32_t top;
+    int32_t *stage; /* out */
+    int32_t deepest;
+} gproji_dissection;
+
+GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes) {
+    int32_t **each[8], i;
+    each[0] = &d->list, each[1] = &d->other, each[2] = &d->part, each[3] = &d->u, each[4] = &d->v;
+    each[5] = &d->x, each[6] = &d->distance[0], each[7] = &d->distance[1];
+    for (i = 0; i < 8; ++i) {
+        *each[i] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
+        if (!*each[i]) return false;
+    }
+    d->distance[2] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
+    d->sum = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
+    d->low = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
+    d->high = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
+    d->stack = (gproji_region *)gproji_pool_take(&d->pool, (int64_t)nodes + 1, sizeof(gproji_region));
+    return d->distance[2] && d->sum && d->low && d->high && d->stack;
+}
+
+/* Distances from `root` within its part, by breadth-first search; `other` gets the nodes in the order in which they are
+   reached. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji_region *p, int32_t root,
+                                              int32_t *distance) {
+    const gproji_graph *graph = d->graph;
+    int32_t *queue = d->other, head = 0, tail = 1, k;
+    for (k = p->first; k < p->first + p->count; ++k) distance[d->list[k]] = -1;
+    distance[root] = 0;
+    queue[0] = root;
+    while (head < tail) {
+        int32_t at = queue[head++], next = distance[at] + 1;
+        int64_t e;
+        for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
+            int32_t to = graph->adjacent[e];
+            if (d->part[to] != p->first || distance[to] >= 0) continue;
+            distance[to] = next;
+            queue[tail++] = to;
+        }
+    }
+    return tail;
+}
+
+/* The coordinates of a part's nodes. False when it is not connected: distance[0] is -1 for some then. */
+GPROJI_INTERNAL bool gproji_find_coordinates(gproji_dissection *d, const gproji_region *p) {
+    const int32_t *list = d->list + p->first;
+    int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one;
+    if (gproji_find_distances(d, p, list[0], a) < p->count) return false;
+    gproji_find_distances(d, p, d->other[p->count - 1], a);
+    gproji_find_distances(d, p, d->other[p->count - 1], b);
+    for (k = 1, far_one = list[0]; k < p->count; ++k)
+        if (a[list[k]] + b[list[k]] > a[far_one] + b[far_one]) far_one = list[k];
+    for (k = 0; k < p->count; ++k) d->u[list[k]] = a[list[k]] - b[list[k]];
+    gproji_find_distances(d, p, far_one, c);
+    for (k = 1, far_one = list[0]; k < p->count; ++k)
+        if (a[list[k]] + b[list[k]] + 2 * c[list[k]] > a[far_one] + b[far_one] + 2 * c[far_one]) far_one = list[k];
+    gproji_find_distances(d, p, far_one, a);
+    for (k = 0; k < p->count; ++k) d->v[list[k]] = c[list[k]] - a[list[k]];
+    return true;
+}
+
+/* x = a u + b v of a part's nodes, from 1; returns one more than the largest. */
+GPROJI_INTERNAL int32_t gproji_set_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b) {
+    const int32_t *list = d->list + p->first;
+    int32_t least = INT32_MAX, most = INT32_MIN, k;
+    for (k = 0; k < p->count; ++k) {
+        int32_t x = a * d->u[list[k]] + b * d->v[list[k]];
+        d->x[list[k]] = x;
+        least = gproji_min(least, x);
+        most = gproji_max(most, x);
+    }
+    for (k = 0; k < p->count; ++k) d->x[list[k]] -= least - 1;
+    return most - least + 2;
+}
+
+/* Weights of the boundaries of both sides for all thresholds from `first` to `last`: sums of differences in low and
+   high. */
+GPROJI_INTERNAL void gproji_weigh_boundaries(gproji_dissection *d, const gproji_region *p, int32_t range, int32_t first,
+                                             int32_t last) {
+    const gproji_graph *graph = d->graph;
+    const int32_t *x = d->x;
+    int32_t k, jump = 4; /* distances differ by 1 along an edge, x by 4 at most */
+    memset(d->low, 0, ((size_t)range + 2) * sizeof(int32_t));
+    memset(d->high, 0, ((size_t)range + 2) * sizeof(int32_t));
+    for (k = p->first; k < p->first + p->count; ++k) {
+        int32_t i = d->list[k], own = x[i], least = own, most = own, weight = graph->weight[i];
+        int64_t e;
+        if (own < first - jump || own > last + jump) continue;
+        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
+            int32_t to = graph->adjacent[e];
+            if (d->part[to] != p->first) continue;
+            least = gproji_min(least, x[to]);
+            most = gproji_max(most, x[to]);
+        }
+        d->low[own + 1] += weight, d->low[most + 1] -= weight;    /* own < threshold <= most */
+        d->high[least + 1] += weight, d->high[own + 1] -= weight; /* least < threshold <= own */
+    }
+}
+
+/* The best threshold of the coordinate a u + b v, if it is better than the best cut so far. */
+GPROJI_INTERNAL void gproji_try_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b,
+                                           gproji_separation *best) {
+    int32_t range = gproji_set_coordinate(d, p, a, b), k, t, first = range, last = 0;
+    double all = 0, below = 0, low = 0, high = 0;
+    memset(d->sum, 0, ((size_t)range + 1) * sizeof(int32_t));
+    for (k = p->first; k < p->first + p->count; ++k) d->sum[d->x[d->list[k]]] += d->graph->weight[d->list[k]];
+    for (t = 0; t < range; ++t) all += d->sum[t];
+    for (t = 2; t < range; ++t) { /* thresholds near the middle; the median where none is */
+        below += d->sum[t - 1];
+        if (below < 0.36 * all && below + d->sum[t] < 0.5 * all) continue;
+        if (below > 0.64 * all && first < range) break;
+        first = gproji_min(first, t);
+        last = t;
+    }
+    if (first == range) return;
+    gproji_weigh_boundaries(d, p, range, first, last);
+    for (t = 1, below = 0; t <= last; ++t) {
+        double separator, cost, above;
+        below += d->sum[t - 1];
+        low += d->low[t];
+        high += d->high[t];
+        above = all - below;
+        if (t < first || below == 0 || above == 0) continue;
+        separator = gproji_fmin(low, high);
+        cost = separator * separator * all * all / (below * above);
+        if (cost >= best->cost) continue;
+        best->cost = cost, best->a = a, best->b = b, best->threshold = t, best->low = low <= high;
+    }
+}
+
+/* Cuts a part: its nodes are those with mark 0, those with mark 1, and those of the separator, mark 2. */
+GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p, const int32_t *mark) {
+    int32_t *list = d->list + p->first, k, side, at = 0;
+    for (side = 0; side < 3; ++side) {
+        int32_t begin = at;
+        for (k = 0; k < p->count; ++k)
+            if (mark[list[k]] == side) d->other[at++] = list[k];
+        if (side == 2) {
+            for (k = begin; k < at; ++k) {
+                d->part[d->other[k]] = -1;
+                d->stage[d->other[k]] = p->depth + 1; /* see gproji_dissect */
+            }
+            d->deepest = at > begin ? gproji_max(d->deepest, p->depth + 1) : d->deepest;
+        } else if (at > begin) {
+            gproji_region *piece = &d->stack[d->top++];
+            for (k = begin; k < at; ++k) d->part[d->other[k]] = p->first + begin;
+            piece->first = p->first + begin, piece->count = at - begin;
+            piece->depth = p->depth + 1;
+        }
+    }
+    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
+}
+
+/* The sides and the separator of a cut, as marks in distance[0]. */
+GPROJI_INTERNAL void gproji_mark_cut(gproji_dissection *d, const gproji_region *p, const gproji_separation *cut) {
+    const gproji_graph *graph = d->graph;
+    int32_t *mark = d->distance[0], k;
+    gproji_set_coordinate(d, p, cut->a, cut->b);
+    for (k = p->first; k < p->first + p->count; ++k) {
+        int32_t i = d->list[k], side = d->x[i] >= cut->threshold;
+        int64_t e;
+        mark[i] = side;
+        if ((side == 0) != cut->low) continue;
+        for (e = graph->start[i]; e < graph->start[i + 1] && mark[i] != 2; ++e) {
+            int32_t to = graph->adjacent[e];
+            if (d->part[to] == p->first && (d->x[to] >= cut->threshold) != side) mark[i] = 2;
+        }
+    }
+}
+
+/* Cuts a part, or leaves it whole. */
+GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region part) {
+    static const int32_t direction[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    gproji_separation best = {HUGE_VAL, 0, 0, 0, false};
+    int64_t weight = 0;
+    int32_t k;
+    for (k = part.first; k < part.first + part.count; ++k) weight += d->graph->weight[d->list[k]];
+    if (weight <= GPROJI_PART_WEIGHT) return;
+    if (!gproji_find_coordinates(d, &part)) {
+        for (k = part.first; k < part.first + part.count; ++k)
+            d->distance[0][d->list[k]] = d->distance[0][d->list[k]] < 0;
+        gproji_divide(d, &part, d->distance[0]);
+        return;
+    }
+    for (k = 0; k < 4; ++k) gproji_try_coordinate(d, &part, direction[k][0], direction[k][1], &best);
+    if (!(best.cost < HUGE_VAL)) return;
+    gproji_mark_cut(d, &part, &best);
+    gproji_divide(d, &part, d->distance[0]);
+}
+
+/* stage[i] = 0 for nodes in parts, and a number for each node of a separator that is larger than those of the parts and
+   separators it separates. False when nothing was cut. */
+GPROJI_INTERNAL bool gproji_dissect(gproji_dissection *d, double dense) {
+    int32_t i, count = 0;
+    for (i = 0; i < d->graph->nodes; ++i) {
+        bool apart = (double)gproji_graph_degree(d->graph, i) > dense;
+        d->part[i] = apart ? -1 : 0;
+        d->stage[i] = 0;
+        if (!apart) d->list[count++] = i;
+    }
+    d->stack[0].first = 0, d->stack[0].count = count, d->stack[0].depth = 0;
+    d->top = count > 0;
+    while (d->top > 0) gproji_dissect_part(d, d->stack[--d->top]);
+    for (i = 0; i < d->graph->nodes; ++i)
+        if (d->stage[i] > 0) d->stage[i] = d->deepest + 1 - d->stage[i];
+    return d->deepest > 0;
+}
+
+/* The nodes by ascending stages, dense ones last: what gproji_amd_order begins with. */
+GPROJI_INTERNAL void gproji_sort_stages(const gproji_dissection *d, double dense, int32_t *order) {
+    int32_t *count = d->sum, n = d->graph->nodes, i, s; /* at most nodes + 1 stages */
+    memset(count, 0, ((size_t)d->deepest + 3) * sizeof(int32_t));
+    for (i = 0; i < n; ++i) d->x[i] = (double)gproji_graph_degree(d->graph, i) > dense ? d->deepest + 1 : d->stage[i];
+    for (i = 0; i < n; ++i) count[d->x[i] + 1]++;
+    for (s = 0; s <= d->deepest; ++s) count[s + 1] += count[s];
+    for (i = 0; i < n; ++i) order[count[d->x[i]]++] = i;
+}
+
+/* An order by dissection above and minimum degree below. `total`: the weight of all nodes. cut: was there something to
+   be cut? If not, the order is none. */
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
+                                            bool *cut) {
+    gproji_dissection d;
+    double dense = gproji_dense_degree(total);
+    bool done;
+    memset(&d, 0, sizeof d);
+    d.graph = graph;
+    gproji_pool_start(&d.pool, heap);
+    d.stage = (int32_t *)gproji_pool_take(&d.pool, graph->nodes, sizeof(int32_t));
+    done = d.stage && gproji_dissection_take(&d, graph->nodes);
+    *cut = done && gproji_dissect(&d, dense);
+    if (*cut) {
+        gproji_sort_stages(&d, dense, order);
+        done = gproji_amd_order(heap, graph, total, d.stage, order);
+    }
+    gproji_pool_give_all(&d.pool);
+    return done;
 }
 
 /* ============================================================================================================
@@ -3602,17 +3905,59 @@ GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     }
 }
 
-/* An order that keeps the factor small. */
+/* What a factorisation in this order costs. The order becomes a postorder of its elimination tree. */
+GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *graph, int32_t *order, double *flops) {
+    gproji_symbolic out;
+    gproji_analysis an;
+    bool done;
+    memset(&an, 0, sizeof an);
+    memset(&out, 0, sizeof out);
+    an.graph = graph, an.out = &out;
+    gproji_pool_start(&an.pool, heap);
+    out.nodes = graph->nodes, out.order = order;
+    out.place = (int32_t *)gproji_pool_take(&an.pool, graph->nodes, sizeof(int32_t));
+    done = out.place && gproji_analysis_take(&an);
+    if (done) {
+        gproji_invert(out.nodes, order, out.place);
+        gproji_elimination_tree(graph, order, out.place, an.parent, an.a);
+        gproji_apply_postorder(&an);
+        gproji_column_counts(&an);
+        gproji_sum_counts(&an);
+        *flops = out.flops;
+    }
+    gproji_pool_give_all(&an.pool);
+    return done;
+}
+
+/* The better one of minimum degree and dissection. total: the weight of all nodes; other: work, nodes entries. */
+GPROJI_INTERNAL bool gproji_better_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
+                                         int32_t *other) {
+    double flops = 0, least = 0;
+    bool cut;
+    int32_t k;
+    for (k = 0; k < graph->nodes; ++k) order[k] = k;
+    if (!gproji_amd_order(heap, graph, total, NULL, order)) return false;
+    if (!gproji_dissected_order(heap, graph, total, other, &cut)) return false;
+    if (!cut) return true;
+    if (!gproji_order_flops(heap, graph, order, &least) || !gproji_order_flops(heap, graph, other, &flops))
+        return false;
+    if (flops < least) memcpy(order, other, (size_t)graph->nodes * sizeof(int32_t));
+    return true;
+}
+
+/* An order that keeps the factor small: condensed nodes, then the rest. */
 GPROJI_INTERNAL bool gproji_find_order(gproji_analysis *an) {
-    int32_t *order = an->out->order, k, total = an->out->columns;
+    int32_t *order = an->out->order, *rest, *other, k, total = an->out->columns;
     gproji_condensation condensed;
     bool done = gproji_condense(&condensed, an->keep->heap, an->graph);
     for (k = 0; done && k < condensed.count; ++k) {
         order[k] = condensed.first[k];
         total -= an->graph->weight[order[k]];
     }
-    done = done && gproji_amd_order(an->keep->heap, &condensed.rest, total, order + condensed.count);
-    for (k = condensed.count; done && k < an->graph->nodes; ++k) order[k] = condensed.first[condensed.count + order[k]];
+    rest = order + condensed.count;
+    other = (int32_t *)gproji_pool_take(&condensed.pool, an->graph->nodes, sizeof(int32_t));
+    done = done && other && gproji_better_order(an->keep->heap, &condensed.rest, total, rest, other);
+    for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
     gproji_pool_give_all(&condensed.pool);
     return done;
 }
@@ -3621,8 +3966,10 @@ GPROJI_INTERNAL bool gproji_find_order(gproji_analysis *an) {
 GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
     gproji_symbolic *out = an->out;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_AMD) return gproji_find_order(an);
+    if (ordering == GPROJ_ORDERING_DISSECTION) return gproji_find_order(an);
     for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    if (ordering == GPROJ_ORDERING_AMD)
+        return gproji_amd_order(an->keep->heap, an->graph, out->columns, NULL, out->order);
     return true;
 }
 
@@ -4098,7 +4445,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     gproji_graph graph;
     int32_t k;
     if (!gproji_compression_graph(x, start, row)) return gproji_fail_memory(&c->error);
-    if (choice->ordering != GPROJ_ORDERING_AMD) {
+    if (choice->ordering == GPROJ_ORDERING_GIVEN || choice->ordering == GPROJ_ORDERING_NATURAL) {
         x->order = (int32_t *)gproji_pool_take(&x->pool, x->n, sizeof(int32_t));
         if (!x->order) return gproji_fail_memory(&c->error);
         for (k = 0; k < x->n; ++k) x->order[k] = k;

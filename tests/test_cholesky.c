@@ -374,12 +374,12 @@ GPROJT_TEST(cholesky_random_patterns) {
         int32_t n = 1 + gprojt_below(&seed, 60), mode = trial % 3;
         double density = trial % 5 == 0 ? 0.5 : 0.02 + 0.15 * gprojt_uniform(&seed);
         matrix m = random_matrix(n, density, mode, trial % 4 == 0, &seed);
-        gproj_cholesky_options options = options_of((gproj_ordering)(trial / 3 % 3));
+        gproj_cholesky_options options = options_of((gproj_ordering)(trial / 3 % 4));
         options.disable_relaxation = trial % 7 == 0;
         options.disable_postorder = trial % 11 == 0;
         random_permutation(n, order, &seed);
         if (options.ordering == GPROJ_ORDERING_GIVEN) options.permutation = order;
-        if (options.ordering == GPROJ_ORDERING_AMD) options.disable_postorder = false;
+        if (options.ordering <= GPROJ_ORDERING_AMD) options.disable_postorder = false;
         check_against_dense(c, &m, &options);
         if (trial % 6 == 1) { /* a column that makes it indefinite */
             int64_t p = (int64_t)(gprojt_random(&seed) % (uint64_t)m.start[n]);
@@ -492,10 +492,10 @@ GPROJT_TEST(ordering_fill_against_suitesparse) {
 #ifdef GPROJT_AMD
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     int32_t number, j;
-    double worst = 0, product = 1;
+    double worst = 0, product = 1, gain = 1, dissected;
     for (number = 0; number < 20; ++number) {
         matrix m = mesh_matrix(number);
-        gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN);
+        gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN), amd = options_of(GPROJ_ORDERING_AMD);
         int32_t *start = (int32_t *)malloc(((size_t)m.n + 1) * sizeof(int32_t)),
                 *order = (int32_t *)malloc((size_t)m.n * sizeof(int32_t));
         int64_t ours, theirs;
@@ -503,7 +503,11 @@ GPROJT_TEST(ordering_fill_against_suitesparse) {
         matrix_merge(&m);
         GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, NULL) == GPROJ_OK);
         GPROJT_CHECK(is_permutation(m.n, gproj_cholesky_permutation(c)));
+        dissected = gproj_cholesky_get_info(c).flops;
+        GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, &amd) == GPROJ_OK);
         ours = gproj_cholesky_get_info(c).exact_entries;
+        gain *= dissected / gproj_cholesky_get_info(c).flops;
+        GPROJT_CHECK(dissected <= 1.2 * gproj_cholesky_get_info(c).flops);
         for (j = 0; j <= m.n; ++j) start[j] = (int32_t)m.start[j];
         GPROJT_CHECK(amd_order(m.n, start, m.row, order, NULL, NULL) >= 0);
         given.permutation = order;
@@ -517,6 +521,7 @@ GPROJT_TEST(ordering_fill_against_suitesparse) {
         matrix_free(&m);
     }
     printf("  fill / SuiteSparse AMD's: mean %.3f, worst %.3f\n", pow(product, 1.0 / 20), worst);
+    printf("  flops with dissection / with minimum degree: mean %.3f\n", pow(gain, 1.0 / 20));
     gproj_cholesky_destroy(c);
 #else
     GPROJT_SKIP("SuiteSparse's AMD is not there (Debian: libsuitesparse-dev)");
