@@ -1057,6 +1057,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #endif
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
 #include <cpuid.h>
+#include <immintrin.h>
 #endif
 
 #ifndef GPROJ_ASSERT
@@ -1920,9 +1921,18 @@ GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s-
    elsewhere the compiler's target decides.
 
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
+
+/* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
+   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set. */
+typedef struct gproji_piece {
+    int32_t from, rows, to;
+    uint32_t mask;
+} gproji_piece;
+
 typedef struct gproji_kernels {
     const char *name;
     int32_t block;
+    bool spreads;        /* may the pieces of `add` have gaps */
     int32_t tile_blocks; /* blocks of rows in the tallest tile */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
        and block rows. */
@@ -1939,6 +1949,11 @@ typedef struct gproji_kernels {
        come from, the other rows up to `rows` (a multiple of block). */
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
+    /* Adds columns of which only the lower triangle counts: those that belong to the rows first..last-1 (counted from
+       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column,
+       `target` to row 0 of the column that belongs to row piece[0].to. */
+    void (*add)(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, const double *source,
+                ptrdiff_t source_stride, double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
 /* The kinds of vector units that are compiled, as a list, the best first. GPROJI_BLOCK is the multiple to which
@@ -2152,6 +2167,27 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         GPROJI_BACKWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_BACKWARD)                      \
     }
 
+/* See `add`; pieces have no gaps. */
+#define GPROJI_DEFINE_ADD(kind, L)                                                                                   \
+    GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, \
+                                               const double *source, ptrdiff_t source_stride, double *target,        \
+                                               ptrdiff_t target_stride) {                                            \
+        GPROJI_BEGIN(L)                                                                                              \
+        for (; first < last; ++first, source += source_stride) {                                                     \
+            double *column = target + first * target_stride;                                                         \
+            int32_t r = first, k;                                                                                    \
+            for (k = 0; k < count; ++k, r = 0) {                                                                     \
+                const double *s = source + piece[k].from;                                                            \
+                double *d = column + piece[k].to;                                                                    \
+                for (; r + LANES <= piece[k].rows; r += LANES) {                                                     \
+                    const lanes sum = GPROJI_LOAD(d + r) + GPROJI_LOAD(s + r);                                       \
+                    GPROJI_STORE(d + r, sum);                                                                        \
+                }                                                                                                    \
+                for (; r < piece[k].rows; ++r) d[r] += s[r];                                                         \
+            }                                                                                                        \
+        }                                                                                                            \
+    }
+
 /* Rows of tiles: the tallest ones, and what is left. */
 #define GPROJI_DEFINE_UPDATE_1(kind, B, T1)                                                                          \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
@@ -2183,8 +2219,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
     static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, 1, gproji_update_##kind, {gproji_solve_##T1##_##kind, NULL, NULL}, gproji_factor_##kind,            \
-        gproji_forward_##kind, gproji_backward_##kind};
+        name, B, B == 8, 1, gproji_update_##kind, {gproji_solve_##T1##_##kind, NULL, NULL}, gproji_factor_##kind,            \
+        gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
 #define GPROJI_DEFINE_KIND_2(kind, name, L, B, T1, T2)                                                               \
     GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
     GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
@@ -2192,8 +2228,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
     static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, 2, gproji_update_##kind, {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, NULL},            \
-        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind};
+        name, B, B == 8, 2, gproji_update_##kind, {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, NULL},            \
+        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
 #define GPROJI_DEFINE_KIND_3(kind, name, L, B, T1, T2, T3)                                                           \
     GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
     GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
@@ -2202,12 +2238,34 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
     static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, 3, gproji_update_##kind,                                                                            \
+        name, B, B == 8, 3, gproji_update_##kind,                                                                            \
         {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, gproji_solve_##T3##_##kind},                        \
-        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind};
+        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
+
+#ifdef GPROJI_KIND_AVX512
+/* See `add`; pieces with gaps: the rows of a piece are spread over a vector. */
+#define GPROJI_ADD_SPREAD(d, s, mask) \
+    _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
+GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,
+                                             const double *source, ptrdiff_t source_stride, double *target,
+                                             ptrdiff_t target_stride) {
+    uint32_t mask = piece->mask;
+    int32_t i, k;
+    for (i = 0; i < first; ++i) mask &= mask - 1;
+    for (; i < last; ++i, mask &= mask - 1, source += source_stride) {
+        double *column = target + __builtin_ctz(mask) * target_stride;
+        GPROJI_ADD_SPREAD(column + piece->to, source + piece->from + i, mask);
+        for (k = 1; k < count; ++k) GPROJI_ADD_SPREAD(column + piece[k].to, source + piece[k].from, piece[k].mask);
+    }
+}
+#endif
 
 #ifdef GPROJI_KIND_SCALAR
+GPROJI_DEFINE_ADD(scalar, 1)
 GPROJI_DEFINE_KIND_1(scalar, "scalar", 1, 4, 4)
+#endif
+#ifdef GPROJI_KIND_TWO
+GPROJI_DEFINE_ADD(two, 2)
 #endif
 #if defined(GPROJI_KIND_TWO) && defined(__aarch64__)
 GPROJI_DEFINE_KIND_2(two, "2 lanes", 2, 4, 2, 4)
@@ -2215,6 +2273,7 @@ GPROJI_DEFINE_KIND_2(two, "2 lanes", 2, 4, 2, 4)
 GPROJI_DEFINE_KIND_1(two, "2 lanes", 2, 4, 2)
 #endif
 #ifdef GPROJI_KIND_AVX2
+GPROJI_DEFINE_ADD(avx2, 4)
 GPROJI_DEFINE_KIND_3(avx2, "AVX2", 4, 4, 1, 2, 3)
 #endif
 #ifdef GPROJI_KIND_AVX512
@@ -2442,6 +2501,72 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
+/* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
+   on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
+   columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
+   `pivot_end`, or beyond a strip of its update matrix. piece: 2 groups + below / 8 + 2 entries are enough. Returns
+   their number. */
+GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
+                                           int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
+                                           gproji_piece *piece) {
+    gproji_piece *now = piece;
+    int32_t k, row, count = 0, end = INT32_MIN; /* end: of the parent's rows that fit into the piece at hand */
+    for (k = 0; k < groups; ++k) {
+        int32_t next = k + 1 < groups ? at[k + 1] - base : below;
+        for (row = at[k] - base; row < next; ++row) {
+            int32_t target = to[k] + row - (at[k] - base);
+            if (target >= end || (!kernels->spreads && target != now->to + now->rows)) {
+                now = piece + count++;
+                now->from = row, now->rows = 0, now->mask = 0;
+                now->to = kernels->spreads ? target - target % 8 : target;
+                if (kernels->spreads)
+                    end = now->to + 8;
+                else if (target < pivot_end)
+                    end = pivot_end;
+                else
+                    end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
+            }
+            now->rows++;
+            now->mask |= 1u << ((target - now->to) & 31);
+        }
+    }
+    return count;
+}
+
+/* A child's update matrix with `rows` rows on its way to its parent. */
+typedef struct gproji_addition {
+    const gproji_panel *panel; /* the parent's */
+    const gproji_piece *piece;
+    int32_t pieces;
+    const double *update;
+    int32_t rows;
+} gproji_addition;
+
+/* Adds strip `index` of a child's update matrix to its parent's panel and update matrix. Different columns go to
+   different columns. A task. */
+GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
+    const gproji_addition *add = (const gproji_addition *)data;
+    const gproji_panel *panel = add->panel;
+    int32_t shift = gproji_panel_shift(panel->w), pivot_end = shift + panel->w, k;
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
+    for (k = 0; k < add->pieces; ++k) {
+        const gproji_piece *piece = add->piece + k;
+        int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
+        const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
+        ptrdiff_t stride = panel->stride;
+        double *target;
+        if (first >= last) continue;
+        if (piece->to < pivot_end) { /* the panel has no columns, and maybe no rows, for its first rows */
+            target = gproji_panel_at(panel, panel->shift - shift, piece->to - shift);
+        } else {
+            stride = gproji_update_stride(panel->update_rows, piece->to - pivot_end);
+            target = panel->update + gproji_update_offset(panel->update_rows, piece->to - pivot_end) - pivot_end;
+        }
+        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin), target,
+                            stride);
+    }
+}
+
 #ifdef GPROJ_USE_CBLAS
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
@@ -2487,7 +2612,7 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
                      panel);
 }
 
-/* The update matrix of a factored panel. */
+/* The effect of a factored panel on its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->w - panel->shift;
     gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
@@ -3383,21 +3508,21 @@ typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;       /* independent tasks; the fronts on top of them are one more group */
-    int32_t *order;      /* nodes: the node at each place */
-    int32_t *place;      /* nodes: the place of each node */
-    int32_t *column;     /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;   /* nodes: the front of each place */
-    gproji_front *front; /* fronts */
-    int32_t *row_node;   /* row nodes of all fronts: their places */
-    int32_t *row_at;     /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;   /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;   /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start; /* tasks + 2: where the groups begin in `schedule` */
-    int64_t *runs_start; /* tasks + 2: where the groups' room for runs begins (in int32_t) */
-    int64_t work_size;   /* doubles for all update matrices */
-    int64_t values_size; /* doubles for all panels */
-    int64_t side_size;   /* `below` rows of all fronts */
+    int32_t tasks;         /* independent tasks; the fronts on top of them are one more group */
+    int32_t *order;        /* nodes: the node at each place */
+    int32_t *place;        /* nodes: the place of each node */
+    int32_t *column;       /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;     /* nodes: the front of each place */
+    gproji_front *front;   /* fronts */
+    int32_t *row_node;     /* row nodes of all fronts: their places */
+    int32_t *row_at;       /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;     /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
+    int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
+    int64_t work_size;     /* doubles for all update matrices */
+    int64_t values_size;   /* doubles for all panels */
+    int64_t side_size;     /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
     double flops;
@@ -3844,8 +3969,8 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     int32_t k, g;
     out->schedule = (int32_t *)gproji_pool_take(an->keep, out->fronts, sizeof(int32_t));
     out->task_start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
-    out->runs_start = (int64_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 2, sizeof(int64_t));
-    if (!out->schedule || !out->task_start || !out->runs_start) return false;
+    out->pieces_start = (int64_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 2, sizeof(int64_t));
+    if (!out->schedule || !out->task_start || !out->pieces_start) return false;
     for (k = 0; k < out->fronts; ++k) out->task_start[group[k] + 2]++;
     for (g = 0; g <= out->tasks; ++g) out->task_start[g + 2] += out->task_start[g + 1];
     for (k = 0; k < out->fronts; ++k) out->schedule[out->task_start[group[sequence[k]] + 1]++] = sequence[k];
@@ -3882,14 +4007,14 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_front_sequence(an, sequence);
     if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
     for (g = 0; g <= out->tasks; ++g) {
-        int64_t most = 0;
+        int32_t most = 0;
         out->work_size = gproji_stack_updates(out, group, g, out->work_size);
         for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
             int32_t c = out->front[out->schedule[k]].child;
             for (; c >= 0; c = out->front[c].sibling)
-                if (out->front[c].row_nodes > most) most = out->front[c].row_nodes;
+                most = gproji_max(most, 2 * out->front[c].row_nodes + out->front[c].below / 8 + 2);
         }
-        out->runs_start[g + 1] = out->runs_start[g] + 3 * most;
+        out->pieces_start[g + 1] = out->pieces_start[g] + most;
     }
     return true;
 }
@@ -4077,14 +4202,14 @@ struct gproj_cholesky {
     int32_t batch; /* right-hand sides that there is room for, at most GPROJI_SOLVE_BATCH */
     int32_t sides; /* those at work */
 
-    double *values;   /* symbolic.values_size: all panels */
-    double *work;     /* symbolic.work_size: all update matrices */
-    double *inverse;  /* columns: the inverses of the diagonal of L */
-    int32_t *runs;    /* see gproji_find_runs, for each group of fronts */
-    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution; /* columns * batch: right-hand sides in the order of L */
-    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
-    double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
+    double *values;       /* symbolic.values_size: all panels */
+    double *work;         /* symbolic.work_size: all update matrices */
+    double *inverse;      /* columns: the inverses of the diagonal of L */
+    gproji_piece *pieces; /* of a child, for each group of fronts */
+    int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution;     /* columns * batch: right-hand sides in the order of L */
+    double *side;         /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
+    double *rows;         /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
 };
 
 /* -- life -- */
@@ -4156,7 +4281,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
-           (sy->tasks + 1.0) * sy->most_rows + 0.5 * (double)sy->runs_start[sy->tasks + 1];
+           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)sy->pieces_start[sy->tasks + 1]; /* a piece: 2 numbers */
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -4508,85 +4633,30 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
-    c->runs = (int32_t *)gproji_pool_take(&c->numeric, sy->runs_start[groups], sizeof(int32_t));
+    c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size);
-    if (c->work && c->inverse && c->rows && c->solution && c->side && c->runs && c->failed && c->values) return true;
+    if (c->work && c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
     return false;
 }
 
-/* d += s */
-GPROJI_INLINE void gproji_add_run(int32_t count, const double *s, double *d) {
-    int32_t i;
-    for (i = 0; i < count; ++i) d[i] += s[i];
-}
-
-/* The runs of a front's update matrix in its parent's panel: the count[k] rows of the matrix from from[k] on meet the
-   storage rows from to[k] on. Three arrays of row_nodes entries. Runs end where the parent's pivots end. Returns their
-   number. */
-GPROJI_INTERNAL int32_t gproji_find_runs(const gproji_symbolic *sy, const gproji_front *front, int32_t pivot_end,
-                                         int32_t *from, int32_t *to, int32_t *count) {
-    const int32_t *at = sy->row_at + front->rows, *relative = sy->relative + front->rows;
-    int32_t base = front->width + gproji_panel_shift(front->width), runs = 0, k;
-    for (k = 0; k < front->row_nodes; ++k) {
-        int32_t begin = at[k] - base, end = k + 1 < front->row_nodes ? at[k + 1] - base : front->below;
-        bool joins = runs > 0 && relative[k] == to[runs - 1] + count[runs - 1] && relative[k] != pivot_end;
-        if (joins) {
-            count[runs - 1] += end - begin;
-        } else {
-            from[runs] = begin;
-            to[runs] = relative[k];
-            count[runs++] = end - begin;
-        }
-    }
-    return runs;
-}
-
-/* One column of a child's update matrix, the j-th of run k, goes to a column of the parent: its storage row r to
-   column[r]. */
-GPROJI_INLINE void gproji_add_column(int32_t k, int32_t j, int32_t runs, const int32_t *from, const int32_t *to,
-                                     const int32_t *count, const double *source, double *column) {
-    int32_t i;
-    gproji_add_run(count[k] - j, source + from[k] + j, column + to[k] + j);
-    for (i = k + 1; i < runs; ++i) gproji_add_run(count[i], source + from[i], column + to[i]);
-}
-
-/* A child's update matrix on its way to its parent. */
-typedef struct gproji_addition {
-    const double *update;
-    int32_t rows; /* of the update matrix */
-    const gproji_panel *panel;
-    int32_t runs;
-    int32_t *from, *to, *count; /* see gproji_find_runs */
-} gproji_addition;
-
-/* Adds strip `index` of the child's matrix. Different columns go to different columns. A task. */
-GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
-    const gproji_addition *add = (const gproji_addition *)data;
-    const int32_t *from = add->from, *to = add->to, *count = add->count;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k, j;
-    for (k = 0; k < add->runs; ++k)
-        for (j = gproji_max(0, begin - from[k]); j < gproji_min(count[k], end - from[k]); ++j)
-            gproji_add_column(k, j, add->runs, from, to, count,
-                              add->update + gproji_update_offset(add->rows, from[k] + j),
-                              gproji_panel_column(add->panel, to[k] + j));
-}
-
-/* Adds the children's update matrices to a front. */
+/* Adds the children's update matrices to the front's pivot columns and to its own update matrix. */
 GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
-                                         const gproj_parallel *parallel, int32_t *runs) {
-    int32_t pivot_end = front->width + gproji_panel_shift(front->width), i;
-    for (i = front->child; i >= 0; i = c->symbolic.front[i].sibling) {
-        const gproji_front *child = &c->symbolic.front[i];
+                                         const gproj_parallel *parallel, gproji_piece *pieces) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t i;
+    for (i = front->child; i >= 0; i = sy->front[i].sibling) {
+        const gproji_front *child = &sy->front[i];
         gproji_addition add;
-        add.update = c->work + child->update, add.rows = child->update_rows, add.panel = panel;
-        add.from = runs, add.to = runs + child->row_nodes, add.count = add.to + child->row_nodes;
-        add.runs = gproji_find_runs(&c->symbolic, child, pivot_end, add.from, add.to, add.count);
-        gproji_run_tasks(parallel, 20.0 * child->below * child->below, gproji_pieces(child->below, GPROJI_STRIP),
-                         gproji_add_task, &add);
+        double rows = child->below;
+        add.panel = panel, add.piece = pieces, add.update = c->work + child->update, add.rows = child->update_rows;
+        add.pieces = gproji_find_pieces(
+            c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
+            child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
+        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_STRIP), gproji_add_task, &add);
     }
 }
 
@@ -4605,14 +4675,14 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
 
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
-                                            int32_t *runs) {
+                                            gproji_piece *pieces) {
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
     memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
-    gproji_add_children(c, front, &panel, parallel, runs);
+    gproji_add_children(c, front, &panel, parallel, pieces);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
     if (front->below > 0) gproji_panel_update(parallel, &panel);
@@ -4731,11 +4801,11 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
-    int32_t *runs = c->runs + sy->runs_start[group];
+    gproji_piece *pieces = c->pieces + sy->pieces_start[group];
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
-        failed = gproji_factor_front(c, sy->schedule[k], parallel, runs);
+        failed = gproji_factor_front(c, sy->schedule[k], parallel, pieces);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
     }

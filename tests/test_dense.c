@@ -46,7 +46,7 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
     fill_spd(n, a, seed);
     for (j = 0; j < w; ++j)
         for (i = j; i < n; ++i) panel[at(storage(w, i), j, stride)] = a[at(i, j, n)];
-    for (i = 0; i < (int32_t)update_size; ++i) update[i] = 0.25; /* what is there before the product */
+    for (i = 0; i < (int32_t)update_size; ++i) update[i] = i % 16;
     naive_partial(n, w, a);
     job = gproji_make_panel(kernels, w, u, stride, panel, inverse, update);
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
@@ -59,10 +59,11 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
         gproji_panel_update(NULL, &job);
         for (j = 0; j < u; ++j)
             for (i = j; i < u; ++i) {
-                double sum = 0.25;
+                ptrdiff_t place = gproji_update_offset(update_rows, j) + i;
+                double sum = (double)(place % 16);
                 int32_t k;
                 for (k = 0; k < w; ++k) sum -= a[at(w + i, k, n)] * a[at(w + j, k, n)];
-                error = fmax(error, fabs(sum - update[gproji_update_offset(update_rows, j) + i]));
+                error = fmax(error, fabs(sum - update[place]));
             }
     }
     GPROJT_CHECK(u == 0 || update[update_size - 1] == 7.0);
@@ -189,6 +190,66 @@ GPROJT_TEST(dense_tiles) {
     GPROJT_CHECK(kind > 0);
 }
 
+/* Row i, column j <= i of what a panel and its update matrix hold together. */
+static double *entry_of(const gproji_panel *panel, double *values, int32_t i, int32_t j) {
+    int32_t w = panel->w;
+    if (j < w) return values + at(storage(w, i), j, panel->stride);
+    return panel->update + gproji_update_offset(panel->update_rows, j - w) + (i - w);
+}
+
+/* Adds a child's update matrix with `below` rows, that go to ascending random rows of a parent in groups of up to `most`
+   rows, which stay together; and nothing else is touched. */
+static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32_t below, int32_t most,
+                      uint64_t *seed) {
+    int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK), stride = gproji_stride(storage(w, n));
+    int32_t child_w = 5, groups = 0, i, j, left = n - below, next = 0;
+    size_t panel_size = (size_t)stride * (size_t)w,
+           update_size = (size_t)gproji_update_entries(gproji_round_up(u, GPROJI_BLOCK));
+    double *values = (double *)calloc(panel_size + 1, sizeof(double));
+    double *update = (double *)calloc(update_size + 1, sizeof(double)), kept = 0;
+    double *child = (double *)malloc(((size_t)gproji_update_entries(rows) + 1) * sizeof(double));
+    int32_t *group = (int32_t *)malloc(sizeof(int32_t) * (size_t)(2 * below + 2)), *to = group + below + 1;
+    int32_t *row_to = (int32_t *)malloc(sizeof(int32_t) * (size_t)(below + 1));
+    gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)(2 * below + below / 8 + 2));
+    gproji_panel panel = gproji_make_panel(kernels, w, u, stride, values, NULL, update);
+    gproji_addition add;
+    for (i = 0; i < below; i = next) {
+        int32_t gap = gproji_min(left, (int32_t)(gprojt_uniform(seed) * 4)), k;
+        int32_t before = n - left - (below - i) + gap; /* the parent's row */
+        left -= gap;
+        next = gproji_min(below, i + 1 + (int32_t)(gprojt_uniform(seed) * most));
+        if (before < w) next = gproji_min(next, i + w - before); /* a group is a pivot's or not */
+        group[groups] = storage(child_w, child_w) + i, to[groups++] = storage(w, before);
+        for (k = i; k < next; ++k) row_to[k] = before + k - i;
+    }
+    for (i = 0; i < (int32_t)gproji_update_entries(rows); ++i) child[i] = 1.0 + gprojt_uniform(seed);
+    add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
+    add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
+    GPROJT_CHECK(add.pieces <= 2 * groups + below / 8 + 2);
+    for (i = 0; i < gproji_pieces(below, GPROJI_STRIP); ++i) gproji_add_task(&add, i);
+    for (j = 0; j < below; ++j)
+        for (i = j; i < below; ++i) {
+            double *entry = entry_of(&panel, values, row_to[i], row_to[j]);
+            GPROJT_CHECK(*entry == child[gproji_update_offset(rows, j) + i]);
+            *entry = 0;
+        }
+    for (j = 0; j < n; ++j)
+        for (i = j; i < n; ++i) kept += fabs(*entry_of(&panel, values, i, j));
+    GPROJT_CHECK(kept == 0);
+    free(values), free(update), free(child), free(group), free(row_to), free(piece);
+}
+
+GPROJT_TEST(dense_add) {
+    const gproji_kernels *kernels;
+    uint64_t seed = 3;
+    int32_t kind, below, most;
+    FOR_ALL_KERNELS for (most = 1; most < 30; most += 1 + most / 2) for (below = 1; below < 150;
+                                                                         below += 1 + below / 4) {
+        check_add(kernels, 1 + below % 29, below + 3 * most, below, most, &seed);
+        check_add(kernels, 60, below, below, most, &seed);
+    }
+}
+
 GPROJT_TEST(dense_strides) {
     int32_t rows;
     for (rows = 1; rows < 3000; ++rows) {
@@ -202,6 +263,7 @@ int main(void) {
     GPROJT_RUN(dense_tiles);
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);
+    GPROJT_RUN(dense_add);
     GPROJT_RUN(dense_strides);
     return gprojt_report();
 }
