@@ -1074,24 +1074,25 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
 #define GPROJI_NOINLINE __attribute__((noinline))
-#define GPROJI_ALWAYS __attribute__((always_inline)) static inline /* gcc drops calls of functions that only prefetch */
 #else
 #define GPROJI_INLINE static inline
 #define GPROJI_NOINLINE
-#define GPROJI_ALWAYS static inline
-#endif
-
-/* Asks for a line of memory that will be needed soon. */
-#if defined(__GNUC__) || defined(__clang__)
-#define GPROJI_PREFETCH(address) __builtin_prefetch(address)
-#else
-#define GPROJI_PREFETCH(address) ((void)(address))
 #endif
 
 #if defined(__cplusplus)
 #define GPROJI_RESTRICT
 #else
 #define GPROJI_RESTRICT restrict
+#endif
+
+/* Begins to bring the cache line of an address into the cache. gcc takes a function that does only this for one without
+   effect, and drops calls of it: such a function is always inlined. */
+#if defined(__GNUC__) || defined(__clang__)
+#define GPROJI_PREFETCH(address) __builtin_prefetch(address)
+#define GPROJI_INLINED __attribute__((unused, always_inline)) static inline
+#else
+#define GPROJI_PREFETCH(address) ((void)(address))
+#define GPROJI_INLINED GPROJI_INLINE
 #endif
 
 /* Vector extensions of gcc and clang; every other compiler, and GPROJ_NO_SIMD, takes the scalar path; so does
@@ -1932,16 +1933,16 @@ typedef struct gproji_piece {
 typedef struct gproji_kernels {
     const char *name;
     int32_t block;
-    bool spreads;        /* may the pieces of `add` have gaps */
-    int32_t tile_blocks; /* blocks of rows in the tallest tile */
+    bool spreads;      /* may the pieces of `add` have gaps */
+    int32_t tile_rows; /* of the tallest tile */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
        and block rows. */
     void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
                    ptrdiff_t ldc);
-    /* X = (C - A B') L^-T for tiles of 1, 2, ... blocks of rows, with the tile L on the diagonal (stride ldc like C) and
-       the inverses of its diagonal. C, L and the inverses begin with column `skip`; then k = 0. */
-    void (*solve[3])(int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
-                     ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
+    /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
+       diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
+    void (*solve)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+                  ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first column
        (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
@@ -2188,59 +2189,32 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         }                                                                                                            \
     }
 
-/* Rows of tiles: the tallest ones, and what is left. */
-#define GPROJI_DEFINE_UPDATE_1(kind, B, T1)                                                                          \
+/* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
+#define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                    \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
                                                   const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
-        for (; rows > 0; rows -= B, a += B, c += B) gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);          \
-    }
-#define GPROJI_DEFINE_UPDATE_2(kind, B, T1, T2)                                                                      \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
-        for (; rows > B; rows -= 2 * B, a += 2 * B, c += 2 * B)                                                      \
-            gproji_update_##T2##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
-        if (rows > 0) gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);                                        \
-    }
-#define GPROJI_DEFINE_UPDATE_3(kind, B, T1, T2, T3)                                                                  \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
-        for (; rows > 2 * B; rows -= 3 * B, a += 3 * B, c += 3 * B)                                                  \
-            gproji_update_##T3##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
-        if (rows > B)                                                                                                \
-            gproji_update_##T2##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
-        else if (rows > 0)                                                                                           \
-            gproji_update_##T1##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
-    }
-
-/* A kind with tiles of one, two or three heights: their vectors are T1, T2, T3. */
-#define GPROJI_DEFINE_KIND_1(kind, name, L, B, T1)                                                                   \
-    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
-    GPROJI_DEFINE_UPDATE_1(kind, B, T1)                                                                              \
+        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                     \
+            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
+        if (rows == MIDDLE * L)                                                                                      \
+            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                              \
+        else if (rows == SMALL * L)                                                                                  \
+            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                               \
+    }                                                                                                                \
+    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,            \
+                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
+                                                 const double *triangle, const double *inverse, int32_t skip) {      \
+        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                     \
+            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
+        if (rows == MIDDLE * L)                                                                                      \
+            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                      \
+        else if (rows == SMALL * L)                                                                                  \
+            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                       \
+    }                                                                                                                \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
     static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, B == 8, 1, gproji_update_##kind, {gproji_solve_##T1##_##kind, NULL, NULL}, gproji_factor_##kind,            \
+        name, B, L == 8, TALL * L, gproji_update_##kind, gproji_solve_##kind, gproji_factor_##kind,                  \
         gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
-#define GPROJI_DEFINE_KIND_2(kind, name, L, B, T1, T2)                                                               \
-    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
-    GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
-    GPROJI_DEFINE_UPDATE_2(kind, B, T1, T2)                                                                          \
-    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
-    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
-    static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, B == 8, 2, gproji_update_##kind, {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, NULL},            \
-        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
-#define GPROJI_DEFINE_KIND_3(kind, name, L, B, T1, T2, T3)                                                           \
-    GPROJI_DEFINE_TILE(kind, L, B, T1)                                                                               \
-    GPROJI_DEFINE_TILE(kind, L, B, T2)                                                                               \
-    GPROJI_DEFINE_TILE(kind, L, B, T3)                                                                               \
-    GPROJI_DEFINE_UPDATE_3(kind, B, T1, T2, T3)                                                                      \
-    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
-    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
-    static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, B == 8, 3, gproji_update_##kind,                                                                            \
-        {gproji_solve_##T1##_##kind, gproji_solve_##T2##_##kind, gproji_solve_##T3##_##kind},                        \
-        gproji_factor_##kind, gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
 /* See `add`; pieces with gaps: the rows of a piece are spread over a vector. */
@@ -2261,23 +2235,32 @@ GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t 
 #endif
 
 #ifdef GPROJI_KIND_SCALAR
+GPROJI_DEFINE_TILE(scalar, 1, 4, 4)
 GPROJI_DEFINE_ADD(scalar, 1)
-GPROJI_DEFINE_KIND_1(scalar, "scalar", 1, 4, 4)
+GPROJI_DEFINE_KIND(scalar, "scalar", 1, 4, 4, 4, 4)
 #endif
 #ifdef GPROJI_KIND_TWO
+GPROJI_DEFINE_TILE(two, 2, 4, 2)
 GPROJI_DEFINE_ADD(two, 2)
+#ifdef __aarch64__ /* has registers for more */
+GPROJI_DEFINE_TILE(two, 2, 4, 4)
+GPROJI_DEFINE_KIND(two, "vectors of two", 2, 4, 2, 4, 4)
+#else
+GPROJI_DEFINE_KIND(two, "vectors of two", 2, 4, 2, 2, 2)
 #endif
-#if defined(GPROJI_KIND_TWO) && defined(__aarch64__)
-GPROJI_DEFINE_KIND_2(two, "2 lanes", 2, 4, 2, 4)
-#elif defined(GPROJI_KIND_TWO)
-GPROJI_DEFINE_KIND_1(two, "2 lanes", 2, 4, 2)
 #endif
 #ifdef GPROJI_KIND_AVX2
+GPROJI_DEFINE_TILE(avx2, 4, 4, 1)
+GPROJI_DEFINE_TILE(avx2, 4, 4, 2)
+GPROJI_DEFINE_TILE(avx2, 4, 4, 3)
 GPROJI_DEFINE_ADD(avx2, 4)
-GPROJI_DEFINE_KIND_3(avx2, "AVX2", 4, 4, 1, 2, 3)
+GPROJI_DEFINE_KIND(avx2, "AVX2", 4, 4, 1, 2, 3)
 #endif
 #ifdef GPROJI_KIND_AVX512
-GPROJI_DEFINE_KIND_3(avx512, "AVX-512", 8, 8, 1, 2, 3)
+GPROJI_DEFINE_TILE(avx512, 8, 8, 1)
+GPROJI_DEFINE_TILE(avx512, 8, 8, 2)
+GPROJI_DEFINE_TILE(avx512, 8, 8, 3)
+GPROJI_DEFINE_KIND(avx512, "AVX-512", 8, 8, 1, 2, 3)
 #endif
 /* clang-format on */
 
@@ -2334,9 +2317,11 @@ enum {
     GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
-/* The number of pieces of `size` that cover `all`; the next multiple of `size`. */
+/* The number of pieces of `size` that cover `all`. */
 GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
-GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return gproji_pieces(all, size) * size; }
+
+/* The next multiple of `size`, a power of 2. */
+GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all + size - 1) & -size; }
 
 /* The number of empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
@@ -2444,13 +2429,12 @@ GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
                         gproji_panel_at(panel, row, column), panel->stride);
 }
 
-/* The column block with the first column `start` in `count` blocks of rows from `row` on: X = (C - A B') L^-T. */
-GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t count) {
+/* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
+GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
     int32_t skip = start == 0 ? panel->shift : 0, at = start == 0 ? 0 : start + panel->shift;
-    panel->kernels->solve[count - 1](start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                                     gproji_panel_at(panel, at, panel->first), panel->stride,
-                                     gproji_panel_at(panel, row, start), panel->stride,
-                                     gproji_panel_at(panel, at, start), panel->inverse + start, skip);
+    panel->kernels->solve(rows, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
+                          gproji_panel_at(panel, at, panel->first), panel->stride, gproji_panel_at(panel, row, start),
+                          panel->stride, gproji_panel_at(panel, at, start), panel->inverse + start, skip);
 }
 
 /* The first column of the block after the one that begins with column `start`. */
@@ -2461,20 +2445,18 @@ GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start
 /* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
 GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t block = panel->kernels->block, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
-    int32_t end = gproji_min(panel->rows, row + GPROJI_TASK_ROWS), count, start;
-    for (; row < end; row += count * block) {
-        count = gproji_min(panel->kernels->tile_blocks, (end - row) / block);
+    int32_t tile = panel->kernels->tile_rows, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
+    int32_t end = gproji_min(panel->rows, row + GPROJI_TASK_ROWS), start;
+    for (; row < end; row += tile)
         for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start))
-            gproji_block_solve(panel, start, row, count);
-    }
+            gproji_block_solve(panel, start, row, gproji_min(tile, end - row));
 }
 
 /* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
 GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
     int32_t block = kernels->block, shift = panel->shift, end = panel->last + shift, stride = panel->stride;
-    int32_t start, row, count, failed;
+    int32_t start, failed;
     for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
         int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
         const double *strip = gproji_panel_at(panel, at, panel->first);
@@ -2482,10 +2464,7 @@ GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
         if (k > 0) kernels->update(block, k, strip, stride, strip, stride, corner, stride);
         failed = kernels->factor(corner, stride, panel->inverse + start, start == 0 ? shift : 0);
         if (failed >= 0) return start + failed;
-        for (row = at + block; row < end; row += count * block) {
-            count = gproji_min(kernels->tile_blocks, (end - row) / block);
-            gproji_block_solve(panel, start, row, count);
-        }
+        gproji_block_solve(panel, start, at + block, end - at - block);
     }
     return -1;
 }
@@ -4171,8 +4150,11 @@ GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int3
    Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
-    GPROJI_SOLVE_BATCH = 4
-}; /* right-hand sides solved together at most */
+    GPROJI_SOLVE_BATCH = 4,   /* right-hand sides solved together at most */
+    GPROJI_CACHED = 1 << 16,  /* a factor with no more values than that stays in the L2 cache */
+    GPROJI_PREFETCHED = 2048, /* values of a panel that are fetched ahead; the processor finds the rest by itself */
+    GPROJI_CACHE_LINE = 8     /* values */
+};
 
 /* Adds the matrix's values that belong to a front to its cleared panel and update matrix (see gproji_panel_column). Each
    value once, in a front that has both of its variables. Called from several threads. */
@@ -4673,6 +4655,16 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
                              c->inverse + front->first, c->work + front->update);
 }
 
+/* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
+   first entries. */
+GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
+    const gproji_front *front = &c->symbolic.front[f];
+    int64_t size = (int64_t)front->width * front->stride, i;
+    if (c->symbolic.values_size <= GPROJI_CACHED) return;
+    if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
+    for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
+}
+
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
                                             gproji_piece *pieces) {
@@ -4753,8 +4745,10 @@ GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
     const gproji_symbolic *sy = &c->symbolic;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
     int32_t k, side;
-    for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k)
+    for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
+        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
         for (side = 0; side < c->sides; ++side) gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
+    }
 }
 
 GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
@@ -4762,8 +4756,10 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
     const gproji_symbolic *sy = &c->symbolic;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
     int32_t k, side;
-    for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k)
+    for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k) {
+        if (k > sy->task_start[group]) gproji_prefetch_front(c, sy->schedule[k - 1]);
         for (side = 0; side < c->sides; ++side) gproji_backward_front(c, &sy->front[sy->schedule[k]], side, z);
+    }
 }
 
 /* Takes up to c->batch right-hand sides in the order of L. */
@@ -4805,6 +4801,7 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
+        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
         failed = gproji_factor_front(c, sy->schedule[k], parallel, pieces);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
@@ -6402,7 +6399,7 @@ GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
 
 /* A front's rows come from all over the memory: asks for those that follow the k-th, with what their places are made
    of, or with their gradients. */
-GPROJI_ALWAYS void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
+GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
         gproji_row_name near_one = s->front_row[k + GPROJI_ROWS_AHEAD / 2];

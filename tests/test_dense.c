@@ -149,7 +149,6 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
             for (skip = -1; skip < (k == 0 ? B : 1); ++skip) {
                 int32_t rows = blocks * B, columns = B - gproji_max(skip, 0), first = B - columns;
                 double error = 0;
-                if (skip >= 0 && blocks > kernels->tile_blocks) continue;
                 for (i = 0; i < MOST * DEEP; ++i) a[i] = gprojt_uniform(seed);
                 for (i = 0; i < WIDE * DEEP; ++i) b[i] = gprojt_uniform(seed);
                 for (i = 0; i < MOST * WIDE; ++i)
@@ -159,7 +158,7 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
                 if (skip < 0)
                     kernels->update(rows, k, a, MOST, b, WIDE, c, MOST);
                 else
-                    kernels->solve[blocks - 1](k, a, MOST, b, WIDE, c, MOST, triangle, inverse, skip);
+                    kernels->solve(rows, k, a, MOST, b, WIDE, c, MOST, triangle, inverse, skip);
                 for (i = 0; i < MOST; ++i)
                     for (j = 0; j < WIDE; ++j) {
                         double sum = was[at(i, j, MOST)];
