@@ -3188,7 +3188,8 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    near its middle; the separator is the boundary of one side. Parts that are small enough are left to the minimum degree
    ordering, which takes the separators into account and orders them, too. */
 enum {
-    GPROJI_PART_WEIGHT = 1500 /* parts up to this weight are not cut */
+    GPROJI_PART_WEIGHT = 1500,  /* parts up to this weight are not cut */
+    GPROJI_WORTH_CUTTING = 2500 /* fewer nodes than that are left to minimum degree altogether */
 };
 
 typedef struct gproji_region {
@@ -3217,6 +3218,7 @@ typedef struct gproji_dissection {
     int32_t top;
     int32_t *stage; /* out */
     int32_t deepest;
+    int32_t first_separator; /* nodes that the first cut took */
 } gproji_dissection;
 
 GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes) {
@@ -3257,12 +3259,15 @@ GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji
     return tail;
 }
 
-/* The coordinates of a part's nodes. False when it is not connected: distance[0] is -1 for some then. */
+/* The coordinates of a part's nodes; a is where u, of the part that this one was cut from, is largest. False when it is
+   not connected: distance[0] is -1 for some then. */
 GPROJI_INTERNAL bool gproji_find_coordinates(gproji_dissection *d, const gproji_region *p) {
     const int32_t *list = d->list + p->first;
-    int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one;
-    if (gproji_find_distances(d, p, list[0], a) < p->count) return false;
-    gproji_find_distances(d, p, d->other[p->count - 1], a);
+    int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one = list[0];
+    for (k = 1; k < p->count; ++k)
+        if (d->u[list[k]] > d->u[far_one]) far_one = list[k];
+    if (gproji_find_distances(d, p, far_one, a) < p->count) return false;
+    if (p->depth == 0) gproji_find_distances(d, p, d->other[p->count - 1], a);
     gproji_find_distances(d, p, d->other[p->count - 1], b);
     for (k = 1, far_one = list[0]; k < p->count; ++k)
         if (a[list[k]] + b[list[k]] > a[far_one] + b[far_one]) far_one = list[k];
@@ -3357,6 +3362,7 @@ GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p,
                 d->stage[d->other[k]] = p->depth + 1; /* see gproji_dissect */
             }
             d->deepest = at > begin ? gproji_max(d->deepest, p->depth + 1) : d->deepest;
+            if (p->depth == 0) d->first_separator = at - begin;
         } else if (at > begin) {
             gproji_region *piece = &d->stack[d->top++];
             for (k = begin; k < at; ++k) d->part[d->other[k]] = p->first + begin;
@@ -3411,7 +3417,7 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_dissection *d, double dense) {
     for (i = 0; i < d->graph->nodes; ++i) {
         bool apart = (double)gproji_graph_degree(d->graph, i) > dense;
         d->part[i] = apart ? -1 : 0;
-        d->stage[i] = 0;
+        d->stage[i] = d->u[i] = 0;
         if (!apart) d->list[count++] = i;
     }
     d->stack[0].first = 0, d->stack[0].count = count, d->stack[0].depth = 0;
@@ -3432,10 +3438,11 @@ GPROJI_INTERNAL void gproji_sort_stages(const gproji_dissection *d, double dense
     for (i = 0; i < n; ++i) order[count[d->x[i]]++] = i;
 }
 
-/* An order by dissection above and minimum degree below. `total`: the weight of all nodes. cut: was there something to
-   be cut? If not, the order is none. */
+/* An order by dissection above and minimum degree below. `total`: the weight of all nodes. *quality: 0 when nothing was
+   cut and there is no order; 1 when the first separator is larger than that of a mesh would be, whose nodes lie on a
+   line or two; else 2. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
-                                            bool *cut) {
+                                            int32_t *quality) {
     gproji_dissection d;
     double dense = gproji_dense_degree(total);
     bool done;
@@ -3444,8 +3451,9 @@ GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_grap
     gproji_pool_start(&d.pool, heap);
     d.stage = (int32_t *)gproji_pool_take(&d.pool, graph->nodes, sizeof(int32_t));
     done = d.stage && gproji_dissection_take(&d, graph->nodes);
-    *cut = done && gproji_dissect(&d, dense);
-    if (*cut) {
+    *quality = 0;
+    if (done && gproji_dissect(&d, dense)) {
+        *quality = d.first_separator > 4 * sqrt((double)graph->nodes) ? 1 : 2;
         gproji_sort_stages(&d, dense, order);
         done = gproji_amd_order(heap, graph, total, d.stage, order);
     }
@@ -4033,19 +4041,23 @@ GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *g
     return done;
 }
 
-/* The better one of minimum degree and dissection. total: the weight of all nodes; other: work, nodes entries. */
+/* Dissection where the graph is one of a mesh, minimum degree where it is small; else the better one of both. total: the
+   weight of all nodes; other: work, nodes entries. */
 GPROJI_INTERNAL bool gproji_better_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                          int32_t *other) {
     double flops = 0, least = 0;
-    bool cut;
-    int32_t k;
-    for (k = 0; k < graph->nodes; ++k) order[k] = k;
-    if (!gproji_amd_order(heap, graph, total, NULL, order)) return false;
-    if (!gproji_dissected_order(heap, graph, total, other, &cut)) return false;
-    if (!cut) return true;
-    if (!gproji_order_flops(heap, graph, order, &least) || !gproji_order_flops(heap, graph, other, &flops))
+    int32_t quality = 0, k;
+    if (graph->nodes >= GPROJI_WORTH_CUTTING && !gproji_dissected_order(heap, graph, total, order, &quality))
         return false;
-    if (flops < least) memcpy(order, other, (size_t)graph->nodes * sizeof(int32_t));
+    if (quality == 2) return true;
+    for (k = 0; k < graph->nodes; ++k) other[k] = k;
+    if (!gproji_amd_order(heap, graph, total, NULL, other)) return false;
+    if (quality == 1) {
+        if (!gproji_order_flops(heap, graph, order, &flops) || !gproji_order_flops(heap, graph, other, &least))
+            return false;
+        if (flops <= least) return true;
+    }
+    if (graph->nodes > 0) memcpy(order, other, (size_t)graph->nodes * sizeof(int32_t));
     return true;
 }
 
