@@ -3084,7 +3084,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
 /* -- condensation -- */
 
 enum {
-    GPROJI_CONDENSED_DEGREE = 24 /* weight of the neighbours of a node that is condensed */
+    GPROJI_CONDENSED_DEGREE = 21 /* weight of the neighbours of a node that is condensed */
 };
 
 /* A graph without some of its nodes. */
@@ -3218,7 +3218,7 @@ typedef struct gproji_dissection {
     int32_t top;
     int32_t *stage; /* out */
     int32_t deepest;
-    int32_t first_separator; /* nodes that the first cut took */
+    double widest; /* the largest separator, in square roots of the nodes of its part */
 } gproji_dissection;
 
 GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes) {
@@ -3362,7 +3362,7 @@ GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p,
                 d->stage[d->other[k]] = p->depth + 1; /* see gproji_dissect */
             }
             d->deepest = at > begin ? gproji_max(d->deepest, p->depth + 1) : d->deepest;
-            if (p->depth == 0) d->first_separator = at - begin;
+            d->widest = gproji_fmax(d->widest, (at - begin) / sqrt((double)p->count));
         } else if (at > begin) {
             gproji_region *piece = &d->stack[d->top++];
             for (k = begin; k < at; ++k) d->part[d->other[k]] = p->first + begin;
@@ -3439,8 +3439,8 @@ GPROJI_INTERNAL void gproji_sort_stages(const gproji_dissection *d, double dense
 }
 
 /* An order by dissection above and minimum degree below. `total`: the weight of all nodes. *quality: 0 when nothing was
-   cut and there is no order; 1 when the first separator is larger than that of a mesh would be, whose nodes lie on a
-   line or two; else 2. False when there is no memory. */
+   cut and there is no order; 2 when the graph looks like that of a mesh, with separators of a line or two of nodes and
+   no less than 5 neighbours on average; else 1. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                             int32_t *quality) {
     gproji_dissection d;
@@ -3453,7 +3453,7 @@ GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_grap
     done = d.stage && gproji_dissection_take(&d, graph->nodes);
     *quality = 0;
     if (done && gproji_dissect(&d, dense)) {
-        *quality = d.first_separator > 4 * sqrt((double)graph->nodes) ? 1 : 2;
+        *quality = d.widest <= 4 && graph->start[graph->nodes] > 5 * (int64_t)graph->nodes ? 2 : 1;
         gproji_sort_stages(&d, dense, order);
         done = gproji_amd_order(heap, graph, total, d.stage, order);
     }
