@@ -99,7 +99,9 @@
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
      GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
      GPROJ_NO_STDIO             no functions that open files, no <stdio.h>
-     GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler
+     GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler; without it, on x86-64 with
+                                gcc and clang, the processor is asked for AVX2 and AVX-512 (not with gcc for Windows:
+                                there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
      GPROJ_USE_CBLAS            dense kernels by a CBLAS (link one, such as OpenBLAS)
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
 
@@ -111,8 +113,9 @@
      by different threads at the same time; one object by one thread at a time. Reading an object that no one changes is
      always safe.
 
-   DETERMINISM  The same input gives the same bytes on the same machine and build: on any number of threads, in any run.
-     Other compilers, other processors and GPROJ_USE_CBLAS may differ in the last digits.
+   DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
+     run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
+     gproj_cholesky_info) and GPROJ_USE_CBLAS may differ in the last digits. GPROJ_NO_SIMD leaves only the compiler.
 
    ERRORS   See >>api-error: code, place, sentence. Objects that are built up keep their first error, so one check is
      enough. Misuse that only a programmer can cause is reported like everything else.
@@ -297,6 +300,7 @@ typedef struct gproj_cholesky_info {
     size_t factor_bytes;    /* memory for the values of L */
     size_t work_bytes;      /* memory for the work arrays of factor and solve */
     int32_t failed_column;  /* of A, where the last factorisation met a pivot that is not > 0; else -1 */
+    const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
 typedef enum gproj_factor_outcome {
@@ -1055,10 +1059,6 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #ifdef GPROJ_USE_CBLAS
 #include <cblas.h>
 #endif
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__)
-#include <cpuid.h>
-#include <immintrin.h>
-#endif
 
 #ifndef GPROJ_ASSERT
 #include <assert.h>
@@ -1102,6 +1102,22 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 #define GPROJI_SIMD 1
 #else
 #define GPROJI_SIMD 0
+#endif
+
+/* May code for vector units be compiled that the compiler's target lacks? On x86-64; but gcc for Windows does not align
+   long vectors on the stack (its bug 54412), and clang's headers for Microsoft's compiler leave out what the target
+   lacks. */
+#if GPROJI_SIMD && defined(__x86_64__) && !defined(_MSC_VER) && \
+    (defined(__clang__) || !(defined(_WIN32) || defined(__CYGWIN__)))
+#define GPROJI_CHOICE 1
+#else
+#define GPROJI_CHOICE 0
+#endif
+#if GPROJI_CHOICE
+#include <cpuid.h>
+#endif
+#if GPROJI_CHOICE || (GPROJI_SIMD && defined(__AVX512F__))
+#include <immintrin.h>
 #endif
 
 GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -1916,10 +1932,10 @@ GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s-
    for how matrices are padded. A tile of diagonal entries may begin with `skip` < block columns that do not exist: its
    first column in memory is number `skip`, so that pivot j always stands in row j. The rows of such columns are 0.
 
-   The text of the kernels is one macro, compiled for each kind of unit: L numbers in a vector, B = `block`. A kind's
-   kernels stand in a constant table. In the scalar kind a vector is a double. On x86-64, where compilers build for the
-   oldest processor unless told otherwise, all kinds are compiled and gproji_choose_kernels asks the processor;
-   elsewhere the compiler's target decides.
+   The text of the kernels is macros, compiled for each kind of unit: L numbers in a vector, B = `block`. In the scalar
+   kind a vector is a double. A kind's kernels stand in a constant table. On x86-64, where compilers build for the
+   oldest processor unless told otherwise, several kinds are compiled and gproji_kernels_of asks the processor, once for
+   an object; elsewhere the compiler's target decides.
 
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
 
@@ -1933,8 +1949,8 @@ typedef struct gproji_piece {
 typedef struct gproji_kernels {
     const char *name;
     int32_t block;
-    bool spreads;      /* may the pieces of `add` have gaps */
     int32_t tile_rows; /* of the tallest tile */
+    bool spreads;      /* the pieces of `add` have gaps */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
        and block rows. */
     void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
@@ -1943,8 +1959,8 @@ typedef struct gproji_kernels {
        diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
     void (*solve)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
-    /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first column
-       (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
+    /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
+       column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
     /* One column block of the solutions of L y = b and L' x = y: z[0..block) become the unknowns, and go into, or
        come from, the other rows up to `rows` (a multiple of block). */
@@ -1957,29 +1973,34 @@ typedef struct gproji_kernels {
                 ptrdiff_t source_stride, double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
-/* The kinds of vector units that are compiled, as a list, the best first. GPROJI_BLOCK is the multiple to which
-   matrices are padded, in x86-64 the same for all kinds. */
+/* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
+   matrices are padded: in x86-64 the same for all kinds. */
 #if !GPROJI_SIMD || (defined(__i386__) && !defined(__SSE2_MATH__)) /* x87 has no vectors */
-#define GPROJI_KINDS(X) X(scalar)
+#define GPROJI_KINDS(X) X(scalar, true)
 #define GPROJI_KIND_SCALAR
-#define GPROJI_BLOCK 4
-#elif !defined(__x86_64__)
-#define GPROJI_KINDS(X) X(two)
+#elif defined(__x86_64__) && defined(__AVX512F__)
+#define GPROJI_KINDS(X) X(avx512, true)
+#define GPROJI_KIND_AVX512
+#elif defined(__x86_64__) && defined(__AVX2__) && defined(__FMA__) && GPROJI_CHOICE
+#define GPROJI_KINDS(X) X(avx512, units.avx512) X(avx2, true)
+#define GPROJI_KIND_AVX512
+#define GPROJI_KIND_AVX2
+#elif defined(__x86_64__) && defined(__AVX2__) && defined(__FMA__)
+#define GPROJI_KINDS(X) X(avx2, true)
+#define GPROJI_KIND_AVX2
+#elif GPROJI_CHOICE
+#define GPROJI_KINDS(X) X(avx512, units.avx512) X(avx2, units.avx2) X(two, true)
+#define GPROJI_KIND_AVX512
+#define GPROJI_KIND_AVX2
 #define GPROJI_KIND_TWO
-#define GPROJI_BLOCK 4
 #else
-#define GPROJI_BLOCK 8
-#if defined(__AVX512F__)
-#define GPROJI_KINDS(X) X(avx512)
-#elif defined(__AVX2__) && defined(__FMA__)
-#define GPROJI_KINDS(X) X(avx512) X(avx2)
-#define GPROJI_KIND_AVX2
-#else
-#define GPROJI_KINDS(X) X(avx512) X(avx2) X(two)
-#define GPROJI_KIND_AVX2
+#define GPROJI_KINDS(X) X(two, true)
 #define GPROJI_KIND_TWO
 #endif
-#define GPROJI_KIND_AVX512
+#if GPROJI_SIMD && defined(__x86_64__)
+#define GPROJI_BLOCK 8
+#else
+#define GPROJI_BLOCK 4
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -1993,8 +2014,8 @@ typedef double gproji_lanes_at_4 __attribute__((vector_size(32), aligned(8), may
 typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may_alias));
 #endif
 
-/* A kernel is compiled for its kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It begins
-   with GPROJI_BEGIN, which says what a vector is. */
+/* A kernel is compiled for its kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
+   begins with GPROJI_BEGIN, which says what a vector is. */
 #if defined(__clang__)
 #define GPROJI_KERNEL(target) __attribute__((noinline, unused GPROJI_TARGET_##target)) static
 #define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma"), min_vector_width(512)
@@ -2012,10 +2033,10 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_TARGET_two
 #define GPROJI_TARGET_scalar
 /* clang-format off */
-#define GPROJI_BEGIN(L)                                                                                              \
-    GPROJI_FUSE                                                                                                      \
-    typedef gproji_lanes_##L lanes;                                                                                  \
-    typedef gproji_lanes_at_##L lanes_at;                                                                            \
+#define GPROJI_BEGIN(L)                                                                                                \
+    GPROJI_FUSE                                                                                                        \
+    typedef gproji_lanes_##L lanes;                                                                                    \
+    typedef gproji_lanes_at_##L lanes_at;                                                                              \
     enum { LANES = L };
 #define GPROJI_LOAD(p) (*(const lanes_at *)(const void *)(p))
 #define GPROJI_STORE(p, v) (*(lanes_at *)(void *)(p) = (v))
@@ -2031,32 +2052,32 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_PAIRS_3(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j)
 #define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
 
-/* all columns; all that exist; the order of a forward substitution, in which S(j) finishes column j and E(i, j) takes it
-   from column i; and that of a backward one */
+/* all columns; all that exist; the order of a forward substitution, in which S(j) finishes column j and E(i, j) takes
+   it from column i; and that of a backward one */
 #define GPROJI_COLUMNS_4(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
 #define GPROJI_COLUMNS_8(R, X) GPROJI_COLUMNS_4(R, X) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
 #define GPROJI_EXISTS(j, text) if (skip <= (j)) { text }
-#define GPROJI_EXISTING_4(R, X) \
+#define GPROJI_EXISTING_4(R, X)                                                                                        \
     GPROJI_EXISTS(0, R(X, 0)) GPROJI_EXISTS(1, R(X, 1)) GPROJI_EXISTS(2, R(X, 2)) GPROJI_EXISTS(3, R(X, 3))
-#define GPROJI_EXISTING_8(R, X) GPROJI_EXISTING_4(R, X)                                                              \
+#define GPROJI_EXISTING_8(R, X) GPROJI_EXISTING_4(R, X)                                                                \
     GPROJI_EXISTS(4, R(X, 4)) GPROJI_EXISTS(5, R(X, 5)) GPROJI_EXISTS(6, R(X, 6)) GPROJI_EXISTS(7, R(X, 7))
-#define GPROJI_FORWARD_4(R, P, S, E)                                                                                 \
-    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0)) GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1))       \
+#define GPROJI_FORWARD_4(R, P, S, E)                                                                                   \
+    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0)) GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1))         \
     GPROJI_EXISTS(2, R(S, 2) P(E, 3, 2)) R(S, 3)
-#define GPROJI_FORWARD_8(R, P, S, E)                                                                                 \
-    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) P(E, 4, 0) P(E, 5, 0) P(E, 6, 0) P(E, 7, 0))           \
-    GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1) P(E, 4, 1) P(E, 5, 1) P(E, 6, 1) P(E, 7, 1))                      \
-    GPROJI_EXISTS(2, R(S, 2) P(E, 3, 2) P(E, 4, 2) P(E, 5, 2) P(E, 6, 2) P(E, 7, 2))                                 \
-    GPROJI_EXISTS(3, R(S, 3) P(E, 4, 3) P(E, 5, 3) P(E, 6, 3) P(E, 7, 3))                                            \
-    GPROJI_EXISTS(4, R(S, 4) P(E, 5, 4) P(E, 6, 4) P(E, 7, 4)) GPROJI_EXISTS(5, R(S, 5) P(E, 6, 5) P(E, 7, 5))       \
+#define GPROJI_FORWARD_8(R, P, S, E)                                                                                   \
+    GPROJI_EXISTS(0, R(S, 0) P(E, 1, 0) P(E, 2, 0) P(E, 3, 0) P(E, 4, 0) P(E, 5, 0) P(E, 6, 0) P(E, 7, 0))             \
+    GPROJI_EXISTS(1, R(S, 1) P(E, 2, 1) P(E, 3, 1) P(E, 4, 1) P(E, 5, 1) P(E, 6, 1) P(E, 7, 1))                        \
+    GPROJI_EXISTS(2, R(S, 2) P(E, 3, 2) P(E, 4, 2) P(E, 5, 2) P(E, 6, 2) P(E, 7, 2))                                   \
+    GPROJI_EXISTS(3, R(S, 3) P(E, 4, 3) P(E, 5, 3) P(E, 6, 3) P(E, 7, 3))                                              \
+    GPROJI_EXISTS(4, R(S, 4) P(E, 5, 4) P(E, 6, 4) P(E, 7, 4)) GPROJI_EXISTS(5, R(S, 5) P(E, 6, 5) P(E, 7, 5))         \
     GPROJI_EXISTS(6, R(S, 6) P(E, 7, 6)) R(S, 7)
-#define GPROJI_BACKWARD_4(R, P, S, E)                                                                                \
-    GPROJI_EXISTS(3, R(S, 3) P(E, 2, 3) P(E, 1, 3) P(E, 0, 3)) GPROJI_EXISTS(2, R(S, 2) P(E, 1, 2) P(E, 0, 2))                         \
+#define GPROJI_BACKWARD_4(R, P, S, E)                                                                                  \
+    GPROJI_EXISTS(3, R(S, 3) P(E, 2, 3) P(E, 1, 3) P(E, 0, 3)) GPROJI_EXISTS(2, R(S, 2) P(E, 1, 2) P(E, 0, 2))         \
     GPROJI_EXISTS(1, R(S, 1) P(E, 0, 1)) GPROJI_EXISTS(0, R(S, 0))
-#define GPROJI_BACKWARD_8(R, P, S, E)                                                                                \
-    R(S, 7) P(E, 6, 7) P(E, 5, 7) P(E, 4, 7) P(E, 3, 7) P(E, 2, 7) P(E, 1, 7) P(E, 0, 7)                             \
-    GPROJI_EXISTS(6, R(S, 6) P(E, 5, 6) P(E, 4, 6) P(E, 3, 6) P(E, 2, 6) P(E, 1, 6) P(E, 0, 6))                      \
-    GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                 \
+#define GPROJI_BACKWARD_8(R, P, S, E)                                                                                  \
+    R(S, 7) P(E, 6, 7) P(E, 5, 7) P(E, 4, 7) P(E, 3, 7) P(E, 2, 7) P(E, 1, 7) P(E, 0, 7)                               \
+    GPROJI_EXISTS(6, R(S, 6) P(E, 5, 6) P(E, 4, 6) P(E, 3, 6) P(E, 2, 6) P(E, 1, 6) P(E, 0, 6))                        \
+    GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                   \
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
@@ -2068,61 +2089,62 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + ((j) - skip) * ldc];
 
 /* A tile of T vectors by B columns: see `update` and `solve`. */
-#define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                            \
-    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,  \
-                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                   \
-        GPROJI_BEGIN(L)                                                                                              \
-        enum { skip = 0 };                                                                                           \
-        const lanes zero = {0};                                                                                      \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                     \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                     \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                   \
-            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                \
-        }                                                                                                            \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                         \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                         \
-    }                                                                                                                \
-    GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                              \
-        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,         \
-        const double *triangle, const double *inverse, int32_t skip) {                                               \
-        GPROJI_BEGIN(L)                                                                                              \
-        const lanes zero = {0};                                                                                      \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                     \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                     \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                   \
-            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                \
-        }                                                                                                            \
-        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                        \
-        GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)              \
-        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                        \
+#define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,    \
+                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                     \
+        GPROJI_BEGIN(L)                                                                                                \
+        enum { skip = 0 };                                                                                             \
+        const lanes zero = {0};                                                                                        \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
+            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+        }                                                                                                              \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                           \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
+    }                                                                                                                  \
+    GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                                \
+        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
+        const double *triangle, const double *inverse, int32_t skip) {                                                 \
+        GPROJI_BEGIN(L)                                                                                                \
+        const lanes zero = {0};                                                                                        \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
+        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
+            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+        }                                                                                                              \
+        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                          \
+        GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)                \
+        GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                          \
     }
 
 /* See `factor`. The pivots come from a chain as short as possible, 1 / pivot -> factor -> next pivot; the square roots
    are beside it. */
-#define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                             \
-    GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) { \
-        GPROJI_BEGIN(L)                                                                                              \
-        double *column = tile, pivot = tile[skip];                                                                   \
-        int32_t j, k, r;                                                                                             \
-        for (j = skip; j < B; ++j, column += stride) {                                                               \
-            const double reciprocal = 1.0 / pivot, root = sqrt(pivot), scale = 1.0 / root;                           \
-            double *later = column + stride;                                                                         \
-            if (!(pivot > 0) || !gproji_is_finite(pivot)) return j - skip;                                           \
-            if (j + 1 < B) pivot = later[j + 1] - column[j + 1] * (column[j + 1] * reciprocal);                      \
-            for (k = j + 1; k < B; ++k, later += stride) {                                                           \
-                const double factor = column[k] * reciprocal;                                                        \
-                for (r = 0; r < B; r += LANES) {                                                                     \
-                    const lanes rest = GPROJI_LOAD(later + r) - GPROJI_LOAD(column + r) * factor;                    \
-                    GPROJI_STORE(later + r, rest);                                                                   \
-                }                                                                                                    \
-            }                                                                                                        \
-            for (r = 0; r < B; r += LANES) GPROJI_STORE(column + r, GPROJI_LOAD(column + r) * scale);                \
-            column[j] = root;                                                                                        \
-            inverse[j - skip] = scale;                                                                               \
-        }                                                                                                            \
-        return -1;                                                                                                   \
+#define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                               \
+    GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) {  \
+        GPROJI_BEGIN(L)                                                                                                \
+        double *column = tile, pivot = tile[skip];                                                                     \
+        int32_t j, k, r;                                                                                               \
+        for (j = skip; j < B; ++j, column += stride) {                                                                 \
+            double *later = column + stride, reciprocal, root, scale;                                                  \
+            if (!(pivot > 0) || !gproji_is_finite(pivot)) return j - skip;                                             \
+            reciprocal = 1.0 / pivot, root = sqrt(pivot), scale = 1.0 / root;                                          \
+            if (j + 1 < B) pivot = later[j + 1] - column[j + 1] * (column[j + 1] * reciprocal);                        \
+            for (k = j + 1; k < B; ++k, later += stride) {                                                             \
+                const double factor = column[k] * reciprocal;                                                          \
+                for (r = 0; r < B; r += LANES) {                                                                       \
+                    const lanes rest = GPROJI_LOAD(later + r) - GPROJI_LOAD(column + r) * factor;                      \
+                    GPROJI_STORE(later + r, rest);                                                                     \
+                }                                                                                                      \
+            }                                                                                                          \
+            for (r = 0; r < B; r += LANES) GPROJI_STORE(column + r, GPROJI_LOAD(column + r) * scale);                  \
+            column[j] = root;                                                                                          \
+            inverse[j - skip] = scale;                                                                                 \
+        }                                                                                                              \
+        return -1;                                                                                                     \
     }
 
+/* One right-hand side: z_j is row j of the column block, l_j column j, sum_j its product with the other rows. */
 #define GPROJI_ONE_ROW(X, j) X(j)
 #define GPROJI_ONE_PAIR(X, i, j) X(i, j)
 #define GPROJI_Z_TAKE(j) double z_##j = z[j]; const double *l_##j = l + gproji_max((j) - skip, 0) * stride;
@@ -2135,90 +2157,90 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_Z_TOTAL_1(j) z_##j -= sum_##j;
 #define GPROJI_Z_TOTAL_2(j) z_##j -= sum_##j[0] + sum_##j[1];
 #define GPROJI_Z_TOTAL_4(j) z_##j -= (sum_##j[0] + sum_##j[2]) + (sum_##j[1] + sum_##j[3]);
-#define GPROJI_Z_TOTAL_8(j)                                                                                           \
-    z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                \
+#define GPROJI_Z_TOTAL_8(j)                                                                                            \
+    z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                 \
              ((sum_##j[1] + sum_##j[5]) + (sum_##j[3] + sum_##j[7]));
 
 /* See `forward` and `backward`. A column that does not exist is the first one once more, times 0. */
-#define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                          \
-    GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                  \
-                                                   const double *inverse, int32_t skip, double *z) {                 \
-        GPROJI_BEGIN(L)                                                                                              \
-        int32_t r;                                                                                                   \
-        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                            \
-        GPROJI_FORWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_FORWARD)                        \
-        for (r = B; r < rows; r += LANES) {                                                                          \
-            lanes sum = GPROJI_LOAD(z + r);                                                                          \
-            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SPREAD)                                                      \
-            GPROJI_STORE(z + r, sum);                                                                                \
-        }                                                                                                            \
-    }                                                                                                                \
-    GPROJI_KERNEL(kind) void gproji_backward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                 \
-                                                    const double *inverse, int32_t skip, double *z) {                \
-        GPROJI_BEGIN(L)                                                                                              \
-        const lanes zero = {0};                                                                                      \
-        int32_t r;                                                                                                   \
-        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                            \
-        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SUM)                                                             \
-        for (r = B; r < rows; r += LANES) {                                                                          \
-            const lanes right = GPROJI_LOAD(z + r);                                                                  \
-            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_GATHER)                                                      \
-        }                                                                                                            \
-        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TOTAL_##L)                                                       \
-        GPROJI_BACKWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_BACKWARD)                      \
+#define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                            \
+    GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                    \
+                                                   const double *inverse, int32_t skip, double *z) {                   \
+        GPROJI_BEGIN(L)                                                                                                \
+        int32_t r;                                                                                                     \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                              \
+        GPROJI_FORWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_FORWARD)                          \
+        for (r = B; r < rows; r += LANES) {                                                                            \
+            lanes sum = GPROJI_LOAD(z + r);                                                                            \
+            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SPREAD)                                                        \
+            GPROJI_STORE(z + r, sum);                                                                                  \
+        }                                                                                                              \
+    }                                                                                                                  \
+    GPROJI_KERNEL(kind) void gproji_backward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                   \
+                                                    const double *inverse, int32_t skip, double *z) {                  \
+        GPROJI_BEGIN(L)                                                                                                \
+        const lanes zero = {0};                                                                                        \
+        int32_t r;                                                                                                     \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TAKE)                                                              \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SUM)                                                               \
+        for (r = B; r < rows; r += LANES) {                                                                            \
+            const lanes right = GPROJI_LOAD(z + r);                                                                    \
+            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_GATHER)                                                        \
+        }                                                                                                              \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_TOTAL_##L)                                                         \
+        GPROJI_BACKWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_BACKWARD)                        \
     }
 
 /* See `add`; pieces have no gaps. */
-#define GPROJI_DEFINE_ADD(kind, L)                                                                                   \
-    GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, \
-                                               const double *source, ptrdiff_t source_stride, double *target,        \
-                                               ptrdiff_t target_stride) {                                            \
-        GPROJI_BEGIN(L)                                                                                              \
-        for (; first < last; ++first, source += source_stride) {                                                     \
-            double *column = target + first * target_stride;                                                         \
-            int32_t r = first, k;                                                                                    \
-            for (k = 0; k < count; ++k, r = 0) {                                                                     \
-                const double *s = source + piece[k].from;                                                            \
-                double *d = column + piece[k].to;                                                                    \
-                for (; r + LANES <= piece[k].rows; r += LANES) {                                                     \
-                    const lanes sum = GPROJI_LOAD(d + r) + GPROJI_LOAD(s + r);                                       \
-                    GPROJI_STORE(d + r, sum);                                                                        \
-                }                                                                                                    \
-                for (; r < piece[k].rows; ++r) d[r] += s[r];                                                         \
-            }                                                                                                        \
-        }                                                                                                            \
+#define GPROJI_DEFINE_ADD(kind, L)                                                                                     \
+    GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,  \
+                                               const double *source, ptrdiff_t source_stride, double *target,          \
+                                               ptrdiff_t target_stride) {                                              \
+        GPROJI_BEGIN(L)                                                                                                \
+        for (; first < last; ++first, source += source_stride) {                                                       \
+            double *column = target + first * target_stride;                                                           \
+            int32_t r = first, k;                                                                                      \
+            for (k = 0; k < count; ++k, r = 0) {                                                                       \
+                const double *s = source + piece[k].from;                                                              \
+                double *d = column + piece[k].to;                                                                      \
+                for (; r + LANES <= piece[k].rows; r += LANES) {                                                       \
+                    const lanes sum = GPROJI_LOAD(d + r) + GPROJI_LOAD(s + r);                                         \
+                    GPROJI_STORE(d + r, sum);                                                                          \
+                }                                                                                                      \
+                for (; r < piece[k].rows; ++r) d[r] += s[r];                                                           \
+            }                                                                                                          \
+        }                                                                                                              \
     }
 
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
-#define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                    \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,           \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {        \
-        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                     \
-            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
-        if (rows == MIDDLE * L)                                                                                      \
-            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                              \
-        else if (rows == SMALL * L)                                                                                  \
-            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                               \
-    }                                                                                                                \
-    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,            \
-                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
-                                                 const double *triangle, const double *inverse, int32_t skip) {      \
-        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                     \
-            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
-        if (rows == MIDDLE * L)                                                                                      \
-            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                      \
-        else if (rows == SMALL * L)                                                                                  \
-            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                       \
-    }                                                                                                                \
-    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                 \
-    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                              \
-    static const gproji_kernels gproji_kernels_##kind = {                                                            \
-        name, B, L == 8, TALL * L, gproji_update_##kind, gproji_solve_##kind, gproji_factor_##kind,                  \
+#define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,             \
+                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {          \
+        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
+            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+        if (rows == MIDDLE * L)                                                                                        \
+            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
+        else if (rows == SMALL * L)                                                                                    \
+            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                 \
+    }                                                                                                                  \
+    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,              \
+                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,             \
+                                                 const double *triangle, const double *inverse, int32_t skip) {        \
+        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
+            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                          \
+        if (rows == MIDDLE * L)                                                                                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
+        else if (rows == SMALL * L)                                                                                    \
+            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                         \
+    }                                                                                                                  \
+    GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
+    GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
+    static const gproji_kernels gproji_kernels_##kind = {                                                              \
+        name, B, TALL * L, L == 8, gproji_update_##kind, gproji_solve_##kind, gproji_factor_##kind,                    \
         gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
 /* See `add`; pieces with gaps: the rows of a piece are spread over a vector. */
-#define GPROJI_ADD_SPREAD(d, s, mask) \
+#define GPROJI_ADD_SPREAD(d, s, mask)                                                                                  \
     _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,
                                              const double *source, ptrdiff_t source_stride, double *target,
@@ -2264,8 +2286,8 @@ GPROJI_DEFINE_KIND(avx512, "AVX-512", 8, 8, 1, 2, 3)
 #endif
 /* clang-format on */
 
+#if GPROJI_CHOICE
 /* The vector units of this processor whose registers the operating system keeps. */
-#ifdef GPROJI_KIND_AVX512
 typedef struct gproji_units {
     bool avx2, avx512;
 } gproji_units;
@@ -2280,19 +2302,16 @@ GPROJI_INTERNAL gproji_units gproji_find_units(void) {
     units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6; /* and masks, zmm */
     return units;
 }
-#define GPROJI_HAVE_avx512 units.avx512
-#define GPROJI_HAVE_avx2 units.avx2
 #endif
-#define GPROJI_HAVE_two true
-#define GPROJI_HAVE_scalar true
 
-/* The kernels of kind `index` among those that this processor has, the best first; NULL where there are no more. */
+/* Kernels that this processor can run: index 0 the best, then the others; NULL where there are no more. */
 GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
-#ifdef GPROJI_KIND_AVX512
+#if GPROJI_CHOICE
     const gproji_units units = gproji_find_units();
+    (void)units;
 #endif
-#define GPROJI_X(kind) \
-    if (GPROJI_HAVE_##kind && index-- == 0) return &gproji_kernels_##kind;
+#define GPROJI_X(kind, have) \
+    if (have && index-- == 0) return &gproji_kernels_##kind;
     GPROJI_KINDS(GPROJI_X)
 #undef GPROJI_X
     return NULL;
@@ -2304,9 +2323,10 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    All matrices are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
    ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
    a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
-   rows [t B, t B + B) with B = the kernels' block, which divides GPROJI_BLOCK, and its columns (the first block may have
-   fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every tile is whole and aligned:
-   what kernels compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is never read.
+   rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns (the first block may
+   have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every tile is whole and
+   aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is
+   never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
@@ -4266,6 +4286,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     double work;
     memset(&info, 0, sizeof info);
     info.failed_column = -1;
+    info.kernels = cholesky ? cholesky->kernels->name : "";
     if (!cholesky || !cholesky->analysed) return info;
     sy = &cholesky->symbolic;
     info.columns = sy->columns;

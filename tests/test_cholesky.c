@@ -865,12 +865,15 @@ GPROJT_TEST(cholesky_not_positive_definite) {
 
 /* -- threads -- */
 
-/* The solution with a host that runs tasks its way; the first unknown of a failing matrix in *failed. */
-static double *solution_with(const gproj_host *host, const matrix *m, int32_t *failed) {
+/* The solution with a host that runs tasks its way, and with these kernels; the first unknown of a failing matrix in
+   *failed. */
+static double *solution_with(const gproj_host *host, const gproji_kernels *kernels, const matrix *m, int32_t *failed) {
     gproj_cholesky *c;
     double *x = (double *)malloc((size_t)m->n * sizeof(double)), was, was_half;
     int32_t i;
     c = gproj_cholesky_create(host);
+    c->kernels = kernels;
+    GPROJT_CHECK(strcmp(gproj_cholesky_get_info(c).kernels, kernels->name) == 0);
     for (i = 0; i < m->n; ++i) x[i] = sin(0.1 * i);
     GPROJT_CHECK(gproj_cholesky_analyse(c, m->n, m->start, m->row, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_factor(c, m->value) == GPROJ_FACTORED);
@@ -886,10 +889,12 @@ static double *solution_with(const gproj_host *host, const matrix *m, int32_t *f
     return x;
 }
 
+/* Each kind of kernels gives the same bits for any workers, and all kinds the same solution. */
 GPROJT_TEST(cholesky_same_bits_for_any_workers) {
     matrix m = planarity(TORUS, 50, 50);
-    double *first = NULL;
-    int32_t k, failed = -1, other, j;
+    double *first[8] = {NULL}; /* of each kind */
+    const gproji_kernels *kernels;
+    int32_t k, kind, failed = -1, other, j;
     matrix_merge(&m);
     for (j = 0; j < m.n; ++j) { /* the diagonal first in every column */
         int64_t p = m.start[j];
@@ -899,18 +904,21 @@ GPROJT_TEST(cholesky_same_bits_for_any_workers) {
         m.value[p] = m.value[m.start[j]], m.row[p] = m.row[m.start[j]];
         m.value[m.start[j]] = v, m.row[m.start[j]] = j;
     }
-    for (k = 0; k < GPROJT_CREWS; ++k) {
-        gproj_host host = gprojt_crew(k);
-        double *x = solution_with(&host, &m, &other);
-        if (k == 0) {
-            first = x, failed = other;
-            continue;
+    for (kind = 0; (kernels = gproji_kernels_of(kind)) != NULL; ++kind)
+        for (k = 0; k < GPROJT_CREWS; ++k) {
+            gproj_host host = gprojt_crew(k);
+            double *x = solution_with(&host, kernels, &m, &other);
+            if (kind == 0 && k == 0) failed = other;
+            GPROJT_CHECK(failed == other);
+            if (k == 0) {
+                first[kind] = x;
+                for (j = 0; j < m.n; ++j) GPROJT_NEAR(x[j], first[0][j], 1e-9);
+                continue;
+            }
+            GPROJT_CHECK(memcmp(first[kind], x, (size_t)m.n * sizeof(double)) == 0);
+            free(x);
         }
-        GPROJT_CHECK(memcmp(first, x, (size_t)m.n * sizeof(double)) == 0);
-        GPROJT_CHECK(failed == other);
-        free(x);
-    }
-    free(first);
+    for (k = 0; k < kind; ++k) free(first[k]);
     matrix_free(&m);
 }
 
