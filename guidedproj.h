@@ -14343,6 +14343,14 @@ GPROJI_INTERNAL double gproji_part_unbalanced(gproj_form *form, double *largest)
     return *largest > 0 ? worst / *largest : 0;
 }
 
+/* Do some of the loads follow the shape, so that they vanish with it? */
+GPROJI_INTERNAL bool gproji_loads_follow(const gproj_loads *loads, int32_t edges) {
+    int32_t e;
+    for (e = 0; loads->edge_density && e < edges; ++e)
+        if (loads->edge_density[e] != 0) return true;
+    return (!loads->edge_density && loads->density != 0) || loads->area_load != 0 || loads->snow != 0;
+}
+
 /* Equilibrium to the tolerance says nothing where the loads themselves are below it: where the mesh has shrunk to a
    point, or beside huge forces. */
 GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
@@ -14353,6 +14361,11 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     part = gproji_part_unbalanced(form, &largest);
     if (part < 0) {
         *result = gproji_failed_result(gproj_form_error(form));
+    } else if (largest == 0 && gproji_loads_follow(&s->loads, form->mesh->edge_count)) {
+        result->outcome = GPROJ_STALLED;
+        gproji_format(result->message, sizeof result->message,
+                      "no equilibrium: the mesh has shrunk to a point, and its loads with it; fix vertices or let them "
+                      "glide");
     } else if (part > noticeable && largest <= 10 * result->tolerance) {
         result->outcome = GPROJ_STALLED;
         gproji_format(result->message, sizeof result->message,

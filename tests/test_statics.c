@@ -1397,7 +1397,7 @@ GPROJT_TEST(a_point_is_no_equilibrium) {
         if (!wish) gproj_add_fixed_corners(form, 1);
         result = gproj_solve(form, 25, NULL);
         GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !wish);
-        GPROJT_CHECK((gproj_measure_forces(form).residual < 1e-9) == !wish);
+        GPROJT_CHECK(wish || gproj_measure_forces(form).residual < 1e-9); /* a point has no loads to be balanced */
         GPROJT_CHECK(wish == (strstr(result.message, "shrunk to a point") != NULL));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);

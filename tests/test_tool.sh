@@ -587,7 +587,7 @@ if [[ $tool != *coverage* ]] && { (ulimit -v 1000000 && "$tool" --version) >/dev
         } 2>/dev/null
         case $status in
         0) [ -s low.obj ] && pass || fail "with $limit KB: exit 0 without an output" ;;
-        4) grep -q "out of memory" err.txt && [ ! -e low.obj ] && pass || fail "with $limit KB: $(cat err.txt)" ;;
+        4) grep -qE "out of memory|too large for the memory" err.txt && [ ! -e low.obj ] && pass || fail "with $limit KB: $(cat err.txt)" ;;
         127) pass ;; # not even the program could be loaded
         *) fail "with $limit KB it exits with $status: $(tail -n 1 err.txt)" ;;
         esac
