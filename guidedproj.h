@@ -3257,15 +3257,14 @@ GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes)
     return d->distance[2] && d->sum && d->low && d->high && d->stack;
 }
 
-/* Distances from `root` within its part, by breadth-first search; `other` gets the nodes in the order in which they are
-   reached. Returns their number. */
-GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji_region *p, int32_t root,
-                                              int32_t *distance) {
+/* Distances from `root` to what is connected with it in its part and has distance -1, by breadth-first search. `other`
+   gets these nodes from other[head] on, in the order in which they are reached. Returns where they end. */
+GPROJI_INTERNAL int32_t gproji_spread(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t *distance,
+                                      int32_t head) {
     const gproji_graph *graph = d->graph;
-    int32_t *queue = d->other, head = 0, tail = 1, k;
-    for (k = p->first; k < p->first + p->count; ++k) distance[d->list[k]] = -1;
+    int32_t *queue = d->other, tail = head + 1;
     distance[root] = 0;
-    queue[0] = root;
+    queue[head] = root;
     while (head < tail) {
         int32_t at = queue[head++], next = distance[at] + 1;
         int64_t e;
@@ -3279,8 +3278,38 @@ GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji
     return tail;
 }
 
+GPROJI_INTERNAL void gproji_forget_distances(const gproji_dissection *d, const gproji_region *p, int32_t *distance) {
+    int32_t k;
+    for (k = p->first; k < p->first + p->count; ++k) distance[d->list[k]] = -1;
+}
+
+/* Distances from `root` in its part. Returns how many nodes are reached. */
+GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji_region *p, int32_t root,
+                                              int32_t *distance) {
+    gproji_forget_distances(d, p, distance);
+    return gproji_spread(d, p, root, distance, 0);
+}
+
+/* Makes each connected component of a part a part. */
+GPROJI_INTERNAL void gproji_split_components(gproji_dissection *d, const gproji_region *p) {
+    int32_t *list = d->list + p->first, *distance = d->distance[0], begin = 0, top = d->top, k;
+    gproji_forget_distances(d, p, distance);
+    for (k = 0; k < p->count; ++k) {
+        gproji_region *piece = &d->stack[d->top];
+        int32_t end;
+        if (distance[list[k]] >= 0) continue;
+        end = gproji_spread(d, p, list[k], distance, begin);
+        piece->first = p->first + begin, piece->count = end - begin, piece->depth = p->depth;
+        d->top++;
+        begin = end;
+    }
+    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
+    for (; top < d->top; ++top)
+        for (k = 0; k < d->stack[top].count; ++k) d->part[d->list[d->stack[top].first + k]] = d->stack[top].first;
+}
+
 /* The coordinates of a part's nodes; a is where u, of the part that this one was cut from, is largest. False when it is
-   not connected: distance[0] is -1 for some then. */
+   not connected. */
 GPROJI_INTERNAL bool gproji_find_coordinates(gproji_dissection *d, const gproji_region *p) {
     const int32_t *list = d->list + p->first;
     int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one = list[0];
@@ -3361,7 +3390,7 @@ GPROJI_INTERNAL void gproji_try_coordinate(gproji_dissection *d, const gproji_re
         low += d->low[t];
         high += d->high[t];
         above = all - below;
-        if (t < first || below == 0 || above == 0) continue;
+        if (t < first || below < 0.1 * all || above < 0.1 * all) continue; /* so cuts are few: log(nodes) deep */
         separator = gproji_fmin(low, high);
         cost = separator * separator * all * all / (below * above);
         if (cost >= best->cost) continue;
@@ -3419,9 +3448,7 @@ GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region par
     for (k = part.first; k < part.first + part.count; ++k) weight += d->graph->weight[d->list[k]];
     if (weight <= GPROJI_PART_WEIGHT) return;
     if (!gproji_find_coordinates(d, &part)) {
-        for (k = part.first; k < part.first + part.count; ++k)
-            d->distance[0][d->list[k]] = d->distance[0][d->list[k]] < 0;
-        gproji_divide(d, &part, d->distance[0]);
+        gproji_split_components(d, &part);
         return;
     }
     for (k = 0; k < 4; ++k) gproji_try_coordinate(d, &part, direction[k][0], direction[k][1], &best);
