@@ -3205,7 +3205,7 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
 /* Nested dissection (George 1973) of a graph by its distances. From two nodes a, b far from each other, and two others
    c, d far from both, u = d_a - d_b and v = d_c - d_d are coordinates of the nodes: on a grid whose nodes have 8
    neighbours exactly its diagonals, and u + v, u - v its axes. A part is cut where one of these four passes a threshold
-   near its middle; the separator is the boundary of one side. Parts that are small enough are left to the minimum degree
+   near its middle; the separator is the smallest set of nodes that meets all edges across. Parts that are small enough are left to the minimum degree
    ordering, which takes the separators into account and orders them, too. */
 enum {
     GPROJI_PART_WEIGHT = 1500,  /* parts up to this weight are not cut */
@@ -3221,7 +3221,8 @@ typedef struct gproji_separation {
     double cost;
     int32_t a, b;      /* x = a u + b v */
     int32_t threshold; /* x < threshold is the low side */
-    bool low;          /* the separator is the low side's boundary */
+    bool low;          /* the low side's boundary is lighter than the high side's, */
+    double weight;     /* and this is the lighter one's weight */
 } gproji_separation;
 
 typedef struct gproji_dissection {
@@ -3395,6 +3396,7 @@ GPROJI_INTERNAL void gproji_try_coordinate(gproji_dissection *d, const gproji_re
         cost = separator * separator * all * all / (below * above);
         if (cost >= best->cost) continue;
         best->cost = cost, best->a = a, best->b = b, best->threshold = t, best->low = low <= high;
+        best->weight = separator;
     }
 }
 
@@ -3422,8 +3424,68 @@ GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p,
     memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
 }
 
-/* The sides and the separator of a cut, as marks in distance[0]. */
-GPROJI_INTERNAL void gproji_mark_cut(gproji_dissection *d, const gproji_region *p, const gproji_separation *cut) {
+/* Where a cut's edges are a bipartite graph, the fewest nodes that meet all of them are as many as a largest matching has
+   edges (Koenig 1931). mark: 0 and 1 are the sides; mate: partners, or -1; seen: by whose search, or -1. Looks for a path
+   of edges out of and in the matching, in turn, from a low node without a partner to a high one, and flips it. A search
+   for nobody (root -2, from all of queue[0..tail)) only marks what it reaches. */
+GPROJI_INTERNAL bool gproji_augment(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t tail) {
+    const gproji_graph *graph = d->graph;
+    const int32_t *mark = d->distance[0];
+    int32_t *mate = d->distance[1], *seen = d->distance[2], *before = d->x, *queue = d->other, head = 0;
+    while (head < tail) {
+        int32_t low = queue[head++];
+        int64_t e;
+        for (e = graph->start[low]; e < graph->start[low + 1]; ++e) {
+            int32_t high = graph->adjacent[e];
+            if (d->part[high] != p->first || mark[high] != 1 || seen[high] == root) continue;
+            seen[high] = root;
+            before[high] = low;
+            if (mate[high] >= 0) {
+                queue[tail++] = mate[high];
+                if (root < 0) seen[mate[high]] = root;
+                continue;
+            }
+            for (; root >= 0;) {
+                int32_t next = mate[before[high]];
+                mate[high] = before[high];
+                mate[before[high]] = high;
+                if (before[high] == root) return true;
+                high = next;
+            }
+        }
+    }
+    return false;
+}
+
+/* The separator of the sides marked in distance[0] with the fewest nodes, as mark 2. Returns its weight. */
+GPROJI_INTERNAL double gproji_mark_cover(gproji_dissection *d, const gproji_region *p) {
+    int32_t *mark = d->distance[0], *mate = d->distance[1], *seen = d->distance[2], k, tail = 0;
+    const int32_t *list = d->list + p->first;
+    double weight = 0;
+    for (k = 0; k < p->count; ++k) mate[list[k]] = seen[list[k]] = -1;
+    for (k = 0; k < p->count; ++k) {
+        if (mark[list[k]] != 0) continue;
+        d->other[0] = list[k];
+        gproji_augment(d, p, list[k], 1);
+    }
+    for (k = 0; k < p->count; ++k) {
+        if (mark[list[k]] != 0 || mate[list[k]] >= 0) continue;
+        d->other[tail++] = list[k];
+        seen[list[k]] = -2;
+    }
+    gproji_augment(d, p, -2, tail);
+    for (k = 0; k < p->count; ++k) {
+        int32_t i = list[k];
+        if (mark[i] == 0 ? mate[i] < 0 || seen[i] == -2 : seen[i] != -2) continue;
+        mark[i] = 2;
+        weight += d->graph->weight[i];
+    }
+    return weight;
+}
+
+/* The sides of a cut as marks 0 and 1 in distance[0]; boundary: and of the lighter boundary as mark 2. */
+GPROJI_INTERNAL void gproji_mark_sides(gproji_dissection *d, const gproji_region *p, const gproji_separation *cut,
+                                       bool boundary) {
     const gproji_graph *graph = d->graph;
     int32_t *mark = d->distance[0], k;
     gproji_set_coordinate(d, p, cut->a, cut->b);
@@ -3431,7 +3493,7 @@ GPROJI_INTERNAL void gproji_mark_cut(gproji_dissection *d, const gproji_region *
         int32_t i = d->list[k], side = d->x[i] >= cut->threshold;
         int64_t e;
         mark[i] = side;
-        if ((side == 0) != cut->low) continue;
+        if (!boundary || (side == 0) != cut->low) continue;
         for (e = graph->start[i]; e < graph->start[i + 1] && mark[i] != 2; ++e) {
             int32_t to = graph->adjacent[e];
             if (d->part[to] == p->first && (d->x[to] >= cut->threshold) != side) mark[i] = 2;
@@ -3442,8 +3504,9 @@ GPROJI_INTERNAL void gproji_mark_cut(gproji_dissection *d, const gproji_region *
 /* Cuts a part, or leaves it whole. */
 GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region part) {
     static const int32_t direction[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    gproji_separation best = {HUGE_VAL, 0, 0, 0, false};
+    gproji_separation best = {HUGE_VAL, 0, 0, 0, false, 0};
     int64_t weight = 0;
+    double lines;
     int32_t k;
     for (k = part.first; k < part.first + part.count; ++k) weight += d->graph->weight[d->list[k]];
     if (weight <= GPROJI_PART_WEIGHT) return;
@@ -3453,7 +3516,10 @@ GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region par
     }
     for (k = 0; k < 4; ++k) gproji_try_coordinate(d, &part, direction[k][0], direction[k][1], &best);
     if (!(best.cost < HUGE_VAL)) return;
-    gproji_mark_cut(d, &part, &best);
+    gproji_mark_sides(d, &part, &best, false);
+    /* (boundaries of many lines, which no mesh has, would take long to match) */
+    lines = best.weight * sqrt((double)part.count) / (double)weight;
+    if (lines > 8 || gproji_mark_cover(d, &part) > best.weight) gproji_mark_sides(d, &part, &best, true);
     gproji_divide(d, &part, d->distance[0]);
 }
 
