@@ -3205,8 +3205,8 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
 /* Nested dissection (George 1973) of a graph by its distances. From two nodes a, b far from each other, and two others
    c, d far from both, u = d_a - d_b and v = d_c - d_d are coordinates of the nodes: on a grid whose nodes have 8
    neighbours exactly its diagonals, and u + v, u - v its axes. A part is cut where one of these four passes a threshold
-   near its middle; the separator is the smallest set of nodes that meets all edges across. Parts that are small enough are left to the minimum degree
-   ordering, which takes the separators into account and orders them, too. */
+   near its middle; the separator is the smallest set of nodes that meets all edges across. Parts that are small enough
+   are left to the minimum degree ordering, which takes the separators into account and orders them, too. */
 enum {
     GPROJI_PART_WEIGHT = 1500,  /* parts up to this weight are not cut */
     GPROJI_WORTH_CUTTING = 2500 /* fewer nodes than that are left to minimum degree altogether */

@@ -477,6 +477,7 @@ int main(int argc, char **argv) {
     bench_pin(true);
     report.machine = bench_this_machine();
     report.result = result;
+    report.argc = argc, report.argv = argv;
     report.count = 0;
     if (!options.markdown) bench_write_machine(stdout, &report.machine);
     for (i = 0; i < BENCH_PROBLEMS; ++i)

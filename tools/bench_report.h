@@ -27,6 +27,8 @@ typedef struct bench_result {
 
 typedef struct bench_report {
     bench_machine machine;
+    int argc;
+    char **argv; /* the command */
     int count;
     const bench_result *result;
 } bench_report;
@@ -431,10 +433,12 @@ static void bench_write_markdown(FILE *file, const bench_report *report) {
     bench_write_row(file, report, "time with CBLAS / without", "quad", false, bench_value_cblas);
     bench_write_row(file, report, "time without SIMD / with", "quad", false, bench_value_scalar);
     bench_write_row(file, report, "time of two workers / of one", "quad", false, bench_value_workers);
-    fputs("\nBy `make -C tools bench && tools/bench --markdown` (Debian: libsuitesparse-dev, libopenblas-dev), which "
-          "takes "
-          "about an hour;\n`tools/bench --quick` compares up to 10 k vertices within a minute.\n",
-          file);
+    fputs("\nBy `make -C tools bench && tools/bench", file);
+    for (i = 1; i < report->argc; ++i) fprintf(file, " %s", report->argv[i]);
+    fputs(
+        "`\n(Debian: libsuitesparse-dev, libopenblas-dev). `tools/bench --quick` compares up to 10 k vertices within a "
+        "minute, `tools/bench` all sizes in about an hour.\n",
+        file);
 }
 
 #endif
