@@ -3230,10 +3230,10 @@ typedef struct gproji_dissection {
     const gproji_graph *graph;
     int32_t *list;  /* nodes, by parts */
     int32_t *other; /* work: nodes */
-    int32_t *part;  /* nodes: where the part begins that they are in; -1: in a separator, in a finished part, dense */
+    int32_t *part;  /* nodes: where the part begins that they are in; -1: in a separator, dense */
     int32_t *u, *v;
-    int32_t *distance[3];      /* nodes; of nodes of the part at work; -1: not reached */
-    int32_t *x;                /* nodes: the coordinate at work */
+    int32_t *distance[3]; /* nodes; of nodes of the part at work; -1: not reached. Later marks, see gproji_augment */
+    int32_t *x;           /* nodes: the coordinate at work */
     int32_t *sum, *low, *high; /* 4 nodes + 8 each: sums over a coordinate */
     gproji_region *stack;      /* nodes + 1 */
     int32_t top;
@@ -4011,7 +4011,7 @@ GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
         gproji_front *front = &out->front[f];
         int64_t w = front->width;
         front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
-        front->update_rows = (front->below + GPROJI_BLOCK - 1) / GPROJI_BLOCK * GPROJI_BLOCK;
+        front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->panel = out->values_size;
         front->side = out->side_size;
         out->values_size += w * front->stride;
@@ -4130,6 +4130,21 @@ GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     }
 }
 
+/* Elimination tree, column counts and their sums for the order in `out`, which becomes a postorder of the tree unless
+   `keep_order`. */
+GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
+    gproji_symbolic *out = an->out;
+    gproji_invert(out->nodes, out->order, out->place);
+    gproji_elimination_tree(an->graph, out->order, out->place, an->parent, an->a);
+    if (keep_order) {
+        gproji_column_counts_by_rows(an);
+    } else {
+        gproji_apply_postorder(an);
+        gproji_column_counts(an);
+    }
+    gproji_sum_counts(an);
+}
+
 /* What a factorisation in this order costs. The order becomes a postorder of its elimination tree. */
 GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *graph, int32_t *order, double *flops) {
     gproji_symbolic out;
@@ -4143,11 +4158,7 @@ GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *g
     out.place = (int32_t *)gproji_pool_take(&an.pool, graph->nodes, sizeof(int32_t));
     done = out.place && gproji_analysis_take(&an);
     if (done) {
-        gproji_invert(out.nodes, order, out.place);
-        gproji_elimination_tree(graph, order, out.place, an.parent, an.a);
-        gproji_apply_postorder(&an);
-        gproji_column_counts(&an);
-        gproji_sum_counts(&an);
+        gproji_count_factor(&an, false);
         *flops = out.flops;
     }
     gproji_pool_give_all(&an.pool);
@@ -4211,15 +4222,7 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
     if (!out->order || !out->place || !out->column || !out->front_of) return false;
     if (!gproji_choose_order(an, options->ordering, permutation) || !gproji_analysis_take(an)) return false;
-    gproji_invert(out->nodes, out->order, out->place);
-    gproji_elimination_tree(an->graph, out->order, out->place, an->parent, an->a);
-    if (options->disable_postorder) {
-        gproji_column_counts_by_rows(an);
-    } else {
-        gproji_apply_postorder(an);
-        gproji_column_counts(an);
-    }
-    gproji_sum_counts(an);
+    gproji_count_factor(an, options->disable_postorder);
     gproji_find_supernodes(an);
     if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
     if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
@@ -4257,8 +4260,8 @@ GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int3
 }
 
 /* ============================================================================================================
-   >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, dense,
-   ordering, symbolic.
+   >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
+   dense, ordering, symbolic.
 
    Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix on a
    stack. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
@@ -5777,7 +5780,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
 /* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
-   error, parallel, cholesky.
+   error, parallel, dense, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
 
