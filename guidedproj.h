@@ -957,6 +957,28 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
+/* The same solve in frames, for programs that draw between its iterations: begin once, step each frame, and as long as
+   gproj_step_is_on there is more to do.
+
+       gproj_step_begin(form, 20, NULL);
+       while (gproj_step_is_on(form)) {
+           result = gproj_step(form, 0.01);
+           draw(mesh);
+       }
+
+   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step takes
+   as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0 seconds: one,
+   without a clock. It writes the positions and returns how the solve stands: GPROJ_TIME_OUT while it is on, then its
+   verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one gproj_solve.
+   Between two frames weights may be changed and targets moved; vertices are moved by targets, or before another
+   gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve, gproj_drag_begin
+   and another gproj_step_begin. Where groups or rows were added in between it fails. options->time_budget counts the
+   seconds inside all steps. */
+GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
+GPROJ_API bool gproj_step_is_on(const gproj_form *form);
+GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
+GPROJ_API void gproj_step_stop(gproj_form *form);
+
 /* ------------------------------------------------------------------------------------------------------------
    >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
 
@@ -6151,6 +6173,24 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
+/* How much has been added to a system. Nothing is ever taken away, so the same counts are the same structure. */
+typedef struct gproji_structure {
+    int32_t variables, groups;
+    int64_t rows;
+} gproji_structure;
+
+GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
+    gproji_structure structure = {s->variable_count, s->group_count, 0};
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) structure.rows += s->group[i].row_count;
+    return structure;
+}
+
+GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structure known) {
+    gproji_structure now = gproji_structure_of(s);
+    return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
+}
+
 /* Refuses terms that are no terms of this system. */
 GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group *g, int32_t count,
                                             const gproj_term *terms, double constant) {
@@ -7041,15 +7081,24 @@ typedef struct gproji_standing {
     int32_t row;
 } gproji_standing;
 
-/* What a solve carries along. */
+/* What a solve carries along, from one run to the next where it is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
+    int32_t iterations; /* at most */
     double tolerance;
     double started, lap; /* clock readings */
+    double spent;        /* seconds in earlier runs */
+    double frame;        /* seconds for this run; < 0: until the end */
+    int32_t frame_first; /* iterations before this run */
+    bool begun;          /* the first run has begun */
+    bool restored;       /* x and the rows' numbers are those of a saved state */
+    bool paused;         /* the run ended for its time, and there is more to do */
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
+    gproji_standing best; /* as a measure of progress */
+    int32_t waited;       /* iterations since then */
     double epsilon_least; /* the least that follows the residual: gproji_epsilon_min, smaller where steps fall short */
     double shift;         /* nearest: of the last slide with curvature, times s^2 */
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
@@ -7174,14 +7223,19 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     return tolerance;
 }
 
-/* Rows, gradients and standing at the current x. */
-GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
-    gproji_refresh_groups(loop->system);
+/* Gradients and standing at the current x, of the rows as they are. */
+GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     loop->tolerance = gproji_tolerance_at(loop);
     loop->system->rounding = loop->tolerance;
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
+}
+
+/* Rows, gradients and standing at the current x. */
+GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
+    gproji_refresh_groups(loop->system);
+    gproji_see_rows(loop);
 }
 
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
@@ -7446,7 +7500,18 @@ GPROJI_INTERNAL bool gproji_has_converged(const gproji_loop *loop) {
 }
 
 GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
-    return loop->options.time_budget > 0 && !(gproji_now(loop->system) - loop->started < loop->options.time_budget);
+    double spent = loop->spent + gproji_now(loop->system) - loop->started;
+    return loop->options.time_budget > 0 && !(spent < loop->options.time_budget);
+}
+
+/* Would a further iteration, as long as the mean of this run's, end after the time of the run? */
+GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
+    int32_t taken = loop->result.iterations - loop->frame_first;
+    double spent;
+    if (loop->frame < 0 || taken == 0) return false;
+    spent = gproji_now(loop->system) - loop->started;
+    loop->paused = !(spent + spent / taken < loop->frame);
+    return loop->paused;
 }
 
 /* What comes before iteration n: its weights, and rows that they or the caller have changed. */
@@ -7467,10 +7532,11 @@ GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
     return go_on;
 }
 
-/* What the callback has changed counts before anything is judged. Returns whether there was something. */
+/* What the callback, or the caller between two runs, has changed counts before anything is judged. Returns whether there
+   was something. */
 GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     if (!loop->system->changed) return false;
-    gproji_set_weights(loop->system, loop->result.iterations);
+    gproji_set_weights(loop->system, gproji_max(1, loop->result.iterations));
     gproji_linearise(loop);
     return true;
 }
@@ -7481,16 +7547,11 @@ GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_sta
 }
 
 /* The iterations; returns how they ended. */
-GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterations) {
+GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    gproji_standing best;
-    int32_t half = iterations / 2 + iterations % 2, waited = 0;
-    s->late = 0;
-    best.residual = best.merit = HUGE_VAL;
-    gproji_set_weights(s, 1);
-    gproji_linearise(loop);
-    gproji_start_bounds(s);
-    while (loop->result.iterations < iterations) {
+    int32_t half = loop->iterations / 2 + loop->iterations % 2;
+    while (loop->result.iterations < loop->iterations) {
+        if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
@@ -7498,10 +7559,10 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop, int32_t iterati
         if (!gproji_iterate(loop)) return gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
-        if (gproji_see_changes(loop)) best.residual = best.merit = HUGE_VAL;
-        waited = gproji_is_better(&loop->standing, &best) || gproji_wishes_are_on(s) ? 0 : waited + 1;
-        if (waited == 0) best = loop->standing;
-        if (waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
+        if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+        if (gproji_is_better(&loop->standing, &loop->best) || gproji_wishes_are_on(s)) loop->waited = -1;
+        if (++loop->waited == 0) loop->best = loop->standing;
+        if (loop->waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
@@ -7911,19 +7972,24 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
                                                gproji_nearest_scale * (1 + (double)rows)));
 }
 
-/* Rows, standing and optimality at x with the weights of slides; energies as the schedules weigh them. */
-GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
+/* Optimality, and energies as the schedules weigh them, for rows seen with the weights of slides. */
+GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double factor = 1;
     int32_t i;
-    gproji_set_nearest_weights(s, gproji_nearest_scale);
-    gproji_linearise(loop);
     loop->iteration.optimality = loop->result.optimality = gproji_optimality(s);
     for (i = 0; i < s->group_count; ++i)
         if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0)
             factor = s->group[i].schedule.weight / s->group[i].weight;
     loop->standing.merit += loop->standing.energy * (factor * factor - 1);
     loop->standing.energy *= factor * factor;
+}
+
+/* Rows, standing and optimality at x with the weights of slides. */
+GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
+    gproji_set_nearest_weights(loop->system, gproji_nearest_scale);
+    gproji_linearise(loop);
+    gproji_judge_nearest(loop);
 }
 
 /* Moves x by at most `size`, to and fro in an order without symmetry, always the same: symmetric meshes would stay on a
@@ -7959,17 +8025,13 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
 }
 
 /* The iterations; returns how they ended. */
-GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop, int32_t iterations) {
+GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t half = iterations / 2 + iterations % 2, i, r, n;
+    int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
-    s->late = 0;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
-    gproji_see_nearest(loop);
-    gproji_start_bounds(s);
-    for (n = 1; n <= iterations; ++n) {
+    for (n = loop->result.iterations + 1; n <= iterations; ++n) {
+        if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_is_nearest(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
@@ -8006,27 +8068,88 @@ GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
                   loop->system->group[r->worst_group].name, r->optimality);
 }
 
+/* -- runs: a solve, or a part of it -- */
+
+/* Makes a loop for a solve of this system. Where that is refused the result says why. */
+GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32_t iterations,
+                                       const gproj_solve_options *options) {
+    gproj_error refused;
+    memset(loop, 0, sizeof *loop);
+    loop->system = s;
+    if (options) loop->options = *options;
+    loop->iterations = iterations;
+    loop->frame = -1;
+    loop->epsilon_least = gproji_epsilon_min;
+    loop->best.residual = loop->best.merit = HUGE_VAL;
+    gproji_error_clear(&refused);
+    if (gproji_system_is_open(s) && gproji_options_are_valid(s, iterations, &loop->options, &refused) &&
+        gproji_values_are_valid(s))
+        return true;
+    loop->result = gproji_failed_result(refused.code ? &refused : gproj_system_error(s));
+    return false;
+}
+
+/* The first run begins. */
+GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    int32_t i, r;
+    s->late = 0;
+    if (loop->options.nearest) {
+        for (i = 0; i < s->group_count; ++i)
+            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
+        gproji_see_nearest(loop);
+    } else {
+        gproji_set_weights(s, 1);
+        gproji_linearise(loop);
+    }
+    gproji_start_bounds(s);
+    loop->begun = true;
+}
+
+/* A further run begins, with what has been changed since the last one. */
+GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    bool changed = s->changed, nearest = loop->options.nearest;
+    s->sliding = nearest;
+    if (loop->restored) gproji_see_rows(loop);
+    if (loop->restored && nearest) gproji_judge_nearest(loop);
+    loop->restored = false;
+    s->changed = changed;
+    if (changed && nearest) gproji_see_nearest(loop);
+    if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+}
+
+/* Runs for `seconds` (< 0: to the end), at least one iteration. Returns whether the solve is at its end; the result says
+   how it stands. */
+GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
+    gproj_system *s = loop->system;
+    loop->frame = seconds;
+    loop->frame_first = loop->result.iterations;
+    loop->paused = false;
+    loop->started = loop->lap = gproji_now(s);
+    if (gproji_compile(s) == GPROJ_OK) {
+        gproji_lap(loop, GPROJ_PHASE_ANALYSE);
+        s->solving = true;
+        if (loop->begun)
+            gproji_resume_loop(loop);
+        else
+            gproji_start_loop(loop);
+        loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
+        s->solving = s->sliding = false;
+        loop->spent += loop->lap - loop->started;
+    }
+    if (s->error.code != GPROJ_OK) {
+        loop->result = gproji_failed_result(&s->error);
+        return true;
+    }
+    gproji_write_verdict(loop);
+    if (loop->options.nearest) gproji_write_nearest_verdict(loop);
+    return !loop->paused;
+}
+
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
-    gproj_error refused;
-    if (!gproji_system_is_open(s)) return gproji_failed_result(gproj_system_error(s));
-    memset(&loop, 0, sizeof loop);
-    loop.system = s;
-    if (options) loop.options = *options;
-    gproji_error_clear(&refused);
-    if (!gproji_options_are_valid(s, iterations, &loop.options, &refused)) return gproji_failed_result(&refused);
-    if (!gproji_values_are_valid(s)) return gproji_failed_result(&s->error);
-    loop.epsilon_least = gproji_epsilon_min;
-    loop.started = loop.lap = gproji_now(s);
-    if (gproji_compile(s) != GPROJ_OK) return gproji_failed_result(&s->error);
-    gproji_lap(&loop, GPROJ_PHASE_ANALYSE);
-    s->solving = true;
-    loop.result.outcome =
-        loop.options.nearest ? gproji_run_nearest(&loop, iterations) : gproji_run_loop(&loop, iterations);
-    s->solving = s->sliding = false;
-    if (s->error.code != GPROJ_OK) return gproji_failed_result(&s->error);
-    gproji_write_verdict(&loop);
-    if (loop.options.nearest) gproji_write_nearest_verdict(&loop);
+    if (gproji_begin_loop(&loop, s, iterations, options)) gproji_run(&loop, -1);
     return loop.result;
 }
 
@@ -11260,6 +11383,17 @@ typedef struct gproji_statics {
     bool started;      /* the forces have values */
 } gproji_statics;
 
+/* A solve of a form, from one frame to the next (gproj_step). */
+typedef struct gproji_solve {
+    bool on;       /* there is more to do */
+    bool finished; /* it has ended, and the loop's result is its verdict */
+    gproji_loop loop;
+    gproji_structure structure; /* of the system at the beginning */
+    int32_t default_last;       /* see gproj_system */
+    int32_t collapsed;          /* edges, and the mean length of all, at the beginning */
+    double mean_edge;
+} gproji_solve;
+
 struct gproj_form {
     gproji_heap own;
     gproj_error error;
@@ -11281,6 +11415,7 @@ struct gproj_form {
     bool guard_on;           /* in this solve */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
+    gproji_solve solve;
 };
 
 /* -- life -- */
@@ -14536,37 +14671,109 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, int32_t collaps
                       more == 1 ? " has" : "s have");
 }
 
-GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
-    static const char shrinks[] =
-        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
-    gproj_result result;
-    int32_t guided, collapsed;
-    double mean;
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
-        return gproji_failed_result(gproj_form_error(form));
+/* -- a solve, at once or in frames -- */
+
+/* Begins form->solve; on failure its result says why. */
+GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+    gproji_solve *solve = &form->solve;
+    bool nearest = options && options->nearest;
+    int32_t guided;
+    solve->on = solve->finished = false;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_begin_forces(form);
-    if (form->statics && options && options->nearest) gproji_set_force_guidance(form, false); /* forces are free */
-    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
+    if (form->statics && nearest) gproji_set_force_guidance(form, false); /* forces are free */
+    if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
-    guided =
-        gproji_set_default_guidance(form, iterations, options && options->skip_closeness, options && options->nearest);
+    guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);
-    if (!gproji_form_ready(form)) return gproji_failed_result(gproj_form_error(form));
-    collapsed = gproji_collapsed_edges(form, &mean);
-    form->system->default_last = gproji_guided_iterations(form, iterations);
-    result = gproj_system_solve(form->system, iterations, options);
-    form->system->default_last = 0;
-    if (result.outcome == GPROJ_FAILED) return result;
-    gproji_doubt_equilibrium(form, &result);
-    if (result.outcome == GPROJ_FAILED) return result;
-    gproji_store_positions(form);
+    if (!gproji_form_ready(form)) goto failed;
+    solve->collapsed = gproji_collapsed_edges(form, &solve->mean_edge);
+    solve->default_last = gproji_guided_iterations(form, iterations);
+    solve->structure = gproji_structure_of(form->system);
+    solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
+    return solve->on;
+failed:
+    solve->loop.result = gproji_failed_result(gproj_form_error(form));
+    return false;
+}
+
+/* Adds to the verdict of a solve that has ended. */
+GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
+    static const char shrinks[] =
+        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
+    gproj_result *result = &form->solve.loop.result;
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
-        gproji_append(result.message, sizeof result.message, strlen(result.message), shrinks, sizeof shrinks - 1);
-    if (gproji_is_unbalanced(form, &result)) gproji_tell_unbalanced(form, &result);
-    gproji_tell_spoiled(form, collapsed, mean, &result);
+        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
+    if (gproji_is_unbalanced(form, result)) gproji_tell_unbalanced(form, result);
+    gproji_tell_spoiled(form, form->solve.collapsed, form->solve.mean_edge, result);
+}
+
+/* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
+GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
+    gproji_solve *solve = &form->solve;
+    bool ended;
+    form->system->default_last = solve->default_last;
+    ended = gproji_run(&solve->loop, seconds);
+    form->system->default_last = 0;
+    if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
+    if (ended) solve->on = false, solve->finished = true;
+    if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
+    gproji_store_positions(form);
+    if (ended) gproji_finish_solve(form);
+    return solve->loop.result;
+}
+
+/* A result that says what is wrong with a call and leaves the form as it is. */
+GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *sentence) {
+    gproj_error error;
+    gproji_error_clear(&error);
+    gproji_fail(&error, code, GPROJ_PLACE_NONE, -1, "%s", sentence);
+    return gproji_failed_result(&error);
+}
+
+/* May a solve, a drag or a state change the form now? */
+GPROJI_INTERNAL bool gproji_form_is_open(gproj_form *form) {
+    return gproji_form_ready(form) && gproji_system_is_open(form->system);
+}
+
+GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+    gproj_result result;
+    if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
+    result = gproji_begin_solve(form, iterations, options) ? gproji_run_solve(form, -1) : form->solve.loop.result;
+    form->solve.finished = false;
     return result;
+}
+
+GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+    if (!gproji_form_is_open(form)) return false;
+    form->solve.finished = !gproji_begin_solve(form, iterations, options);
+    return form->solve.on;
+}
+
+GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on; }
+
+GPROJ_API void gproj_step_stop(gproj_form *form) {
+    if (form && !form->system->solving) form->solve.on = form->solve.finished = false;
+}
+
+GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
+    gproji_solve *solve;
+    if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
+    solve = &form->solve;
+    if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
+        return gproji_refused_result(GPROJ_ERROR_ARGUMENT,
+                                     "step: seconds must not be negative, and need a clock in the host");
+    if (solve->on && !gproji_has_structure(form->system, solve->structure)) {
+        solve->on = false;
+        solve->finished = true;
+        solve->loop.result = gproji_refused_result(
+            GPROJ_ERROR_STATE, "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
+    }
+    if (solve->on) return gproji_run_solve(form, seconds);
+    if (solve->finished) return solve->loop.result;
+    return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing was begun, call gproj_step_begin before");
 }
 
 #endif /* GPROJI_IMPLEMENTED */
