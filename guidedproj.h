@@ -67,6 +67,8 @@
        >>api-offset     parallel meshes at constant distance, supports
        >>api-form       form-finding: a mesh, what must hold, what is wished
        >>api-statics    forces in the edges of a form
+       >>api-drag       dragging handles
+       >>api-state      saved states: undo, redo, going on elsewhere
      the implementation: each section uses only earlier ones
        >>platform       compiler differences
        >>number         decimal text to binary and back
@@ -94,6 +96,8 @@
        >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
        >>solve          solving a form
+       >>state          what a form remembers, as bytes
+       >>drag           the tangent space's response to handles
 
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
@@ -1053,6 +1057,106 @@ typedef struct gproj_forces {
 
 /* The mesh as it is, with the forces of the last solve. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-drag   Dragging: a form follows one or several handles at screen rate, and what must hold goes on holding.
+
+   gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the meshes
+   that satisfy it (paper, section 2). gproj_drag_move then finds, with what has been prepared,
+       the dx with G dx = 0 and S'dv = (S'S) d that has the smallest |dv|^2 + 0.0001 |da|^2
+   where d is how far the handles have been moved, dv the part of dx that belongs to the vertices, da its other part
+   (normals, axes, forces), and S the weights of the handles' vertices, one column a handle. So a vertex goes where it is
+   dragged to, and a point of a coarse cage takes its fine vertices along, S d if nothing stands against it. Where the
+   handles cannot follow fully, they follow in the sense of least squares. The mesh is dragged out of what must hold by the
+   square of the drag only: half a drag, a quarter of the error. gproj_drag_end projects that away.
+
+       gproj_drag *drag = gproj_drag_begin(form, &handles, NULL, &error);
+       while (mouse_is_down()) {
+           gproj_drag_move(drag, where_the_handles_should_be);
+           draw(mesh);
+       }
+       result = gproj_drag_end(drag);              // or gproj_drag_cancel(drag)
+
+   While it lasts the form must not be solved, restored or destroyed, and nothing be added to it. */
+typedef struct gproj_drag gproj_drag;
+
+/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those of
+   its column of the subdivision. start NULL: handle k is vertex[k]. weight NULL: all are 1. */
+typedef struct gproj_handles {
+    int32_t count;
+    const int64_t *start; /* count + 1 entries, start[0] = 0 */
+    const int32_t *vertex;
+    const double *weight;
+    /* 3 * count: where the handles are now, in the mesh's units; NULL: at the weighted means of their vertices. */
+    const double *position;
+} gproj_handles;
+
+typedef struct gproj_drag_options {
+    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew at
+       the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs an
+       evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+    double residual_bound;
+    bool keep_wishes; /* at the release the form's own wishes guide, too */
+} gproj_drag_options;
+
+/* What a drag has come to. */
+typedef struct gproj_drag_info {
+    int32_t handles;
+    int32_t freedom;         /* independent motions of the handles that are possible, at most 3 * handles */
+    int32_t linearisations;  /* so far: 1, or more with a residual_bound */
+    int32_t solves;          /* right-hand sides solved by all of them */
+    double behind;           /* the largest distance of a handle from where it should be, in the mesh's units */
+} gproj_drag_info;
+
+/* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
+   one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6), which
+   stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`, nothing
+   has changed. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 9 right-hand sides
+   for each handle. */
+GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
+                                       const gproj_drag_options *options, gproj_error *error);
+/* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
+   handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
+   each handle and variable; no allocation. An error (rows were added, a position is not finite) changes nothing. */
+GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
+/* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
+   all rows. */
+GPROJ_API double gproj_drag_residual(gproj_drag *drag);
+GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
+GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
+/* Releases the handles: guided projection, 10 iterations. The mesh keeps what fairness it had before the drag, with weight
+   0.2 * 0.9^n for n <= 5, and the handles stay where they are, with weight 1 * 0.9^n; then nothing is wished. Destroys the
+   drag. The first release adds the groups "drag fairness" and "drag handles" to the form. */
+GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. */
+GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
+
+   A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
+   weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it is.
+   What follows from a restored state is what would have followed when it was saved, to the bit on the same processor and
+   build (and otherwise but for the last digits). It does not have the mesh's faces and what has been added to the form:
+   it is restored in the same form, or in one that the same calls have made from the same mesh.
+
+       size_t size = gproj_state_size(form);
+       void *undo = malloc(size);
+       gproj_state_save(form, undo, size, NULL);
+       ...
+       gproj_state_restore(form, undo, size, NULL);
+
+   The bytes are the same on all machines; they may be written to a file. */
+
+/* The size of the state as it is now, in bytes: about 16 for each variable. 0 after an error of the form. */
+GPROJ_API size_t gproj_state_size(gproj_form *form);
+/* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. */
+GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
+/* Restores it. Refused, with a sentence and without a change, where the bytes are no state, are damaged or cut off, or
+   belong to another form; and during a drag. Callbacks of a solve in frames stay those of the one that is on in the form;
+   there are none where none is. */
+GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error);
 
 #ifdef __cplusplus
 }
@@ -4331,7 +4435,8 @@ struct gproj_cholesky {
 
     gproji_load load; /* during a factorisation */
     void *load_user;
-    int32_t batch; /* right-hand sides that there is room for, at most GPROJI_SOLVE_BATCH */
+    int32_t batch; /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
+    int32_t room;  /* how many of them the two last but one arrays below have room for */
     int32_t sides; /* those at work */
 
     double *values;       /* symbolic.values_size: all panels */
@@ -4769,11 +4874,25 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size);
+    c->room = c->batch;
     if (c->work && c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
     return false;
+}
+
+/* Makes room for more right-hand sides; what had been taken for fewer is given back with the analysis. */
+GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
+    double *solution, *side;
+    if (batch <= c->room) return true;
+    solution = gproji_take_aligned(&c->numeric, (int64_t)c->symbolic.columns * batch);
+    side = gproji_take_aligned(&c->numeric, c->symbolic.side_size * batch);
+    if (!solution || !side) return false;
+    c->solution = solution;
+    c->side = side;
+    c->room = batch;
+    return true;
 }
 
 /* Adds the children's update matrices to the front's pivot columns and to its own update matrix. */
@@ -6081,10 +6200,17 @@ GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *nam
                        name, schedule.weight, schedule.decay, schedule.last);
 }
 
+/* What does not fit is cut. */
+GPROJI_INTERNAL void gproji_set_group_name(gproji_group *g, const char *name) {
+    size_t length = strlen(name);
+    if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
+    memset(g->name, 0, sizeof g->name);
+    memcpy(g->name, name, length);
+}
+
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
     gproji_group *g;
     void *groups;
-    size_t length;
     bool enough;
     if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
@@ -6113,9 +6239,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         g->row = (gproji_row *)rows;
         memset(&g->row[0], 0, sizeof g->row[0]);
     }
-    length = strlen(group->name);
-    if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
-    memcpy(g->name, group->name, length);
+    gproji_set_group_name(g, group->name);
     g->kind = group->kind;
     g->place = group->place;
     g->global = group->global;
@@ -6837,6 +6961,8 @@ typedef struct gproji_loading {
     const gproj_system *system;
     double epsilon;
     bool curved;
+    int32_t light_from; /* variables from this one on have the epsilon `light` instead */
+    double light;
 } gproji_loading;
 
 /* w^2 g g', lower triangle */
@@ -6867,6 +6993,7 @@ GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_r
 GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel) {
     const gproji_loading *loading = (const gproji_loading *)user;
     const gproj_system *s = loading->system;
+    const int32_t *variable = s->cholesky->permutation + s->cholesky->symbolic.front[front].first;
     int32_t j;
     int64_t k;
     for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
@@ -6877,7 +7004,10 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
         gproji_load_square(g, row, panel);
         if (loading->curved) gproji_load_curvature(g, row, panel);
     }
-    for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += loading->epsilon * loading->epsilon;
+    for (j = 0; j < panel->w; ++j) {
+        double epsilon = variable[j] < loading->light_from ? loading->epsilon : loading->light;
+        *gproji_panel_at(panel, j + panel->shift, j) += epsilon * epsilon;
+    }
 }
 
 /* Factors A; right-hand sides as for gproji_cholesky_factor_with. */
@@ -6885,6 +7015,7 @@ GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool 
                                           const double *b) {
     gproji_loading loading;
     loading.system = s, loading.epsilon = epsilon, loading.curved = curved;
+    loading.light_from = s->variable_count, loading.light = 0;
     return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, b) == GPROJ_FACTORED;
 }
 
@@ -6947,10 +7078,10 @@ GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g,
 
 /* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix, so no pivot is less
    than 1; where rounding says so (rows that depend on each other), the pivot is what rounding lets be known. */
-GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride) {
+GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride, double floor) {
     int32_t i, j, k;
     for (i = 0; i < n; ++i) {
-        double *row = m + (int64_t)i * stride, least = gproji_fmax(1, 8 * DBL_EPSILON * row[i]);
+        double *row = m + (int64_t)i * stride, least = gproji_fmax(floor, 8 * DBL_EPSILON * row[i]);
         for (j = 0; j <= i; ++j) {
             const double *other = m + (int64_t)j * stride;
             double sum = row[j];
@@ -6996,7 +7127,7 @@ GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
 GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide) {
     size_t n = (size_t)s->variable_count;
     gproji_for_wide_rows(s, gproji_wide_products);
-    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
+    gproji_wide_factor(s->wide_matrix, wide, s->wide_count, 1);
     memset(s->step, 0, n * sizeof *s->step);
     memcpy(s->correction, s->wide_response + n * (size_t)wide, n * sizeof *s->step);
     gproji_wide_correct(s, wide);
@@ -11416,6 +11547,9 @@ struct gproj_form {
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
     gproji_solve solve;
+    gproj_drag *drag;       /* under way; NULL: none */
+    int32_t drag_fairness;  /* the groups of a drag's release; -1: none yet */
+    int32_t drag_handles;
 };
 
 /* -- life -- */
@@ -11547,7 +11681,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
-    form->closeness = form->planarity = -1;
+    form->closeness = form->planarity = form->drag_fairness = form->drag_handles = -1;
     gproji_form_begin(form);
     return form;
 }
@@ -14077,6 +14211,18 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     return lost > gproji_force_lost;
 }
 
+/* The group that draws the forces to where they are, once. */
+GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
+    gproji_statics *s = form->statics;
+    gproj_term term;
+    int32_t e;
+    s->guidance = gproji_new_group(form, "force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE, 0, NULL, NULL);
+    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
+        gproji_set_term(&term, s->force[e], -1, 1);
+        if (term.i >= 0) gproj_system_add_row(form->system, s->guidance, 1, &term, 0, e);
+    }
+}
+
 /* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise.
    */
 GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
@@ -14084,15 +14230,8 @@ GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
     gproj_schedule schedule = {0, 0.3, 5};
     const double *x;
     int32_t e, row = 0;
-    gproj_term term;
     if (s->guidance < 0 && !wanted) return;
-    if (s->guidance < 0) {
-        s->guidance = gproji_new_group(form, "force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE, 0, NULL, NULL);
-        for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
-            gproji_set_term(&term, s->force[e], -1, 1);
-            if (term.i >= 0) gproj_system_add_row(form->system, s->guidance, 1, &term, 0, e);
-        }
-    }
+    if (s->guidance < 0) gproji_add_force_guidance(form);
     schedule.weight = wanted ? 1 : 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
@@ -14774,6 +14913,1094 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
     return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing was begun, call gproj_step_begin before");
+}
+
+/* ============================================================================================================
+   >>state   A form's state as a block of bytes. Uses all earlier sections.
+
+   One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
+   is given. All integers are little-endian; a double is its 64 bits, or, where most are small whole numbers (coefficients,
+   constants, weights), one byte for these.
+
+       8 bytes "gprojstA", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
+
+   The fingerprint is a hash of what a form is made of: mesh, variables, rows with their terms' variables, but none of the
+   numbers that the state has. A state is checked from its beginning to its end before any of it is read, so that what is
+   refused changes nothing.
+
+   Groups that the library adds itself, when they are first needed, may be missing in either: a form gets those of the
+   state, and those that the state does not have lose their weight. */
+
+enum {
+    GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
+    GPROJI_STATE_TAIL = 8,
+    GPROJI_SMALL_MOST = 127, /* whole numbers up to this one, and down to its negative, have one byte */
+    GPROJI_SMALL_NONE = 255  /* the byte of other numbers; 8 follow */
+};
+
+/* -- the groups that the library adds to a form -- */
+
+#define GPROJI_OWN_GROUPS(X) X(NONE) X(CLOSENESS) X(GUARD) X(FORCES) X(DRAG_FAIRNESS) X(DRAG_HANDLES)
+
+typedef enum gproji_own {
+#define GPROJ_X(name) GPROJI_OWN_##name,
+    GPROJI_OWN_GROUPS(GPROJ_X)
+#undef GPROJ_X
+    GPROJI_OWN_COUNT
+} gproji_own;
+
+/* The group of this kind; -1: the form has none. */
+GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
+    switch (own) {
+    case GPROJI_OWN_CLOSENESS: return form->closeness;
+    case GPROJI_OWN_GUARD: return form->guard ? form->guard->group : -1;
+    case GPROJI_OWN_FORCES: return form->statics ? form->statics->guidance : -1;
+    case GPROJI_OWN_DRAG_FAIRNESS: return form->drag_fairness;
+    case GPROJI_OWN_DRAG_HANDLES: return form->drag_handles;
+    default: return -1;
+    }
+}
+
+/* Of which kind is a group? The caller's: none. */
+GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t group) {
+    int32_t own;
+    for (own = 1; own < GPROJI_OWN_COUNT; ++own)
+        if (gproji_own_group(form, (gproji_own)own) == group) return (gproji_own)own;
+    return GPROJI_OWN_NONE;
+}
+
+/* Adds it without a weight where it is missing. */
+GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
+    if (!gproji_form_ready(form) || gproji_own_group(form, own) >= 0) return;
+    switch (own) {
+    case GPROJI_OWN_CLOSENESS: form->closeness = gproj_add_closeness(form, 0); break;
+    case GPROJI_OWN_GUARD: gproji_add_guard(form); break;
+    case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
+    case GPROJI_OWN_DRAG_FAIRNESS:
+        form->drag_fairness = gproj_add_fairness(form, 0);
+        if (form->drag_fairness >= 0)
+            gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
+        break;
+    case GPROJI_OWN_DRAG_HANDLES:
+        form->drag_handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all),
+                                               "drag handles", GPROJ_WISH, NULL, 0);
+        break;
+    default: break;
+    }
+}
+
+/* -- a stream of numbers -- */
+
+typedef enum gproji_way { GPROJI_COUNT, GPROJI_WRITE, GPROJI_CHECK, GPROJI_READ } gproji_way;
+
+typedef struct gproji_stream {
+    gproji_way way;
+    uint8_t *out;      /* what is written */
+    const uint8_t *in; /* what is checked or read */
+    size_t at, size;
+    const char *wrong; /* what is wrong with it; NULL: nothing */
+} gproji_stream;
+
+GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->way >= GPROJI_CHECK; }
+
+/* Passes the lowest `bytes` bytes of a value: returns what stands there when it comes in, 0 behind the end. */
+GPROJI_INTERNAL uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
+    size_t at = stream->at;
+    int32_t i;
+    if (stream->way != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
+        stream->wrong = "it ends too early";
+        return 0;
+    }
+    if (stream->way == GPROJI_WRITE)
+        for (i = 0; i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
+    if (gproji_comes_in(stream))
+        for (value = 0, i = 0; i < bytes; ++i) value |= (uint64_t)stream->in[at + (size_t)i] << 8 * i;
+    stream->at += (size_t)bytes;
+    return value;
+}
+
+/* These pass a value, and set it when it is read. All return what has passed. */
+
+GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
+    int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
+    if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
+    if (passed < least || passed > most) stream->wrong = "a whole number is out of its range";
+    if (stream->way == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
+    return (int32_t)passed;
+}
+
+GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
+    uint64_t passed = gproji_pass_bytes(stream, *value, 1);
+    if (passed > 1) stream->wrong = "a flag is neither on nor off";
+    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed == 1;
+    return passed == 1;
+}
+
+/* A number between `least` and `most`, which may be infinite. */
+GPROJI_INTERNAL double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
+    uint64_t bits;
+    double passed;
+    memcpy(&bits, value, sizeof bits);
+    bits = gproji_pass_bytes(stream, bits, 8);
+    memcpy(&passed, &bits, sizeof passed);
+    if (!(passed >= least && passed <= most)) stream->wrong = "a number is none, or out of its range";
+    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed;
+    return passed;
+}
+
+GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, size_t count) {
+    size_t i;
+    for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
+}
+
+/* The byte of a small whole number; -0 is none, it has a sign. */
+GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
+    int32_t whole;
+    if (!(fabs(value) <= GPROJI_SMALL_MOST)) return GPROJI_SMALL_NONE;
+    whole = (int32_t)value;
+    return whole != value || (whole == 0 && 1 / value < 0) ? GPROJI_SMALL_NONE : (uint64_t)(whole + GPROJI_SMALL_MOST);
+}
+
+/* A number that is often small and whole. */
+GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
+    uint64_t small = gproji_pass_bytes(stream, gproji_comes_in(stream) ? 0 : gproji_small_byte(*value), 1);
+    double passed = (double)(int32_t)small - GPROJI_SMALL_MOST;
+    if (small == GPROJI_SMALL_NONE) {
+        gproji_pass_double(stream, value, least, most);
+    } else if (!(passed >= least && passed <= most)) {
+        stream->wrong = "a number is out of its range";
+    } else if (stream->way == GPROJI_READ) {
+        *value = passed;
+    }
+}
+
+/* -- the state -- */
+
+/* A row's weights: one byte where all are 1. */
+GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproji_row *row) {
+    bool plain = row->own == 1 && row->factor == 1 && row->weight == 1;
+    if (gproji_pass_bool(stream, &plain)) {
+        if (stream->way == GPROJI_READ) row->own = row->factor = row->weight = 1;
+        return;
+    }
+    gproji_pass_number(stream, &row->own, 0, 1e50);
+    gproji_pass_number(stream, &row->factor, 0, 1e50);
+    gproji_pass_number(stream, &row->weight, 0, 1e100);
+}
+
+/* The constants and coefficients of a group's rows. */
+GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproji_group *g) {
+    int64_t t;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
+    for (t = 0; t < g->row[g->row_count].term && !stream->wrong; ++t)
+        gproji_pass_number(stream, &g->term[t].a, -DBL_MAX, DBL_MAX);
+}
+
+/* What a group has. Rows that a refresh makes anew before each solve are passed during a solve only. */
+GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, bool solving) {
+    gproj_schedule schedule = g->schedule;
+    int32_t r;
+    gproji_pass_number(stream, &schedule.weight, 0, 1e50);
+    gproji_pass_number(stream, &schedule.decay, 0, 1);
+    gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
+    if (stream->way == GPROJI_READ) g->schedule = schedule;
+    gproji_pass_number(stream, &g->weight, 0, 1e50);
+    if (solving || !g->refresh) gproji_pass_numbers(stream, g);
+    for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_weights(stream, &g->row[r]);
+    for (r = 0; solving && r < g->row_count && !stream->wrong; ++r) {
+        if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
+        gproji_pass_number(stream, &g->row[r].multiplier, -DBL_MAX, DBL_MAX);
+    }
+}
+
+/* A solve in frames. Returns whether one is on. */
+GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
+    gproji_solve solve = form->solve;
+    gproji_loop *loop = &solve.loop;
+    if (!gproji_pass_bool(stream, &solve.on)) {
+        if (stream->way == GPROJI_READ) form->solve.on = form->solve.finished = false;
+        return false;
+    }
+    gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
+    gproji_pass_integer(stream, &solve.collapsed, 0, INT32_MAX);
+    gproji_pass_double(stream, &solve.mean_edge, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->options.time_budget, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->options.skip_damping);
+    gproji_pass_bool(stream, &loop->options.skip_closeness);
+    gproji_pass_bool(stream, &loop->options.skip_guard);
+    gproji_pass_bool(stream, &loop->options.nearest);
+    gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
+    gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->begun);
+    gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX);
+    gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX);
+    gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->best.residual, 0, HUGE_VAL);
+    gproji_pass_double(stream, &loop->best.merit, 0, HUGE_VAL);
+    gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX);
+    gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->minimum);
+    gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX);
+    if (stream->way != GPROJI_READ) return true;
+    if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
+    loop->system = form->system;
+    loop->restored = loop->begun;
+    loop->paused = solve.finished = false;
+    memset(loop->result.seconds, 0, sizeof loop->result.seconds);
+    solve.structure = gproji_structure_of(form->system);
+    form->solve = solve;
+    return true;
+}
+
+/* What the form and its parts remember. */
+GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) {
+    gproji_part *part;
+    int32_t i;
+    for (part = form->part; part; part = part->next)
+        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
+            const gproj_curve *curve = part->curve ? part->curve : gproji_stays(part, i) ? NULL : part->own_curve[part->curve_of[i]];
+            gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        }
+    if (!form->statics) return;
+    gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
+    gproji_pass_bool(stream, &form->statics->started);
+}
+
+/* The groups, each after its kind; those of the form that do not come in lose their weight. */
+GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, bool solving) {
+    gproj_system *s = form->system;
+    int32_t count = gproji_pass_integer(stream, &s->group_count, 0, INT32_MAX), k, theirs = -1, own;
+    bool seen[GPROJI_OWN_COUNT] = {false};
+    for (k = 0; k < count && !stream->wrong; ++k) {
+        int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_kind_of_group(form, k), group;
+        kind = (int32_t)gproji_pass_bytes(stream, (uint64_t)kind, 1);
+        if (kind == GPROJI_OWN_NONE)
+            for (++theirs; theirs < s->group_count && gproji_kind_of_group(form, theirs); ++theirs) continue;
+        group = kind == GPROJI_OWN_NONE ? theirs : kind < GPROJI_OWN_COUNT ? gproji_own_group(form, (gproji_own)kind) : -1;
+        if (group < 0 || group >= s->group_count || (kind && seen[kind])) {
+            stream->wrong = "a group is not one of the form";
+            return;
+        }
+        seen[kind] = true;
+        gproji_pass_group(stream, &s->group[group], solving);
+        if (kind == GPROJI_OWN_GUARD) {
+            gproji_pass_bool(stream, &form->guard_on);
+            gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
+        }
+    }
+    for (own = 1; stream->way == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
+        if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
+            s->group[gproji_own_group(form, (gproji_own)own)].schedule.weight = 0;
+}
+
+/* The kinds of the groups that the library has added, in their order. Those that come in are added to the form. */
+GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
+    int32_t list[GPROJI_OWN_COUNT], count = 0, k;
+    for (k = 0; !gproji_comes_in(stream) && k < form->system->group_count; ++k)
+        if (gproji_kind_of_group(form, k)) list[count++] = (int32_t)gproji_kind_of_group(form, k);
+    count = gproji_pass_integer(stream, &count, 0, GPROJI_OWN_COUNT - 1);
+    for (k = 0; k < count && !stream->wrong; ++k) {
+        if (gproji_comes_in(stream)) list[k] = 0;
+        list[k] = (int32_t)gproji_pass_bytes(stream, (uint64_t)list[k], 1);
+        if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (list[k] != GPROJI_OWN_FORCES || form->statics))
+            gproji_add_own_group(form, (gproji_own)list[k]);
+    }
+}
+
+GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
+    bool solving;
+    gproji_pass_own_groups(stream, form);
+    if (!gproji_form_ready(form)) return;
+    gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
+    gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
+    solving = gproji_pass_solve(stream, form);
+    gproji_pass_parts(stream, form);
+    gproji_pass_groups(stream, form, solving);
+}
+
+/* -- what it belongs to -- */
+
+/* FNV-1a (Fowler, Noll, Vo) over bytes, and its step over 64 bits at once. */
+GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
+
+GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
+    hash = (hash ^ value) * 1099511628211u;
+    return hash ^ hash >> 29;
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_doubles(uint64_t hash, const double *value, size_t count) {
+    size_t i;
+    uint64_t bits;
+    for (i = 0; value && i < count; ++i) {
+        memcpy(&bits, &value[i], sizeof bits);
+        hash = gproji_hash_step(hash, bits);
+    }
+    return gproji_hash_step(hash, value ? count : 0);
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_integers(uint64_t hash, const int32_t *value, size_t count) {
+    size_t i;
+    for (i = 0; i < count; ++i) hash = gproji_hash_step(hash, (uint32_t)value[i]);
+    return gproji_hash_step(hash, count);
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, size_t count) {
+    size_t i;
+    for (i = 0; i < count; ++i) hash = (hash ^ byte[i]) * 1099511628211u;
+    return hash;
+}
+
+/* The mesh, as the form was made from it. */
+GPROJI_INTERNAL uint64_t gproji_hash_mesh(uint64_t hash, const gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    hash = gproji_hash_integers(hash, mesh->face_degree, (size_t)mesh->face_count);
+    hash = gproji_hash_integers(hash, mesh->origin, (size_t)mesh->halfedge_count);
+    hash = gproji_hash_integers(hash, mesh->face, (size_t)mesh->halfedge_count);
+    hash = gproji_hash_doubles(hash, form->original, 3 * (size_t)mesh->vertex_count);
+    hash = gproji_hash_doubles(hash, form->centre, 3);
+    return gproji_hash_doubles(hash, &form->scale, 1);
+}
+
+/* A group's rows without their numbers. */
+GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
+    int64_t t;
+    int32_t r;
+    hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
+    hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
+    hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+    for (r = 0; r < g->row_count; ++r)
+        hash = gproji_hash_step(hash, (uint64_t)g->row[r + 1].term << 32 ^ (uint32_t)g->row[r].element);
+    for (t = 0; t < g->row[g->row_count].term; ++t)
+        hash = gproji_hash_step(hash, (uint64_t)(uint32_t)g->term[t].i << 32 | (uint32_t)g->term[t].j);
+    return gproji_hash_step(hash, (uint64_t)g->row_count);
+}
+
+/* What refreshes go by: loads, and the parts' own numbers. */
+GPROJI_INTERNAL uint64_t gproji_hash_parts(uint64_t hash, const gproj_form *form) {
+    size_t vertices = (size_t)form->mesh->vertex_count;
+    const gproji_statics *s = form->statics;
+    const gproji_part *part;
+    for (part = form->part; part; part = part->next) {
+        if (gproji_kind_of_group(form, part->group)) continue;
+        hash = gproji_hash_integers(hash, part->vertex, (size_t)part->count);
+        hash = gproji_hash_doubles(hash, &part->target, 1);
+        hash = gproji_hash_doubles(hash, part->bound, 2);
+        hash = gproji_hash_doubles(hash, part->price, 2);
+        hash = gproji_hash_doubles(hash, part->factor, (size_t)part->capacity);
+    }
+    if (!s) return hash;
+    hash = gproji_hash_bytes(hash, s->axes, vertices);
+    hash = gproji_hash_doubles(hash, &s->loads.density, 1);
+    hash = gproji_hash_doubles(hash, &s->loads.area_load, 1);
+    hash = gproji_hash_doubles(hash, &s->loads.snow, 1);
+    hash = gproji_hash_doubles(hash, s->edge_density, (size_t)form->mesh->edge_count);
+    return gproji_hash_doubles(hash, s->point_load, 3 * vertices);
+}
+
+/* What a form is made of; not what the library adds to it. */
+GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
+    const gproj_system *s = form->system;
+    uint64_t hash = gproji_hash_mesh(gproji_hash_start(), form);
+    int32_t i;
+    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
+    for (i = 0; i < s->group_count; ++i)
+        if (!gproji_kind_of_group(form, i)) hash = gproji_hash_group(hash, &s->group[i]);
+    return gproji_hash_parts(hash, form);
+}
+
+/* -- the block -- */
+
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'A'};
+
+GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
+                                                 size_t size) {
+    gproji_stream stream;
+    memset(&stream, 0, sizeof stream);
+    stream.way = way, stream.out = out, stream.in = in, stream.at = at, stream.size = size;
+    return stream;
+}
+
+GPROJ_API size_t gproj_state_size(gproj_form *form) {
+    gproji_stream stream = gproji_make_stream(GPROJI_COUNT, NULL, NULL, GPROJI_STATE_HEAD, 0);
+    if (!gproji_form_ready(form)) return 0;
+    gproji_pass_state(&stream, form);
+    return stream.at + GPROJI_STATE_TAIL;
+}
+
+GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error) {
+    gproji_stream stream = gproji_make_stream(GPROJI_WRITE, (uint8_t *)buffer, NULL, 0, size);
+    gproji_error_clear(error);
+    if (!gproji_form_ready(form)) {
+        if (error) *error = *gproj_form_error(form);
+        return gproj_form_error(form)->code;
+    }
+    if (!buffer || size != gproj_state_size(form))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
+                           (int64_t)gproj_state_size(form));
+    memcpy(buffer, gproji_state_magic, sizeof gproji_state_magic);
+    stream.at = sizeof gproji_state_magic;
+    gproji_pass_bytes(&stream, size, 8);
+    gproji_pass_bytes(&stream, gproji_fingerprint(form), 8);
+    gproji_pass_state(&stream, form);
+    gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start(), stream.out, stream.at), 8);
+    if (!stream.wrong) return GPROJ_OK;
+    memset(buffer, 0, size);
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "state: it cannot be saved: %s", stream.wrong);
+}
+
+/* Refuses blocks that are no state of this form, or damaged; `in` is then behind the head. */
+GPROJI_INTERNAL gproj_code gproji_open_state(gproji_stream *in, const gproj_form *form, gproj_error *error) {
+    gproji_stream tail = *in;
+    uint64_t size;
+    if (!in->in || in->size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
+        memcmp(in->in, gproji_state_magic, sizeof gproji_state_magic) != 0)
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "state: these bytes are no saved state of a form");
+    in->at = sizeof gproji_state_magic;
+    size = gproji_pass_bytes(in, 0, 8);
+    if (size != in->size)
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "state: it says that it has %l bytes, but there are %l", (int64_t)size, (int64_t)in->size);
+    tail.at = in->size - GPROJI_STATE_TAIL;
+    if (gproji_hash_bytes(gproji_hash_start(), in->in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "state: it is damaged, its bytes do not have its checksum");
+    if (gproji_pass_bytes(in, 0, 8) != gproji_fingerprint(form))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
+                           "is not the same");
+    in->size -= GPROJI_STATE_TAIL;
+    return GPROJ_OK;
+}
+
+/* Checks a block and reads it; a drag may be under way. */
+GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state, size_t size, gproj_error *error) {
+    gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, 0, size), check;
+    gproj_code code = gproji_open_state(&in, form, error);
+    if (code) return code;
+    check = in;
+    gproji_pass_state(&check, form);
+    if (!gproji_form_ready(form)) {
+        if (error) *error = *gproj_form_error(form);
+        return gproj_form_error(form)->code;
+    }
+    if (check.wrong || check.at != in.size)
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "state: it is damaged: %s",
+                           check.wrong ? check.wrong : "more follows than it should have");
+    in.way = GPROJI_READ;
+    gproji_pass_state(&in, form);
+    form->system->changed = false;
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error) {
+    gproji_error_clear(error);
+    if (!gproji_form_ready(form)) {
+        if (error) *error = *gproj_form_error(form);
+        return gproj_form_error(form)->code;
+    }
+    if (form->system->solving || form->drag)
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "state: a solve or a drag is under way, which must end before");
+    return gproji_read_state(form, state, size, error);
+}
+
+/* ============================================================================================================
+   >>drag   The tangent space of what must hold, and its response to handles. Uses all earlier sections.
+
+   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
+   in the tangent space that a force f at the handles' vertices brings about is its projection,
+       min 1/2 dx'D dx - f'dx,    G dx = 0.                                                                    (1)
+   It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f: each round is one solve with the same factor
+   (the method of multipliers, or a proximal iteration: Hestenes 1969, Rockafellar 1976), and takes eps^2 / (sigma^2 +
+   eps^2) of what G with the singular value sigma leaves. So G dx = 0 holds far better than eps says, and dependent rows do
+   no harm.
+   The responses of all handles' coordinates are made orthonormal in D (pivoted Gram and Schmidt, so that handles which
+   depend on each other are found): Q = (q_1, ..., q_r), Q'DQ = I. What they do to the handles is L = S'Q, and a move of
+   the handles by e = (S'S) d takes dx = Q m with the m that makes |L m - e| smallest. */
+
+static const double gproji_drag_epsilon = 1e-3; /* see (1) */
+static const double gproji_drag_light = 1e-2;   /* the root of what other variables count beside vertices */
+static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, beside a free one, does not move */
+static const double gproji_drag_touch = 1e-6;   /* bounds so near to their limit stay there */
+static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
+enum {
+    GPROJI_DRAG_ROUNDS = 3,      /* solves for each response */
+    GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
+    GPROJI_DRAG_ITERATIONS = 10, /* of the release */
+    GPROJI_DRAG_GUIDED = 5
+};
+
+struct gproj_drag {
+    gproji_heap own;
+    gproj_error error;
+    gproj_form *form;
+    gproji_structure structure; /* of the system at the beginning */
+    gproj_drag_options options;
+    gproj_drag_info info;
+    int32_t columns;   /* 3 * handles */
+    int32_t variables; /* of the system */
+    int64_t *start;    /* the handles, in compressed columns */
+    int32_t *vertex;
+    double *weight;
+    double *from;   /* columns: the caller's positions of the handles at the beginning */
+    double *gram;   /* handles x handles: S'S */
+    double *first;  /* 3 * vertex_count: the vertices at the beginning */
+    double *base;   /* variables: x where the rows were linearised */
+    double *held;   /* columns: S'v there */
+    double *wanted; /* columns: S'v as the handles want it */
+    double *motion; /* columns x variables: Q */
+    double *lift;   /* columns x columns: L by columns */
+    double *pull;   /* columns x columns: (L'L)^-1 L', by rows */
+    double *work;   /* columns x (columns + 1): S'Q while Q is made; L'L; what the handles lack */
+    double *amount; /* columns: m */
+    int32_t *name;  /* columns: the handle's coordinate that each column of Q began with */
+    gproj_schedule *schedule; /* during the release: those of the form's wishes */
+    void *state;              /* of the form, saved at the beginning */
+    size_t state_size;
+    gproji_pool pool;
+};
+
+/* -- the response -- */
+
+/* out = S'v: 3 numbers a handle. */
+GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double *v, double *out) {
+    int32_t k, c;
+    int64_t e;
+    for (k = 0; k < drag->info.handles; ++k) {
+        gproji_set3(0, 0, 0, out + 3 * (size_t)k);
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
+            for (c = 0; c < 3; ++c)
+                out[3 * (size_t)k + (size_t)c] += drag->weight[e] * v[3 * (size_t)drag->vertex[e] + (size_t)c];
+    }
+}
+
+/* Column 3 k + c of Q = the force of handle k along axis c. */
+GPROJI_INTERNAL void gproji_start_responses(gproj_drag *drag) {
+    size_t n = (size_t)drag->variables;
+    int32_t j;
+    int64_t e;
+    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
+    for (j = 0; j < drag->columns; ++j)
+        for (e = drag->start[j / 3]; e < drag->start[j / 3 + 1]; ++e)
+            drag->motion[n * (size_t)j + 3 * (size_t)drag->vertex[e] + (size_t)(j % 3)] += drag->weight[e];
+}
+
+/* Q = eps^2 D Q */
+GPROJI_INTERNAL void gproji_scale_responses(gproj_drag *drag, double epsilon) {
+    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
+    double heavy = epsilon * epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
+    int32_t j;
+    for (j = 0; j < drag->columns; ++j) {
+        double *column = drag->motion + n * (size_t)j;
+        for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
+    }
+}
+
+/* From A^-1 to (A + U U')^-1: see gproji_wide_correct. Wide rows have phi = 0. */
+GPROJI_INTERNAL void gproji_correct_responses(gproj_drag *drag, int32_t wide) {
+    gproj_system *s = drag->form->system;
+    size_t n = (size_t)drag->variables;
+    int32_t j;
+    if (wide == 0) return;
+    memset(s->step, 0, n * sizeof *s->step);
+    for (j = 0; j < drag->columns; ++j) {
+        memcpy(s->correction, drag->motion + n * (size_t)j, n * sizeof *s->correction);
+        gproji_wide_correct(s, wide);
+        memcpy(drag->motion + n * (size_t)j, s->correction, n * sizeof *s->correction);
+    }
+}
+
+/* Rows, gradients and residual at x; what must hold has the weight 1 and nothing else acts. */
+GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
+    gproj_system *s = drag->form->system;
+    gproji_loop loop;
+    int32_t i, r;
+    memset(&loop, 0, sizeof loop);
+    loop.system = s;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->weight = g->kind != GPROJ_WISH && !g->guard && gproji_weight_in(s, g, 1) > 0;
+    }
+    s->solving = true;
+    gproji_linearise(&loop);
+    s->solving = false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r)
+            g->row[r].active = g->weight > 0 && g->row[r].weight > 0 && !(g->row[r].phi > gproji_drag_touch);
+    }
+    return loop.standing.residual;
+}
+
+/* A = G'G + eps^2 D, factored; the first responses go along as far as there is room for them. */
+GPROJI_INTERNAL bool gproji_factor_tangents(gproj_drag *drag, double epsilon, int32_t sides) {
+    gproji_loading loading;
+    gproj_system *s = drag->form->system;
+    loading.system = s, loading.epsilon = epsilon, loading.curved = false;
+    loading.light_from = 3 * drag->form->mesh->vertex_count, loading.light = gproji_drag_light * epsilon;
+    return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, drag->motion) == GPROJ_FACTORED;
+}
+
+/* What the rows of U need, and a step that takes the residual off where `base` is to move by it. Returns how many rows
+   are wide. */
+GPROJI_INTERNAL int32_t gproji_prepare_wide(gproj_drag *drag, bool restore) {
+    gproj_system *s = drag->form->system;
+    int32_t i, r, wide = 0;
+    if (s->wide_count == 0 && !restore) return 0;
+    gproji_merit_gradient(s);
+    gproji_solve_step(s);
+    for (i = 0; restore && i < drag->variables; ++i) drag->base[i] += s->step[i];
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r) {
+            gproji_row *row = &s->group[i].row[r];
+            if (!row->wide || !row->active) continue;
+            row->phi = 0;
+            ++wide;
+        }
+    return wide;
+}
+
+/* The responses in Q: see (1). False: the matrix cannot be factored. */
+GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
+    gproj_cholesky *c = drag->form->system->cholesky;
+    int32_t round, wide, first = gproji_min(c->batch, drag->columns);
+    size_t done = (size_t)first * (size_t)drag->variables;
+    double epsilon = gproji_drag_epsilon;
+    gproji_start_responses(drag);
+    gproji_scale_responses(drag, epsilon);
+    if (!gproji_factor_tangents(drag, epsilon, first)) return false;
+    gproji_cholesky_finish(c, drag->motion);
+    gproj_cholesky_solve(c, drag->columns - first, drag->motion + done, drag->motion + done);
+    wide = gproji_prepare_wide(drag, restore);
+    gproji_correct_responses(drag, wide);
+    for (round = 1; round < GPROJI_DRAG_ROUNDS; ++round) {
+        gproji_scale_responses(drag, epsilon);
+        gproj_cholesky_solve(c, drag->columns, drag->motion, drag->motion);
+        gproji_correct_responses(drag, wide);
+    }
+    drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
+    return true;
+}
+
+/* Swaps columns i and j of Q and of S'Q, and their names. */
+GPROJI_INTERNAL void gproji_swap_responses(gproj_drag *drag, int32_t *name, int32_t i, int32_t j) {
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
+    double *a = drag->motion + n * (size_t)i, *b = drag->motion + n * (size_t)j;
+    double *c = drag->work + m * (size_t)i, *d = drag->work + m * (size_t)j, other;
+    int32_t named = name[i];
+    for (k = 0; k < n; ++k) other = a[k], a[k] = b[k], b[k] = other;
+    for (k = 0; k < m; ++k) other = c[k], c[k] = d[k], d[k] = other;
+    name[i] = name[j];
+    name[j] = named;
+}
+
+/* How far the response in column i moves its own handle, beside what it would without constraints. */
+GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, const int32_t *name, int32_t i) {
+    size_t handle = (size_t)(name[i] / 3), handles = (size_t)drag->info.handles;
+    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)name[i]] / drag->gram[handle * (handles + 1)];
+}
+
+/* Column r becomes orthonormal: q = q / |q|_D, and is taken off the columns after it. */
+GPROJI_INTERNAL void gproji_take_off_response(gproj_drag *drag, const int32_t *name, int32_t r) {
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
+    double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
+    double scale = 1 / sqrt(work[name[r]]);
+    int32_t i;
+    for (k = 0; k < n; ++k) q[k] *= scale;
+    for (k = 0; k < m; ++k) l[k] = work[k] * scale;
+    for (i = r + 1; i < drag->columns; ++i) {
+        double part = l[name[i]], *other = drag->motion + n * (size_t)i;
+        work = drag->work + m * (size_t)i;
+        for (k = 0; k < n; ++k) other[k] -= part * q[k];
+        for (k = 0; k < m; ++k) work[k] -= part * l[k];
+    }
+}
+
+/* Makes the responses orthonormal, the one that yields most first, until the rest does not yield. */
+GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
+    int32_t i, r, best;
+    size_t m = (size_t)drag->columns;
+    for (i = 0; i < drag->columns; ++i) {
+        drag->name[i] = i;
+        gproji_gather_handles(drag, drag->motion + (size_t)drag->variables * (size_t)i, drag->work + m * (size_t)i);
+    }
+    for (r = 0; r < drag->columns; ++r) {
+        for (best = r, i = r + 1; i < drag->columns; ++i)
+            if (gproji_yield(drag, drag->name, i) > gproji_yield(drag, drag->name, best)) best = i;
+        if (!(gproji_yield(drag, drag->name, best) > gproji_drag_stiff)) break;
+        gproji_swap_responses(drag, drag->name, r, best);
+        gproji_take_off_response(drag, drag->name, r);
+    }
+    drag->info.freedom = r;
+}
+
+/* pull = (L'L)^-1 L', the pseudo-inverse of L. */
+GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
+    int32_t rank = drag->info.freedom, m = drag->columns, i, j;
+    double *column = drag->work + (size_t)rank * (size_t)rank;
+    for (i = 0; i < rank; ++i)
+        for (j = 0; j <= i; ++j)
+            drag->work[i * rank + j] = gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
+    gproji_wide_factor(drag->work, rank, rank, DBL_MIN);
+    for (j = 0; j < m; ++j) {
+        for (i = 0; i < rank; ++i) column[i] = drag->lift[(size_t)m * (size_t)i + (size_t)j];
+        gproji_wide_solve(drag->work, rank, rank, column);
+        for (i = 0; i < rank; ++i) drag->pull[(size_t)m * (size_t)i + (size_t)j] = column[i];
+    }
+}
+
+/* Linearises at x, and finds what the handles can do there. restore: a step takes the residual off, too. False: that
+   could not be done, and what was found before is lost. */
+GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
+    gproj_system *s = drag->form->system;
+    int32_t batch = s->cholesky->batch;
+    bool found;
+    gproji_see_constraints(drag);
+    if (s->error.code != GPROJ_OK) return false;
+    memcpy(drag->base, s->x, (size_t)drag->variables * sizeof *drag->base);
+    s->cholesky->batch = gproji_max(batch, GPROJI_DRAG_SIDES);
+    found = gproji_find_responses(drag, restore);
+    s->cholesky->batch = batch;
+    if (!found) return false;
+    gproji_orthonormalise(drag);
+    gproji_invert_lift(drag);
+    gproji_gather_handles(drag, drag->base, drag->held);
+    drag->info.linearisations++;
+    return true;
+}
+
+/* -- moves -- */
+
+/* x = base + Q m with the m for which the handles come nearest to where they should be. */
+GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
+    double *x = drag->form->system->x, *lack = drag->work;
+    for (k = 0; k < m; ++k) lack[k] = drag->wanted[k] - drag->held[k];
+    for (p = 0; p < (size_t)drag->info.freedom; ++p) drag->amount[p] = gproji_dot(drag->pull + m * p, lack, m);
+    memcpy(x, drag->base, n * sizeof *x);
+    for (p = 0; p < (size_t)drag->info.freedom; ++p) {
+        const double *q = drag->motion + n * p;
+        double amount = drag->amount[p];
+        for (i = 0; i < n; ++i) x[i] += amount * q[i];
+        for (k = 0; k < m; ++k) lack[k] -= amount * drag->lift[m * p + k];
+    }
+    drag->info.behind = 0;
+    for (k = 0; k < handles; ++k)
+        drag->info.behind = gproji_fmax(drag->info.behind, gproji_length3(lack + 3 * k) /
+                                                               (drag->gram[k * (handles + 1)] * drag->form->scale));
+}
+
+/* wanted = S'v at the beginning + (S'S) d. */
+GPROJI_INTERNAL void gproji_set_wanted(gproj_drag *drag, const double *positions) {
+    int32_t k, j, c, handles = drag->info.handles;
+    gproji_gather_handles(drag, drag->first, drag->wanted);
+    for (k = 0; k < handles; ++k)
+        for (j = 0; j < handles; ++j)
+            for (c = 0; c < 3; ++c)
+                drag->wanted[3 * k + c] += drag->gram[(size_t)k * (size_t)handles + (size_t)j] *
+                                           (positions[3 * j + c] - drag->from[3 * j + c]) * drag->form->scale;
+}
+
+GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
+    if (!gproji_form_ready(drag->form)) {
+        drag->error = *gproj_form_error(drag->form);
+    } else if (!gproji_has_structure(drag->form->system, drag->structure)) {
+        gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
+    }
+    return drag->error.code == GPROJ_OK;
+}
+
+GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
+    int32_t i;
+    if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
+    gproji_error_clear(&drag->error);
+    if (!gproji_drag_is_usable(drag)) return drag->error.code;
+    for (i = 0; i < drag->columns; ++i)
+        if (!gproji_is_finite(positions[i]))
+            return gproji_fail(&drag->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, i / 3,
+                               "drag: the position of handle %d is not a finite number", i / 3);
+    gproji_set_wanted(drag, positions);
+    gproji_follow_handles(drag);
+    if (drag->options.residual_bound > 0 && gproji_see_constraints(drag) > drag->options.residual_bound) {
+        gproji_linearise_drag(drag, true);
+        gproji_follow_handles(drag);
+    }
+    gproji_store_positions(drag->form);
+    return GPROJ_OK;
+}
+
+GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
+    if (!drag) return 0;
+    gproji_error_clear(&drag->error);
+    return gproji_drag_is_usable(drag) ? gproji_see_constraints(drag) : HUGE_VAL;
+}
+
+GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
+    gproj_drag_info none;
+    memset(&none, 0, sizeof none);
+    return drag ? drag->info : none;
+}
+
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag) { return drag ? &drag->error : gproji_no_object(); }
+
+GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) {
+    gproj_memory memory;
+    memset(&memory, 0, sizeof memory);
+    return drag ? drag->own.account : memory;
+}
+
+/* -- begin -- */
+
+/* Refuses handles that are none. */
+GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gproj_handles *h, gproj_error *error) {
+    int64_t e, end;
+    int32_t k;
+    if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
+        return false;
+    }
+    for (k = 0; k < h->count; ++k) {
+        double size = 0;
+        e = h->start ? h->start[k] : k;
+        end = h->start ? h->start[k + 1] : k + 1;
+        if ((k == 0 && e != 0) || e > end) {
+            gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k, "drag: the list of handle %d is no list", k);
+            return false;
+        }
+        for (; e < end; ++e) {
+            double weight = h->weight ? h->weight[e] : 1;
+            if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count) {
+                gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, h->vertex[e],
+                            "drag: handle %d: there is no vertex %d (the mesh has %d, counted from 0)", k, h->vertex[e],
+                            form->mesh->vertex_count);
+                return false;
+            }
+            size += weight * weight;
+        }
+        if (!(size > 1e-100 && size < 1e100)) {
+            gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
+                        "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
+GPROJI_INTERNAL void gproji_copy_handles(gproj_drag *drag, const gproj_handles *h, double *column) {
+    int32_t k, j, c, handles = h->count;
+    int64_t e;
+    for (k = 0; k <= handles; ++k) drag->start[k] = h->start ? h->start[k] : k;
+    memcpy(drag->vertex, h->vertex, (size_t)drag->start[handles] * sizeof *drag->vertex);
+    for (e = 0; e < drag->start[handles]; ++e) drag->weight[e] = h->weight ? h->weight[e] : 1;
+    memset(column, 0, (size_t)drag->form->mesh->vertex_count * sizeof *column);
+    for (k = 0; k < handles; ++k) {
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] += drag->weight[e];
+        for (j = 0; j < handles; ++j) {
+            double *product = &drag->gram[(size_t)j * (size_t)handles + (size_t)k];
+            for (*product = 0, e = drag->start[j]; e < drag->start[j + 1]; ++e)
+                *product += drag->weight[e] * column[drag->vertex[e]];
+        }
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] = 0;
+    }
+    gproji_gather_handles(drag, drag->form->mesh->position, drag->from);
+    for (k = 0; k < handles; ++k) {
+        double sum = 0;
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) sum += drag->weight[e];
+        for (c = 0; c < 3; ++c)
+            drag->from[3 * k + c] = h->position ? h->position[3 * k + c] : sum != 0 ? drag->from[3 * k + c] / sum : 0;
+    }
+}
+
+/* Takes all memory of a drag; false: there is not enough. */
+GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) {
+    gproj_form *form = drag->form;
+    gproji_pool *pool = &drag->pool;
+    int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count, entries = h->start ? h->start[h->count] : h->count;
+    drag->info.handles = h->count;
+    drag->columns = (int32_t)m;
+    drag->variables = (int32_t)n;
+    drag->state_size = gproj_state_size(form);
+    drag->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *drag->start);
+    drag->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *drag->vertex);
+    drag->weight = (double *)gproji_pool_take(pool, entries, sizeof *drag->weight);
+    drag->from = (double *)gproji_pool_take(pool, m, sizeof *drag->from);
+    drag->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *drag->gram);
+    drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
+    drag->base = (double *)gproji_pool_take(pool, n, sizeof *drag->base);
+    drag->held = (double *)gproji_pool_take(pool, m, sizeof *drag->held);
+    drag->wanted = (double *)gproji_pool_take(pool, m, sizeof *drag->wanted);
+    drag->motion = (double *)gproji_pool_take(pool, m * n, sizeof *drag->motion);
+    drag->lift = (double *)gproji_pool_take(pool, m * m, sizeof *drag->lift);
+    drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
+    drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
+    drag->amount = (double *)gproji_pool_take(pool, m, sizeof *drag->amount);
+    drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
+    drag->schedule =
+        (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
+    drag->state = gproji_pool_take(pool, (int64_t)drag->state_size, 1);
+    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->base &&
+           drag->held && drag->wanted && drag->motion && drag->lift && drag->pull && drag->work && drag->amount &&
+           drag->name && drag->schedule && drag->state;
+}
+
+GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
+    drag->form->drag = NULL;
+    gproji_pool_give_all(&drag->pool);
+    gproji_destroy_object(drag, sizeof *drag);
+}
+
+/* Loads the positions as a solve does, and linearises. */
+GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handles *handles, gproj_error *error) {
+    gproj_form *form = drag->form;
+    gproj_system *s = form->system;
+    gproji_copy_handles(drag, handles, drag->first);
+    form->solve.on = form->solve.finished = false;
+    s->late = 0;
+    gproji_load_positions(form);
+    gproji_restart_gliding(form);
+    gproji_restart_planes(form);
+    memcpy(drag->first, s->x, 3 * (size_t)form->mesh->vertex_count * sizeof *drag->first);
+    drag->structure = gproji_structure_of(s);
+    if (!gproji_form_ready(form) || gproji_compile(s) != GPROJ_OK ||
+        !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
+        return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
+    if (gproji_linearise_drag(drag, false)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                       "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+}
+
+/* Is there anything that forbids a drag now? */
+GPROJI_INTERNAL bool gproji_may_drag(gproj_form *form, const gproj_handles *handles, const gproj_drag_options *options,
+                                     gproj_error *error) {
+    const gproji_statics *statics;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) {
+        if (error) *error = *gproj_form_error(form);
+        return false;
+    }
+    statics = form->statics;
+    if (form->drag || form->system->solving) {
+        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "drag: a solve or another drag is under way, which must end before");
+    } else if (statics && gproji_is_on(form, statics->group) && !statics->started) {
+        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "drag: the forces have no values yet, solve the form before or set them");
+    } else if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX)) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
+                    options->residual_bound);
+    } else {
+        return gproji_handles_are_valid(form, handles, error);
+    }
+    return false;
+}
+
+GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
+                                       const gproj_drag_options *options, gproj_error *error) {
+    gproj_drag *drag;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!gproji_may_drag(form, handles, options, error)) return NULL;
+    drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag);
+    if (!drag) {
+        gproji_fail_memory(error);
+        return NULL;
+    }
+    drag->form = form;
+    if (options) drag->options = *options;
+    gproji_pool_start(&drag->pool, &drag->own);
+    gproji_error_clear(&drag->error);
+    code = gproji_take_drag(drag, handles) ? gproj_state_save(form, drag->state, drag->state_size, error)
+                                           : GPROJ_ERROR_MEMORY;
+    if (code == GPROJ_OK) {
+        form->drag = drag;
+        code = gproji_start_drag(drag, handles, error);
+        if (code == GPROJ_OK) return drag;
+        gproji_read_state(form, drag->state, drag->state_size, NULL);
+    }
+    if (!gproji_form_ready(form) && error) *error = *gproj_form_error(form);
+    if (code == GPROJ_ERROR_MEMORY) gproji_fail_memory(error);
+    gproji_destroy_drag(drag);
+    return NULL;
+}
+
+GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
+    if (!drag) return;
+    gproji_read_state(drag->form, drag->state, drag->state_size, NULL);
+    gproji_destroy_drag(drag);
+}
+
+/* -- release -- */
+
+/* The release's wishes: fairness as it was at the beginning, and the handles where they are. */
+GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
+    gproj_form *form = drag->form;
+    gproj_system *s = form->system;
+    gproji_group *fairness = &s->group[form->drag_fairness], *handles = &s->group[form->drag_handles];
+    int32_t r, k, c;
+    int64_t e;
+    for (r = 0; r < fairness->row_count; ++r) {
+        fairness->row[r].constant = 0;
+        if (!getenv("PLAIN")) fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first, NULL);
+    }
+    for (r = 0; r < handles->row_count; ++r) gproj_system_set_row_weight(s, form->drag_handles, r, 0);
+    for (k = 0; k < drag->info.handles; ++k) {
+        double most = 0;
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) most = gproji_fmax(most, fabs(drag->weight[e]));
+        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
+            for (c = 0; c < 3; ++c) {
+                int32_t row = 3 * drag->vertex[e] + c;
+                double weight = fabs(drag->weight[e]) / most;
+                if (weight > handles->row[row].own) gproj_system_set_row_weight(s, form->drag_handles, row, weight);
+                gproj_system_set_row(s, form->drag_handles, row, NULL, -s->x[row]);
+            }
+    }
+}
+
+/* Sets the schedules of the release, or puts back those of before. */
+GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
+    gproj_form *form = drag->form;
+    gproj_schedule fairness = {0, 0, 0}, handles = {0, 0, 0};
+    int32_t g;
+    for (g = 0; g < drag->structure.groups; ++g) {
+        gproji_group *group = &form->system->group[g];
+        if (group->kind != GPROJ_WISH || gproji_kind_of_group(form, g)) continue;
+        if (on) drag->schedule[g] = group->schedule;
+        if (!on) group->schedule = drag->schedule[g];
+        if (on && !drag->options.keep_wishes) group->schedule.weight = 0;
+    }
+    fairness.weight = on ? gproji_drag_fairness : 0;
+    handles.weight = on ? 1 : 0;
+    fairness.decay = handles.decay = gproji_drag_decay;
+    fairness.last = handles.last = GPROJI_DRAG_GUIDED;
+    gproj_system_set_schedule(form->system, form->drag_fairness, fairness);
+    gproj_system_set_schedule(form->system, form->drag_handles, handles);
+}
+
+GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
+    gproj_result result;
+    gproj_form *form;
+    if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
+    form = drag->form;
+    form->drag = NULL;
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    if (gproji_form_ready(form)) {
+        gproji_set_release(drag);
+        gproji_schedule_release(drag, true);
+        result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+        gproji_schedule_release(drag, false);
+    } else {
+        result = gproji_failed_result(gproj_form_error(form));
+    }
+    gproji_destroy_drag(drag);
+    return result;
 }
 
 #endif /* GPROJI_IMPLEMENTED */
