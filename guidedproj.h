@@ -14919,8 +14919,8 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    >>state   A form's state as a block of bytes. Uses all earlier sections.
 
    One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
-   is given. All integers are little-endian; a double is its 64 bits, or, where most are small whole numbers (coefficients,
-   constants, weights), one byte for these.
+   is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
+   (coefficients, constants, weights), one byte for these.
 
        8 bytes "gprojstA", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
 
@@ -14934,7 +14934,7 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
     GPROJI_STATE_TAIL = 8,
-    GPROJI_SMALL_MOST = 127, /* whole numbers up to this one, and down to its negative, have one byte */
+    GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to its negative, have one byte */
     GPROJI_SMALL_NONE = 255  /* the byte of other numbers; 8 follow */
 };
 
@@ -15003,18 +15003,28 @@ typedef struct gproji_stream {
 
 GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->way >= GPROJI_CHECK; }
 
-/* Passes the lowest `bytes` bytes of a value: returns what stands there when it comes in, 0 behind the end. */
-GPROJI_INTERNAL uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
-    size_t at = stream->at;
+/* The lowest `bytes` bytes of a number, the lowest first. */
+GPROJI_INLINE void gproji_put_bytes(uint8_t *out, uint64_t value, int32_t bytes) {
     int32_t i;
+    for (i = 0; i < bytes; ++i) out[i] = (uint8_t)(value >> 8 * i);
+}
+
+GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
+    uint64_t value = 0;
+    int32_t i;
+    for (i = 0; i < bytes; ++i) value |= (uint64_t)in[i] << 8 * i;
+    return value;
+}
+
+/* Passes the lowest `bytes` bytes of a value: returns what stands there when it comes in, 0 behind the end. */
+GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
+    size_t at = stream->at;
     if (stream->way != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
         stream->wrong = "it ends too early";
         return 0;
     }
-    if (stream->way == GPROJI_WRITE)
-        for (i = 0; i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
-    if (gproji_comes_in(stream))
-        for (value = 0, i = 0; i < bytes; ++i) value |= (uint64_t)stream->in[at + (size_t)i] << 8 * i;
+    if (stream->way == GPROJI_WRITE) gproji_put_bytes(stream->out + at, value, bytes);
+    if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
     stream->at += (size_t)bytes;
     return value;
 }
@@ -15053,18 +15063,19 @@ GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, s
     for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
 }
 
-/* The byte of a small whole number; -0 is none, it has a sign. */
+/* The byte of a small number of eighths; -0 is none, it has a sign. */
 GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
     int32_t whole;
-    if (!(fabs(value) <= GPROJI_SMALL_MOST)) return GPROJI_SMALL_NONE;
-    whole = (int32_t)value;
-    return whole != value || (whole == 0 && 1 / value < 0) ? GPROJI_SMALL_NONE : (uint64_t)(whole + GPROJI_SMALL_MOST);
+    if (!(fabs(value) <= GPROJI_SMALL_MOST / 8.0)) return GPROJI_SMALL_NONE;
+    whole = (int32_t)(8 * value);
+    if (whole != 8 * value || (whole == 0 && 1 / value < 0)) return GPROJI_SMALL_NONE;
+    return (uint64_t)(whole + GPROJI_SMALL_MOST);
 }
 
-/* A number that is often small and whole. */
+/* A number that is often a small one of eighths. */
 GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
     uint64_t small = gproji_pass_bytes(stream, gproji_comes_in(stream) ? 0 : gproji_small_byte(*value), 1);
-    double passed = (double)(int32_t)small - GPROJI_SMALL_MOST;
+    double passed = ((double)(int32_t)small - GPROJI_SMALL_MOST) / 8;
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
@@ -15097,8 +15108,9 @@ GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproji_group *g)
         gproji_pass_number(stream, &g->term[t].a, -DBL_MAX, DBL_MAX);
 }
 
-/* What a group has. Rows that a refresh makes anew before each solve are passed during a solve only. */
-GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, bool solving) {
+/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
+   any of a group that the library has added (`own`): they are set when a solve begins. */
+GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, bool own, bool solving) {
     gproj_schedule schedule = g->schedule;
     int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
@@ -15106,6 +15118,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, b
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
     if (stream->way == GPROJI_READ) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
+    if (own && !solving) return;
     if (solving || !g->refresh) gproji_pass_numbers(stream, g);
     for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_weights(stream, &g->row[r]);
     for (r = 0; solving && r < g->row_count && !stream->wrong; ++r) {
@@ -15186,8 +15199,8 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             return;
         }
         seen[kind] = true;
-        gproji_pass_group(stream, &s->group[group], solving);
-        if (kind == GPROJI_OWN_GUARD) {
+        gproji_pass_group(stream, &s->group[group], kind != GPROJI_OWN_NONE, solving);
+        if (solving && kind == GPROJI_OWN_GUARD) {
             gproji_pass_bool(stream, &form->guard_on);
             gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
         }
@@ -15224,7 +15237,8 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
 
 /* -- what it belongs to -- */
 
-/* FNV-1a (Fowler, Noll, Vo) over bytes, and its step over 64 bits at once. */
+/* A hash by 64 bits at once, with the numbers of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and in
+   the hash: a change of one value never goes unnoticed. */
 GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
 
 GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
@@ -15250,7 +15264,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_integers(uint64_t hash, const int32_t *valu
 
 GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, size_t count) {
     size_t i;
-    for (i = 0; i < count; ++i) hash = (hash ^ byte[i]) * 1099511628211u;
+    for (i = 0; i + 8 <= count; i += 8) hash = gproji_hash_step(hash, gproji_get_bytes(byte + i, 8));
+    for (; i < count; ++i) hash = gproji_hash_step(hash, byte[i]);
     return hash;
 }
 
@@ -15331,8 +15346,20 @@ GPROJ_API size_t gproj_state_size(gproj_form *form) {
     return stream.at + GPROJI_STATE_TAIL;
 }
 
+/* Writes the state to as many bytes as it has. */
+GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, size_t size, gproj_error *error) {
+    gproji_stream stream = gproji_make_stream(GPROJI_WRITE, out, NULL, sizeof gproji_state_magic, size);
+    memcpy(out, gproji_state_magic, sizeof gproji_state_magic);
+    gproji_pass_bytes(&stream, size, 8);
+    gproji_pass_bytes(&stream, gproji_fingerprint(form), 8);
+    gproji_pass_state(&stream, form);
+    gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start(), out, stream.at), 8);
+    if (!stream.wrong) return GPROJ_OK;
+    memset(out, 0, size);
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "state: it cannot be saved: %s", stream.wrong);
+}
+
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error) {
-    gproji_stream stream = gproji_make_stream(GPROJI_WRITE, (uint8_t *)buffer, NULL, 0, size);
     gproji_error_clear(error);
     if (!gproji_form_ready(form)) {
         if (error) *error = *gproj_form_error(form);
@@ -15342,15 +15369,7 @@ GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t siz
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
                            (int64_t)gproj_state_size(form));
-    memcpy(buffer, gproji_state_magic, sizeof gproji_state_magic);
-    stream.at = sizeof gproji_state_magic;
-    gproji_pass_bytes(&stream, size, 8);
-    gproji_pass_bytes(&stream, gproji_fingerprint(form), 8);
-    gproji_pass_state(&stream, form);
-    gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start(), stream.out, stream.at), 8);
-    if (!stream.wrong) return GPROJ_OK;
-    memset(buffer, 0, size);
-    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "state: it cannot be saved: %s", stream.wrong);
+    return gproji_write_state(form, (uint8_t *)buffer, size, error);
 }
 
 /* Refuses blocks that are no state of this form, or damaged; `in` is then behind the head. */
@@ -15424,13 +15443,14 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    depend on each other are found): Q = (q_1, ..., q_r), Q'DQ = I. What they do to the handles is L = S'Q, and a move of
    the handles by e = (S'S) d takes dx = Q m with the m that makes |L m - e| smallest. */
 
-static const double gproji_drag_epsilon = 1e-3; /* see (1) */
+static const double gproji_drag_epsilon = 3e-4; /* see (1) */
 static const double gproji_drag_light = 1e-2;   /* the root of what other variables count beside vertices */
 static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, beside a free one, does not move */
 static const double gproji_drag_touch = 1e-6;   /* bounds so near to their limit stay there */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
+static const double gproji_drag_rest = 1e-3; /* of staying where it was before the drag, beside where the handles are */
 enum {
-    GPROJI_DRAG_ROUNDS = 3,      /* solves for each response */
+    GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
     GPROJI_DRAG_ITERATIONS = 10, /* of the release */
     GPROJI_DRAG_GUIDED = 5
@@ -15461,7 +15481,7 @@ struct gproj_drag {
     double *amount; /* columns: m */
     int32_t *name;  /* columns: the handle's coordinate that each column of Q began with */
     gproj_schedule *schedule; /* during the release: those of the form's wishes */
-    void *state;              /* of the form, saved at the beginning */
+    uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
     gproji_pool pool;
 };
@@ -15845,7 +15865,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
     drag->schedule =
         (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
-    drag->state = gproji_pool_take(pool, (int64_t)drag->state_size, 1);
+    drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
     return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->base &&
            drag->held && drag->wanted && drag->motion && drag->lift && drag->pull && drag->work && drag->amount &&
            drag->name && drag->schedule && drag->state;
@@ -15916,7 +15936,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     if (options) drag->options = *options;
     gproji_pool_start(&drag->pool, &drag->own);
     gproji_error_clear(&drag->error);
-    code = gproji_take_drag(drag, handles) ? gproj_state_save(form, drag->state, drag->state_size, error)
+    code = gproji_take_drag(drag, handles) ? gproji_write_state(form, drag->state, drag->state_size, error)
                                            : GPROJ_ERROR_MEMORY;
     if (code == GPROJ_OK) {
         form->drag = drag;
@@ -15947,17 +15967,20 @@ GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
     int64_t e;
     for (r = 0; r < fairness->row_count; ++r) {
         fairness->row[r].constant = 0;
-        if (!getenv("PLAIN")) fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first, NULL);
+        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first, NULL);
     }
-    for (r = 0; r < handles->row_count; ++r) gproj_system_set_row_weight(s, form->drag_handles, r, 0);
+    for (r = 0; r < handles->row_count; ++r) {
+        gproj_system_set_row(s, form->drag_handles, r, NULL, -drag->first[r]);
+        gproj_system_set_row_weight(s, form->drag_handles, r, gproji_drag_rest);
+    }
     for (k = 0; k < drag->info.handles; ++k) {
         double most = 0;
         for (e = drag->start[k]; e < drag->start[k + 1]; ++e) most = gproji_fmax(most, fabs(drag->weight[e]));
         for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
             for (c = 0; c < 3; ++c) {
                 int32_t row = 3 * drag->vertex[e] + c;
-                double weight = fabs(drag->weight[e]) / most;
-                if (weight > handles->row[row].own) gproj_system_set_row_weight(s, form->drag_handles, row, weight);
+                double weight = gproji_fmax(fabs(drag->weight[e]) / most, handles->row[row].own);
+                gproj_system_set_row_weight(s, form->drag_handles, row, weight);
                 gproj_system_set_row(s, form->drag_handles, row, NULL, -s->x[row]);
             }
     }
