@@ -14812,12 +14812,25 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, int32_t collaps
 
 /* -- a solve, at once or in frames -- */
 
+/* A result that says what is wrong with a call and leaves the form as it is. */
+GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *sentence) {
+    gproj_error error;
+    gproji_error_clear(&error);
+    gproji_fail(&error, code, GPROJ_PLACE_NONE, -1, "%s", sentence);
+    return gproji_failed_result(&error);
+}
+
 /* Begins form->solve; on failure its result says why. */
 GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     int32_t guided;
     solve->on = solve->finished = false;
+    if (form->drag) {
+        solve->loop.result = gproji_refused_result(GPROJ_ERROR_STATE,
+                                                   "a drag is under way: end or cancel it before the form is solved");
+        return false;
+    }
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
     gproji_load_positions(form);
     gproji_restart_gliding(form);
@@ -14862,14 +14875,6 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_store_positions(form);
     if (ended) gproji_finish_solve(form);
     return solve->loop.result;
-}
-
-/* A result that says what is wrong with a call and leaves the form as it is. */
-GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *sentence) {
-    gproj_error error;
-    gproji_error_clear(&error);
-    gproji_fail(&error, code, GPROJ_PLACE_NONE, -1, "%s", sentence);
-    return gproji_failed_result(&error);
 }
 
 /* May a solve, a drag or a state change the form now? */

@@ -1,0 +1,620 @@
+/* test_drag.c - >>drag: handles, the tangent space, releases; what it promises is checked from outside. */
+#include "gprojt_design.h"
+
+/* -- what is dragged -- */
+
+/* A form of a kind whose mesh satisfies everything, and its positions then. */
+typedef struct gprojt_stage {
+    gproj_mesh *mesh;
+    gproj_form *form;
+    double *start;
+    double edge; /* mean length */
+} gprojt_stage;
+
+static gprojt_stage gprojt_set_stage(gproj_mesh *mesh, int design, const gproj_host *host) {
+    gprojt_stage stage;
+    gproj_result result;
+    stage.mesh = mesh;
+    stage.form = gprojt_design(mesh, design, host);
+    result = gproj_solve(stage.form, 40, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    stage.start = gprojt_keep(mesh);
+    stage.edge = gproj_mesh_mean_edge_length(mesh);
+    return stage;
+}
+
+static void gprojt_clear_stage(gprojt_stage *stage) {
+    gproj_form_destroy(stage->form);
+    gproj_mesh_destroy(stage->mesh);
+    free(stage->start);
+}
+
+static gproj_drag *gprojt_grab(const gprojt_stage *stage, int32_t count, const int32_t *vertex) {
+    gproj_handles handles = gprojt_vertex_handles(count, vertex);
+    gproj_error error;
+    gproj_drag *drag = gproj_drag_begin(stage->form, &handles, NULL, &error);
+    if (!drag) printf("  %s\n", error.message);
+    GPROJT_CHECK(drag && error.code == GPROJ_OK);
+    return drag;
+}
+
+/* Moves one vertex by (0.3, 0.2, 0.9) * length from where it was. */
+static void gprojt_pull(const gprojt_stage *stage, gproj_drag *drag, int32_t v, double length) {
+    double p[3];
+    p[0] = stage->start[3 * v] + 0.3 * length;
+    p[1] = stage->start[3 * v + 1] + 0.2 * length;
+    p[2] = stage->start[3 * v + 2] + 0.9 * length;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK);
+    if (gproj_drag_get_info(drag).behind < 1e-12) GPROJT_CHECK(gprojt_far(stage->mesh->position + 3 * v, p) < 1e-9);
+}
+
+/* -- second order -- */
+
+/* How far the mesh is from what must hold, by measures that know nothing of rows. */
+static double gprojt_measured_error(const gprojt_stage *stage, int design) {
+    gproj_measures m = gproj_measure(stage->mesh, NULL, NULL);
+    if (design == GPROJT_STANDING) return gproj_measure_forces(stage->form).residual;
+    return design == GPROJT_CIRCULAR ? m.circularity_max : m.planarity_max;
+}
+
+static void gprojt_check_order(int design) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(9, 0.05), design, NULL);
+    int32_t v = gprojt_middle(stage.mesh), k;
+    gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+    double h = 0.5 * stage.edge, residual = 0, measured = 0;
+    for (k = 0; drag && k < 8; ++k, h /= 2) {
+        double now[2];
+        gprojt_pull(&stage, drag, v, h);
+        now[0] = gproj_drag_residual(drag);
+        now[1] = gprojt_measured_error(&stage, design);
+        GPROJT_CHECK(k == 0 || (residual / now[0] > 3.5 && residual / now[0] < 4.5));
+        GPROJT_CHECK(k < 3 || (measured / now[1] > 3.5 && measured / now[1] < 4.5));
+        residual = now[0];
+        measured = now[1];
+    }
+    GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 3 && gproj_drag_get_info(drag).behind < 1e-9 * stage.edge);
+    gprojt_pull(&stage, drag, v, 0.5 * stage.edge);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_measure(stage.mesh, NULL, NULL).planarity_max <= 1e-9);
+    GPROJT_CHECK(gprojt_measured_error(&stage, design) <= 1e-9);
+    GPROJT_CHECK(gprojt_far(stage.mesh->position + 3 * v, stage.start + 3 * v) > 0.2 * stage.edge);
+    gprojt_clear_stage(&stage);
+}
+
+GPROJT_TEST(half_a_drag_is_a_quarter_of_the_error) {
+    gprojt_check_order(GPROJT_PLANAR);
+    gprojt_check_order(GPROJT_STANDING);
+    gprojt_check_order(GPROJT_CIRCULAR);
+    gprojt_check_order(GPROJT_GLIDING);
+}
+
+/* -- the smallest change -- */
+
+typedef struct gprojt_basis {
+    int32_t n, count;
+    double *vector;
+} gprojt_basis;
+
+/* Takes the part of v in the span off v, twice for its digits. */
+static void gprojt_take_off(const gprojt_basis *b, double *v) {
+    int32_t i, j, pass;
+    for (pass = 0; pass < 2; ++pass)
+        for (j = 0; j < b->count; ++j) {
+            const double *u = b->vector + (size_t)b->n * (size_t)j;
+            double sum = 0;
+            for (i = 0; i < b->n; ++i) sum += u[i] * v[i];
+            for (i = 0; i < b->n; ++i) v[i] -= sum * u[i];
+        }
+}
+
+static double gprojt_norm(const double *v, int32_t n) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < n; ++i) sum += v[i] * v[i];
+    return sqrt(sum);
+}
+
+/* The span of the gradients, scaled by D^-1/2, of all rows that must hold, and of the handles' vertices. */
+static gprojt_basis gprojt_normal_space(gproj_form *form, const double *scale, int32_t count, const int32_t *vertex) {
+    gproj_system *s = gproj_form_system(form);
+    gprojt_basis b;
+    double *v;
+    int32_t g, r, i;
+    b.n = gproj_system_variable_count(s), b.count = 0;
+    b.vector = (double *)malloc((size_t)b.n * (size_t)(b.n + 1) * sizeof(double));
+    if (!b.vector) abort();
+    for (g = 0; g <= gproj_system_group_count(s); ++g) {
+        int32_t rows = g < gproj_system_group_count(s) ? gproj_system_group_info(s, g).rows : 3 * count;
+        if (g < gproj_system_group_count(s) && gproj_system_group_info(s, g).kind != GPROJ_CONSTRAINT) continue;
+        for (r = 0; r < rows; ++r) {
+            double before, after;
+            v = b.vector + (size_t)b.n * (size_t)b.count;
+            memset(v, 0, (size_t)b.n * sizeof *v);
+            if (g < gproj_system_group_count(s))
+                gproj_system_row_value(s, g, r, v);
+            else
+                v[3 * vertex[r / 3] + r % 3] = 1;
+            for (i = 0; i < b.n; ++i) v[i] /= scale[i];
+            before = gprojt_norm(v, b.n);
+            gprojt_take_off(&b, v);
+            after = gprojt_norm(v, b.n);
+            if (!(after > 1e-8 * before)) continue;
+            for (i = 0; i < b.n; ++i) v[i] /= after;
+            b.count++;
+        }
+    }
+    return b;
+}
+
+/* The optimality of the smallest change: D dx is a combination of the gradients and of the handles. */
+static void gprojt_check_smallest(int design) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), design, NULL);
+    gproj_system *s = gproj_form_system(stage.form);
+    int32_t v[2], n = gproj_system_variable_count(s), i;
+    double *x = (double *)malloc((size_t)n * sizeof *x), *scale = (double *)malloc((size_t)n * sizeof *scale), size;
+    double to[6];
+    gprojt_basis basis;
+    gproj_drag *drag;
+    v[0] = gprojt_middle(stage.mesh), v[1] = v[0] + 1;
+    for (i = 0; i < 6; ++i) to[i] = stage.start[3 * v[i / 3] + i % 3];
+    drag = gprojt_grab(&stage, 2, v);
+    for (i = 0; i < n; ++i) scale[i] = i < 3 * stage.mesh->vertex_count ? 1 : 0.01;
+    memcpy(x, gproj_system_values(s), (size_t)n * sizeof *x);
+    basis = gprojt_normal_space(stage.form, scale, 2, v); /* at the beginning */
+    to[0] += 0.1, to[2] += 0.3, to[4] -= 0.2;
+    gproj_drag_move(drag, to);
+    for (i = 0; i < n; ++i) x[i] = scale[i] * (gproj_system_values(s)[i] - x[i]);
+    size = gprojt_norm(x, n);
+    gprojt_take_off(&basis, x);
+    GPROJT_CHECK(size > 0.3);
+    GPROJT_CHECK(gprojt_norm(x, n) < 1e-5 * size);
+    gproj_drag_cancel(drag);
+    free(basis.vector), free(x), free(scale);
+    gprojt_clear_stage(&stage);
+}
+
+GPROJT_TEST(the_change_is_the_smallest) {
+    gprojt_check_smallest(GPROJT_PLANAR);
+    gprojt_check_smallest(GPROJT_STANDING);
+    gprojt_check_smallest(GPROJT_CIRCULAR);
+}
+
+/* -- handles -- */
+
+/* Without anything that must hold, points of a cage take their vertices along as a subdivision does: dv = S d. */
+GPROJT_TEST(points_of_a_cage) {
+    static const int64_t start[] = {0, 3, 5};
+    static const int32_t vertex[] = {3, 7, 8, 8, 12};
+    static const double weight[] = {0.25, 1, 0.5, 0.5, 0.125}, cage[] = {1, 2, 3, 4, 5, 6};
+    static const double moved[] = {1.5, 2, 3.25, 4, 4, 6};
+    gproj_mesh *mesh = gprojt_roof(4, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *before = gprojt_keep(mesh);
+    gproj_handles handles;
+    gproj_drag *drag;
+    int32_t v, c, k;
+    int64_t e;
+    memset(&handles, 0, sizeof handles);
+    handles.count = 2, handles.start = start, handles.vertex = vertex, handles.weight = weight, handles.position = cage;
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    GPROJT_REQUIRE(drag);
+    GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 6);
+    GPROJT_CHECK(gproj_drag_move(drag, moved) == GPROJ_OK && gproj_drag_get_info(drag).behind < 1e-12);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (c = 0; c < 3; ++c) {
+            double d = 0;
+            for (k = 0; k < 2; ++k)
+                for (e = start[k]; e < start[k + 1]; ++e)
+                    if (vertex[e] == v) d += weight[e] * (moved[3 * k + c] - cage[3 * k + c]);
+            GPROJT_NEAR(mesh->position[3 * v + c] - before[3 * v + c], d, 1e-12);
+        }
+    GPROJT_CHECK(gproj_drag_end(drag).outcome != GPROJ_FAILED);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before);
+}
+
+/* A handle without a position of its own is at the weighted mean of its vertices. */
+GPROJT_TEST(handles_at_their_means) {
+    static const int64_t start[] = {0, 2};
+    static const int32_t vertex[] = {6, 7};
+    static const double weight[] = {3, 1};
+    gproj_mesh *mesh = gprojt_roof(4, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *before = gprojt_keep(mesh), mean[3];
+    gproj_handles handles;
+    gproj_drag *drag;
+    int32_t c;
+    memset(&handles, 0, sizeof handles);
+    handles.count = 1, handles.start = start, handles.vertex = vertex, handles.weight = weight;
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    for (c = 0; c < 3; ++c) mean[c] = (3 * before[18 + c] + before[21 + c]) / 4;
+    GPROJT_CHECK(gproj_drag_move(drag, mean) == GPROJ_OK);
+    GPROJT_CHECK(gprojt_largest_move(before, mesh->position, mesh->vertex_count) < 1e-12);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before);
+}
+
+/* What cannot follow stays behind, and does not hold back the others. */
+GPROJT_TEST(handles_that_cannot_follow) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v[3], i;
+    double to[9];
+    gproj_drag *drag;
+    v[0] = 0, v[1] = v[2] = gprojt_middle(stage.mesh); /* a fixed corner; and one vertex twice goes by both, as S d says */
+    drag = gprojt_grab(&stage, 3, v);
+    GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 3 && gproj_drag_get_info(drag).handles == 3);
+    for (i = 0; i < 9; ++i) to[i] = stage.start[3 * v[i / 3] + i % 3];
+    to[2] += 3, to[5] += 0.2, to[8] += 0.4;
+    GPROJT_CHECK(gproj_drag_move(drag, to) == GPROJ_OK);
+    GPROJT_NEAR(gproj_drag_get_info(drag).behind, 3, 1e-9);
+    GPROJT_CHECK(gprojt_far(stage.mesh->position, stage.start) < 1e-9);
+    GPROJT_NEAR(stage.mesh->position[3 * v[1] + 2] - stage.start[3 * v[1] + 2], 0.6, 1e-8);
+    GPROJT_NEAR(stage.mesh->position[3 * v[1]], stage.start[3 * v[1]], 1e-9);
+    gproj_drag_cancel(drag);
+    gprojt_clear_stage(&stage);
+}
+
+/* A bound at its limit holds the vertex there; one that is far from it does not. */
+GPROJT_TEST(bounds_at_their_limit_hold) {
+    gproj_mesh *mesh = gprojt_roof(4, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *s = gproj_form_system(form);
+    int32_t v[2], k, group = gprojt_add_group(s, "height", GPROJ_BOUND, 1);
+    double to[6], far[2];
+    gproj_drag *drag;
+    gproj_handles handles;
+    v[0] = 6, v[1] = 13;
+    far[0] = 0, far[1] = 0.1;
+    for (k = 0; k < 2; ++k)
+        gprojt_add_linear(s, group, 3 * v[k] + 2, 1, far[k] - gproj_system_values(s)[3 * v[k] + 2], v[k]);
+    handles = gprojt_vertex_handles(2, v);
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    GPROJT_REQUIRE(drag);
+    for (k = 0; k < 6; ++k) to[k] = mesh->position[3 * v[k / 3] + k % 3] + 0.25;
+    GPROJT_CHECK(gproj_drag_move(drag, to) == GPROJ_OK && gproj_drag_get_info(drag).freedom == 5);
+    GPROJT_NEAR(mesh->position[3 * v[0] + 2], to[2] - 0.25, 1e-9);
+    GPROJT_NEAR(mesh->position[3 * v[0] + 1], to[1], 1e-9);
+    GPROJT_CHECK(gprojt_far(mesh->position + 3 * v[1], to + 3) < 1e-9);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- there and back -- */
+
+static void gprojt_check_return(gprojt_stage *stage, int32_t v) {
+    gproj_drag *drag = gprojt_grab(stage, 1, &v);
+    gproj_result result;
+    int32_t k;
+    for (k = 1; k <= 20; ++k) gprojt_pull(stage, drag, v, 0.05 * stage->edge * (k <= 10 ? k : 20 - k));
+    result = gproj_drag_end(drag);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual <= 1e-9);
+    GPROJT_CHECK(gprojt_largest_move(stage->start, stage->mesh->position, stage->mesh->vertex_count) <= 0.05 * stage->edge);
+    gprojt_clear_stage(stage);
+}
+
+GPROJT_TEST(there_and_back) {
+    int design;
+    for (design = 0; design < GPROJT_DESIGNS; ++design) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(8, 0.05), design, NULL);
+        gprojt_check_return(&stage, gprojt_middle(stage.mesh));
+    }
+}
+
+GPROJT_TEST(there_and_back_on_intersection) {
+    char path[1024];
+    gproj_mesh *mesh;
+    gprojt_stage stage;
+    snprintf(path, sizeof path, "%s/Intersection.obj", gprojt_data_folder());
+    mesh = gproj_mesh_load(path, NULL, NULL);
+    if (!mesh) GPROJT_SKIP("no folder of real meshes");
+    stage = gprojt_set_stage(mesh, GPROJT_PLANAR, NULL);
+    gprojt_check_return(&stage, 800);
+}
+
+/* A closed loop of moves with releases: every face stays planar, and none folds. */
+GPROJT_TEST(a_closed_loop) {
+#ifdef GPROJT_SANITIZED
+    enum { ACROSS = 15, MOVES = 60 };
+#else
+    enum { ACROSS = 59, MOVES = 200 };
+#endif
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(ACROSS, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh) + 3, k;
+    double turn = 6.283185307179586 / MOVES, p[3];
+    gproj_drag *drag = NULL;
+    gproj_measures m;
+    for (k = 1; k <= MOVES; ++k) {
+        if (!drag) drag = gprojt_grab(&stage, 1, &v);
+        p[0] = stage.start[3 * v] + 0.6 * stage.edge * sin(turn * k);
+        p[1] = stage.start[3 * v + 1] + 0.8 * stage.edge * sin(turn * k);
+        p[2] = stage.start[3 * v + 2] + stage.edge * (1 - cos(turn * k));
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK);
+        if (k % 10) continue;
+        GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+        drag = NULL;
+        m = gproj_measure(stage.mesh, stage.start, NULL);
+        GPROJT_CHECK(m.planarity_max <= 1e-9);
+        GPROJT_CHECK(m.folded_edges == 0 && m.turned_faces == 0 && m.bow_tie_faces == 0);
+        GPROJT_CHECK(gprojt_far(stage.mesh->position + 3 * v, p) < 0.02 * stage.edge);
+    }
+    m = gproj_measure(stage.mesh, stage.start, NULL);
+    GPROJT_CHECK(m.displacement_mean < 0.1);
+    gprojt_clear_stage(&stage);
+}
+
+/* A long drag that linearises anew stays near what must hold all the time. */
+GPROJT_TEST(a_long_drag) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(8, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh), k;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    gproj_drag_info info;
+    uint64_t allocations;
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 0.01;
+    drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    allocations = gproj_form_memory(stage.form).allocations + gproj_drag_memory(drag).allocations;
+    for (k = 1; k <= 40; ++k) {
+        gprojt_pull(&stage, drag, v, 0.04 * k * stage.edge);
+        GPROJT_CHECK(gproj_drag_residual(drag) <= 0.011);
+    }
+    info = gproj_drag_get_info(drag);
+    GPROJT_CHECK(info.linearisations > 2 && info.linearisations < 40 && info.solves == 6 * info.linearisations);
+    GPROJT_CHECK(gproj_form_memory(stage.form).allocations + gproj_drag_memory(drag).allocations == allocations);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    gprojt_clear_stage(&stage);
+}
+
+/* -- cost, and cancelling -- */
+
+GPROJT_TEST(moves_allocate_nothing) {
+    int design;
+    for (design = 0; design < GPROJT_DESIGNS; ++design) {
+        gprojt_failing failing;
+        gproj_host host;
+        gprojt_stage stage;
+        int32_t v, k;
+        long calls;
+        gproj_drag *drag;
+        gproj_drag_info info;
+        memset(&failing, 0, sizeof failing);
+        host = gprojt_failing_host(&failing);
+        stage = gprojt_set_stage(gprojt_roof(6, 0.05), design, &host);
+        v = gprojt_middle(stage.mesh);
+        drag = gprojt_grab(&stage, 1, &v);
+        calls = failing.calls;
+        for (k = 0; k < 5; ++k) gprojt_pull(&stage, drag, v, 0.1 * k);
+        gproj_drag_residual(drag);
+        GPROJT_CHECK(failing.calls == calls);
+        info = gproj_drag_get_info(drag);
+        GPROJT_CHECK(info.linearisations == 1 && info.solves == 6);
+        gproj_drag_cancel(drag);
+        GPROJT_CHECK(failing.calls == calls);
+        drag = gprojt_grab(&stage, 1, &v);
+        calls = failing.calls;
+        gproj_drag_end(drag); /* adds groups */
+        GPROJT_CHECK(failing.calls > calls);
+        gprojt_clear_stage(&stage);
+        GPROJT_CHECK(failing.held == 0);
+    }
+}
+
+/* After a cancelled drag everything is as if it had not been, to the bit. */
+GPROJT_TEST(cancelled_to_the_bit) {
+    int design, bounded;
+    for (design = 0; design < GPROJT_DESIGNS; ++design)
+        for (bounded = 0; bounded < 2; ++bounded) {
+            gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), design, NULL);
+            int32_t v = gprojt_middle(stage.mesh), k;
+            gproj_handles handles = gprojt_vertex_handles(1, &v);
+            gproj_drag_options options;
+            size_t size, size_after;
+            uint8_t *before = gprojt_save(stage.form, &size), *after;
+            gproj_drag *drag;
+            memset(&options, 0, sizeof options);
+            options.residual_bound = bounded ? 1e-3 : 0;
+            drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+            GPROJT_REQUIRE(drag);
+            for (k = 0; k < 5; ++k) gprojt_pull(&stage, drag, v, 0.1 * k);
+            GPROJT_CHECK(!gprojt_unmoved(stage.mesh, stage.start));
+            gproj_drag_cancel(drag);
+            GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start));
+            after = gprojt_save(stage.form, &size_after);
+            GPROJT_CHECK(size == size_after && memcmp(before, after, size) == 0);
+            free(before), free(after);
+            gprojt_clear_stage(&stage);
+        }
+}
+
+/* -- misuse -- */
+
+static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles, const gproj_drag_options *options,
+                                 gproj_code code, const char *words) {
+    gproj_error error;
+    gproj_drag *drag = gproj_drag_begin(form, handles, options, &error);
+    GPROJT_CHECK(!drag && error.code == code && strstr(error.message, words));
+    if (!drag && !strstr(error.message, words)) printf("  '%s' is not '%s'\n", error.message, words);
+}
+
+GPROJT_TEST(refused) {
+    static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {1, 2};
+    static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
+    static const int32_t outside[] = {3, 99}, two[] = {3, 4};
+    gproj_mesh *mesh = gprojt_roof(4, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL), *standing;
+    gproj_handles handles = gprojt_vertex_handles(2, two);
+    gproj_drag_options options;
+    memset(&options, 0, sizeof options);
+    gprojt_check_refusal(form, NULL, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
+    handles.count = 0;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
+    handles = gprojt_vertex_handles(2, outside);
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_INDEX, "handle 1: there is no vertex 99");
+    handles = gprojt_vertex_handles(2, two);
+    handles.start = start;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "the list of handle 1");
+    handles.count = 1;
+    handles.start = empty;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "the weights of handle 0");
+    handles.start = late;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "the list of handle 0");
+    handles.start = NULL;
+    handles.weight = none;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "the weights of handle 0");
+    handles.weight = endless;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "the weights of handle 0");
+    handles.weight = NULL;
+    options.residual_bound = -1;
+    gprojt_check_refusal(form, &handles, &options, GPROJ_ERROR_ARGUMENT, "a residual bound of -1");
+    gprojt_check_refusal(NULL, &handles, NULL, GPROJ_ERROR_MEMORY, "there is no object");
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    standing = gprojt_design(mesh, GPROJT_STANDING, NULL);
+    gprojt_check_refusal(standing, &handles, NULL, GPROJ_ERROR_STATE, "forces have no values");
+    gproj_form_destroy(standing);
+    mesh->position[4] = HUGE_VAL;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "vertex 1");
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(misused) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(5, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh);
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+    size_t size;
+    uint8_t *state = gprojt_save(stage.form, &size);
+    gproj_error error;
+    double p[3];
+    memcpy(p, stage.start + 3 * v, sizeof p);
+    gprojt_check_refusal(stage.form, &handles, NULL, GPROJ_ERROR_STATE, "another drag is under way");
+    GPROJT_CHECK(strstr(gproj_solve(stage.form, 5, NULL).message, "a drag is under way"));
+    GPROJT_CHECK(!gproj_step_begin(stage.form, 5, NULL));
+    GPROJT_CHECK(strstr(gproj_step(stage.form, 0).message, "a drag is under way"));
+    GPROJT_CHECK(gproj_state_restore(stage.form, state, size, &error) == GPROJ_ERROR_STATE);
+    GPROJT_CHECK(strstr(error.message, "a drag is under way"));
+    p[1] = HUGE_VAL;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "handle 0"));
+    GPROJT_CHECK(gproj_drag_move(drag, NULL) == GPROJ_ERROR_ARGUMENT);
+    gprojt_pull(&stage, drag, v, 0.1); /* that was no harm */
+    gproj_add_fairness(stage.form, 0.1);
+    memcpy(p, stage.start + 3 * v, sizeof p);
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_STATE);
+    GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "rows were added"));
+    GPROJT_CHECK(gproj_drag_residual(drag) == HUGE_VAL);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_drag_end(NULL).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(gproj_drag_move(NULL, p) == GPROJ_ERROR_ARGUMENT && gproj_drag_residual(NULL) == 0);
+    GPROJT_CHECK(gproj_drag_get_info(NULL).handles == 0 && gproj_drag_memory(NULL).used == 0);
+    GPROJT_CHECK(gproj_drag_error(NULL)->code != GPROJ_OK);
+    gproj_drag_cancel(NULL);
+    free(state);
+    gprojt_clear_stage(&stage);
+}
+
+/* The form's own wishes are put back after a release, and guide during it where that is asked for. */
+GPROJT_TEST(wishes_at_the_release) {
+    double far[2];
+    int keep;
+    for (keep = 0; keep < 2; ++keep) {
+        gproj_mesh *mesh = gprojt_roof(6, 0);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t v = gprojt_middle(mesh), closeness = gproj_add_closeness(form, 5);
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        gproj_drag_options options;
+        gproj_drag *drag;
+        double *start = gprojt_keep(mesh), p[3];
+        memset(&options, 0, sizeof options);
+        options.keep_wishes = keep;
+        drag = gproj_drag_begin(form, &handles, &options, NULL);
+        memcpy(p, start + 3 * v, sizeof p);
+        p[2] += 1;
+        gproj_drag_move(drag, p);
+        gproj_drag_end(drag);
+        far[keep] = gprojt_far(mesh->position + 3 * v, start + 3 * v);
+        GPROJT_CHECK(gproj_form_group_info(form, closeness).schedule.weight == 5);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(start);
+    }
+    GPROJT_CHECK(far[0] > 0.95 && far[1] < 0.3);
+}
+
+/* -- failing allocations -- */
+
+static bool gprojt_use_drag(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = gprojt_roof(3, 0.02);
+    gproj_form *form = gprojt_design(mesh, *(const int *)user, host);
+    double *before = NULL;
+    int32_t v = gprojt_middle(mesh);
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_error error;
+    gproj_drag *drag;
+    bool whole = gproj_solve(form, 20, NULL).outcome != GPROJ_FAILED;
+    if (whole) {
+        before = gprojt_keep(mesh);
+        drag = gproj_drag_begin(form, &handles, NULL, &error);
+        whole = drag != NULL;
+        GPROJT_CHECK(whole || (error.code == GPROJ_ERROR_MEMORY && gprojt_unmoved(mesh, before)));
+        if (drag) gproj_drag_move(drag, mesh->position);
+        if (drag) whole = gproj_drag_end(drag).outcome != GPROJ_FAILED;
+    }
+    GPROJT_CHECK(whole || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY || error.code == GPROJ_ERROR_MEMORY);
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return whole;
+}
+
+GPROJT_TEST(failing_allocations) {
+    int design = GPROJT_GLIDING;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_drag, &design) > 50);
+    design = GPROJT_STANDING;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_drag, &design) > 50);
+}
+
+/* The same bits on any number of threads. */
+GPROJT_TEST(same_bits_for_all_workers) {
+    double *first = NULL;
+    int crew;
+    for (crew = 0; crew < GPROJT_CREWS; ++crew) {
+        gproj_host host = gprojt_crew(crew);
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(12, 0.05), GPROJT_PLANAR, &host);
+        int32_t v = gprojt_middle(stage.mesh);
+        gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+        gprojt_pull(&stage, drag, v, 0.3);
+        gproj_drag_end(drag);
+        if (!first) first = gprojt_keep(stage.mesh);
+        GPROJT_CHECK(gprojt_unmoved(stage.mesh, first));
+        gprojt_clear_stage(&stage);
+    }
+    free(first);
+}
+
+int main(void) {
+    GPROJT_RUN(half_a_drag_is_a_quarter_of_the_error);
+    GPROJT_RUN(the_change_is_the_smallest);
+    GPROJT_RUN(points_of_a_cage);
+    GPROJT_RUN(handles_at_their_means);
+    GPROJT_RUN(handles_that_cannot_follow);
+    GPROJT_RUN(bounds_at_their_limit_hold);
+    GPROJT_RUN(there_and_back);
+    GPROJT_RUN(there_and_back_on_intersection);
+    GPROJT_RUN(a_closed_loop);
+    GPROJT_RUN(a_long_drag);
+    GPROJT_RUN(moves_allocate_nothing);
+    GPROJT_RUN(cancelled_to_the_bit);
+    GPROJT_RUN(refused);
+    GPROJT_RUN(misused);
+    GPROJT_RUN(wishes_at_the_release);
+    GPROJT_RUN(failing_allocations);
+    GPROJT_RUN(same_bits_for_all_workers);
+    return gprojt_report();
+}
