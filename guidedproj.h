@@ -1102,10 +1102,10 @@ typedef struct gproj_drag_options {
 /* What a drag has come to. */
 typedef struct gproj_drag_info {
     int32_t handles;
-    int32_t freedom;         /* independent motions of the handles that are possible, at most 3 * handles */
-    int32_t linearisations;  /* so far: 1, or more with a residual_bound */
-    int32_t solves;          /* right-hand sides solved by all of them */
-    double behind;           /* the largest distance of a handle from where it should be, in the mesh's units */
+    int32_t freedom;        /* independent motions of the handles that are possible, at most 3 * handles */
+    int32_t linearisations; /* so far: 1, or more with a residual_bound */
+    int32_t solves;         /* right-hand sides solved by all of them */
+    double behind;          /* the largest distance of a handle from where it should be, in the mesh's units */
 } gproj_drag_info;
 
 /* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
@@ -11533,6 +11533,7 @@ struct gproj_form {
     gproj_system *system;
     double centre[3], scale;
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
+    double *before;   /* 3 * vertex_count: the mesh's positions when the solve or the drag began */
     int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
     int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
     int32_t *cone;    /* of each vertex, the first variable of its cone's axis; -1: none; NULL: no vertex has one */
@@ -11547,8 +11548,8 @@ struct gproj_form {
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
     gproji_solve solve;
-    gproj_drag *drag;       /* under way; NULL: none */
-    int32_t drag_fairness;  /* the groups of a drag's release; -1: none yet */
+    gproj_drag *drag;      /* under way; NULL: none */
+    int32_t drag_fairness; /* the groups of a drag's release; -1: none yet */
     int32_t drag_handles;
 };
 
@@ -11594,6 +11595,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     }
     if (form->mesh) {
         gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
+        gproji_give(&form->own, form->before, 3 * (size_t)form->mesh->vertex_count, sizeof *form->before);
         gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
         gproji_give(&form->own, form->axis, (size_t)form->mesh->face_count, sizeof *form->axis);
         gproji_give(&form->own, form->cone, (size_t)form->mesh->vertex_count, sizeof *form->cone);
@@ -11659,11 +11661,12 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
                            "there is no mesh: reading or building it failed, see its error");
     form->ring_size = gproji_largest_ring(mesh);
     form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
+    form->before = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->before);
     form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
     form->area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->area);
     form->ring = (int32_t *)gproji_take(&form->own, (size_t)form->ring_size, sizeof *form->ring);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->normal || !form->area || !form->ring || !form->system)
+    if (!form->original || !form->before || !form->normal || !form->area || !form->ring || !form->system)
         return gproji_fail_memory(&form->error);
     if (!gproji_positions_are_finite(form)) return form->error.code;
     gproji_form_measure_units(form);
@@ -14576,15 +14579,17 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
         if (form->cone[i] >= 0) gproji_cone_axis(form->mesh, x, i, x + form->cone[i]);
 }
 
-/* The mesh's positions = x; a vertex that has not moved keeps its coordinates to the bit. */
-GPROJI_INTERNAL void gproji_store_positions(gproj_form *form) {
+/* The mesh's positions = x; a vertex that is where it was `before` keeps its coordinates to the bit. */
+GPROJI_INTERNAL void gproji_store_positions(gproj_form *form, const double *before) {
     const double *x = gproj_system_values(form->system);
-    int32_t i;
-    for (i = 0; i < form->mesh->vertex_count; ++i) {
-        double before[3], *position = form->mesh->position + 3 * (size_t)i;
-        gproji_to_internal(form, position, before);
-        if (memcmp(before, x + 3 * (size_t)i, sizeof before) != 0)
-            gproji_from_internal(form, x + 3 * (size_t)i, position);
+    size_t i, end = 3 * (size_t)form->mesh->vertex_count;
+    for (i = 0; i < end; i += 3) {
+        double was[3];
+        gproji_to_internal(form, before + i, was);
+        if (memcmp(was, x + i, sizeof was) != 0)
+            gproji_from_internal(form, x + i, form->mesh->position + i);
+        else
+            gproji_copy3(before + i, form->mesh->position + i);
     }
 }
 
@@ -14827,11 +14832,12 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     int32_t guided;
     solve->on = solve->finished = false;
     if (form->drag) {
-        solve->loop.result = gproji_refused_result(GPROJ_ERROR_STATE,
-                                                   "a drag is under way: end or cancel it before the form is solved");
+        solve->loop.result =
+            gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
         return false;
     }
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
+    memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_begin_forces(form);
@@ -14872,7 +14878,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
     if (ended) solve->on = false, solve->finished = true;
     if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
-    gproji_store_positions(form);
+    gproji_store_positions(form, form->before);
     if (ended) gproji_finish_solve(form);
     return solve->loop.result;
 }
@@ -14983,12 +14989,11 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
     case GPROJI_OWN_DRAG_FAIRNESS:
         form->drag_fairness = gproj_add_fairness(form, 0);
-        if (form->drag_fairness >= 0)
-            gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
+        if (form->drag_fairness >= 0) gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
         break;
     case GPROJI_OWN_DRAG_HANDLES:
-        form->drag_handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all),
-                                               "drag handles", GPROJ_WISH, NULL, 0);
+        form->drag_handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all), "drag handles",
+                                               GPROJ_WISH, NULL, 0);
         break;
     default: break;
     }
@@ -14996,7 +15001,12 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 
 /* -- a stream of numbers -- */
 
-typedef enum gproji_way { GPROJI_COUNT, GPROJI_WRITE, GPROJI_CHECK, GPROJI_READ } gproji_way;
+typedef enum gproji_way {
+    GPROJI_COUNT,
+    GPROJI_WRITE,
+    GPROJI_CHECK,
+    GPROJI_READ
+} gproji_way;
 
 typedef struct gproji_stream {
     gproji_way way;
@@ -15007,6 +15017,11 @@ typedef struct gproji_stream {
 } gproji_stream;
 
 GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->way >= GPROJI_CHECK; }
+
+/* Something is wrong with it. To be counted is all right for anything. */
+GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
+    if (stream->way != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
+}
 
 /* The lowest `bytes` bytes of a number, the lowest first. */
 GPROJI_INLINE void gproji_put_bytes(uint8_t *out, uint64_t value, int32_t bytes) {
@@ -15025,7 +15040,7 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
     if (stream->way != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
-        stream->wrong = "it ends too early";
+        gproji_spoil(stream, "it ends too early");
         return 0;
     }
     if (stream->way == GPROJI_WRITE) gproji_put_bytes(stream->out + at, value, bytes);
@@ -15039,14 +15054,14 @@ GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, 
 GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
-    if (passed < least || passed > most) stream->wrong = "a whole number is out of its range";
+    if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
     if (stream->way == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
     return (int32_t)passed;
 }
 
 GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
-    if (passed > 1) stream->wrong = "a flag is neither on nor off";
+    if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
     if (stream->way == GPROJI_READ && !stream->wrong) *value = passed == 1;
     return passed == 1;
 }
@@ -15058,7 +15073,7 @@ GPROJI_INTERNAL double gproji_pass_double(gproji_stream *stream, double *value, 
     memcpy(&bits, value, sizeof bits);
     bits = gproji_pass_bytes(stream, bits, 8);
     memcpy(&passed, &bits, sizeof passed);
-    if (!(passed >= least && passed <= most)) stream->wrong = "a number is none, or out of its range";
+    if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
     if (stream->way == GPROJI_READ && !stream->wrong) *value = passed;
     return passed;
 }
@@ -15084,7 +15099,7 @@ GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, do
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
-        stream->wrong = "a number is out of its range";
+        gproji_spoil(stream, "a number is out of its range");
     } else if (stream->way == GPROJI_READ) {
         *value = passed;
     }
@@ -15153,16 +15168,16 @@ GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) 
     gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->begun);
-    gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX);
-    gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX);
+    gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->best.residual, 0, HUGE_VAL);
     gproji_pass_double(stream, &loop->best.merit, 0, HUGE_VAL);
-    gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX);
+    gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->minimum);
-    gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX);
+    gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX / 2);
     if (stream->way != GPROJI_READ) return true;
     if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
     loop->system = form->system;
@@ -15180,7 +15195,9 @@ GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) 
     int32_t i;
     for (part = form->part; part; part = part->next)
         for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
-            const gproj_curve *curve = part->curve ? part->curve : gproji_stays(part, i) ? NULL : part->own_curve[part->curve_of[i]];
+            const gproj_curve *curve = part->curve             ? part->curve
+                                       : gproji_stays(part, i) ? NULL
+                                                               : part->own_curve[part->curve_of[i]];
             gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
         }
     if (!form->statics) return;
@@ -15191,16 +15208,19 @@ GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) 
 /* The groups, each after its kind; those of the form that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, bool solving) {
     gproj_system *s = form->system;
-    int32_t count = gproji_pass_integer(stream, &s->group_count, 0, INT32_MAX), k, theirs = -1, own;
+    int32_t count = s->group_count, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
+    count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
     for (k = 0; k < count && !stream->wrong; ++k) {
         int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_kind_of_group(form, k), group;
         kind = (int32_t)gproji_pass_bytes(stream, (uint64_t)kind, 1);
         if (kind == GPROJI_OWN_NONE)
             for (++theirs; theirs < s->group_count && gproji_kind_of_group(form, theirs); ++theirs) continue;
-        group = kind == GPROJI_OWN_NONE ? theirs : kind < GPROJI_OWN_COUNT ? gproji_own_group(form, (gproji_own)kind) : -1;
+        group = kind == GPROJI_OWN_NONE   ? theirs
+                : kind < GPROJI_OWN_COUNT ? gproji_own_group(form, (gproji_own)kind)
+                                          : -1;
         if (group < 0 || group >= s->group_count || (kind && seen[kind])) {
-            stream->wrong = "a group is not one of the form";
+            gproji_spoil(stream, "a group is not one of the form");
             return;
         }
         seen[kind] = true;
@@ -15236,6 +15256,7 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
     solving = gproji_pass_solve(stream, form);
+    if (solving) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_parts(stream, form);
     gproji_pass_groups(stream, form, solving);
 }
@@ -15395,9 +15416,10 @@ GPROJI_INTERNAL gproj_code gproji_open_state(gproji_stream *in, const gproj_form
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
     if (gproji_pass_bytes(in, 0, 8) != gproji_fingerprint(form))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
-                           "is not the same");
+        return gproji_fail(
+            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+            "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
+            "is not the same");
     in->size -= GPROJI_STATE_TAIL;
     return GPROJ_OK;
 }
@@ -15473,18 +15495,18 @@ struct gproj_drag {
     int64_t *start;    /* the handles, in compressed columns */
     int32_t *vertex;
     double *weight;
-    double *from;   /* columns: the caller's positions of the handles at the beginning */
-    double *gram;   /* handles x handles: S'S */
-    double *first;  /* 3 * vertex_count: the vertices at the beginning */
-    double *base;   /* variables: x where the rows were linearised */
-    double *held;   /* columns: S'v there */
-    double *wanted; /* columns: S'v as the handles want it */
-    double *motion; /* columns x variables: Q */
-    double *lift;   /* columns x columns: L by columns */
-    double *pull;   /* columns x columns: (L'L)^-1 L', by rows */
-    double *work;   /* columns x (columns + 1): S'Q while Q is made; L'L; what the handles lack */
-    double *amount; /* columns: m */
-    int32_t *name;  /* columns: the handle's coordinate that each column of Q began with */
+    double *from;             /* columns: the caller's positions of the handles at the beginning */
+    double *gram;             /* handles x handles: S'S */
+    double *first;            /* 3 * vertex_count: the vertices at the beginning */
+    double *base;             /* variables: x where the rows were linearised */
+    double *held;             /* columns: S'v there */
+    double *wanted;           /* columns: S'v as the handles want it */
+    double *motion;           /* columns x variables: Q */
+    double *lift;             /* columns x columns: L by columns */
+    double *pull;             /* columns x columns: (L'L)^-1 L', by rows */
+    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; what the handles lack */
+    double *amount;           /* columns: m */
+    int32_t *name;            /* columns: the handle's coordinate that each column of Q began with */
     gproj_schedule *schedule; /* during the release: those of the form's wishes */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
@@ -15671,7 +15693,8 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     double *column = drag->work + (size_t)rank * (size_t)rank;
     for (i = 0; i < rank; ++i)
         for (j = 0; j <= i; ++j)
-            drag->work[i * rank + j] = gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
+            drag->work[i * rank + j] =
+                gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
     gproji_wide_factor(drag->work, rank, rank, DBL_MIN);
     for (j = 0; j < m; ++j) {
         for (i = 0; i < rank; ++i) column[i] = drag->lift[(size_t)m * (size_t)i + (size_t)j];
@@ -15757,7 +15780,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
         gproji_linearise_drag(drag, true);
         gproji_follow_handles(drag);
     }
-    gproji_store_positions(drag->form);
+    gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
 }
 
@@ -15773,7 +15796,9 @@ GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
     return drag ? drag->info : none;
 }
 
-GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag) { return drag ? &drag->error : gproji_no_object(); }
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag) {
+    return drag ? &drag->error : gproji_no_object();
+}
 
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) {
     gproj_memory memory;
@@ -15848,7 +15873,8 @@ GPROJI_INTERNAL void gproji_copy_handles(gproj_drag *drag, const gproj_handles *
 GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) {
     gproj_form *form = drag->form;
     gproji_pool *pool = &drag->pool;
-    int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count, entries = h->start ? h->start[h->count] : h->count;
+    int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count,
+            entries = h->start ? h->start[h->count] : h->count;
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
@@ -15868,8 +15894,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
     drag->amount = (double *)gproji_pool_take(pool, m, sizeof *drag->amount);
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
-    drag->schedule =
-        (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
+    drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
     return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->base &&
            drag->held && drag->wanted && drag->motion && drag->lift && drag->pull && drag->work && drag->amount &&
@@ -15889,6 +15914,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     gproji_copy_handles(drag, handles, drag->first);
     form->solve.on = form->solve.finished = false;
     s->late = 0;
+    memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_restart_planes(form);

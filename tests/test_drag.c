@@ -243,7 +243,8 @@ GPROJT_TEST(handles_that_cannot_follow) {
     int32_t v[3], i;
     double to[9];
     gproj_drag *drag;
-    v[0] = 0, v[1] = v[2] = gprojt_middle(stage.mesh); /* a fixed corner; and one vertex twice goes by both, as S d says */
+    v[0] = 0,
+    v[1] = v[2] = gprojt_middle(stage.mesh); /* a fixed corner; and one vertex twice goes by both, as S d says */
     drag = gprojt_grab(&stage, 3, v);
     GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 3 && gproj_drag_get_info(drag).handles == 3);
     for (i = 0; i < 9; ++i) to[i] = stage.start[3 * v[i / 3] + i % 3];
@@ -292,7 +293,8 @@ static void gprojt_check_return(gprojt_stage *stage, int32_t v) {
     for (k = 1; k <= 20; ++k) gprojt_pull(stage, drag, v, 0.05 * stage->edge * (k <= 10 ? k : 20 - k));
     result = gproj_drag_end(drag);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual <= 1e-9);
-    GPROJT_CHECK(gprojt_largest_move(stage->start, stage->mesh->position, stage->mesh->vertex_count) <= 0.05 * stage->edge);
+    GPROJT_CHECK(gprojt_largest_move(stage->start, stage->mesh->position, stage->mesh->vertex_count) <=
+                 0.05 * stage->edge);
     gprojt_clear_stage(stage);
 }
 
@@ -318,9 +320,15 @@ GPROJT_TEST(there_and_back_on_intersection) {
 /* A closed loop of moves with releases: every face stays planar, and none folds. */
 GPROJT_TEST(a_closed_loop) {
 #ifdef GPROJT_SANITIZED
-    enum { ACROSS = 15, MOVES = 60 };
+    enum {
+        ACROSS = 15,
+        MOVES = 60
+    };
 #else
-    enum { ACROSS = 59, MOVES = 200 };
+    enum {
+        ACROSS = 59,
+        MOVES = 200
+    };
 #endif
     gprojt_stage stage = gprojt_set_stage(gprojt_roof(ACROSS, 0.05), GPROJT_PLANAR, NULL);
     int32_t v = gprojt_middle(stage.mesh) + 3, k;

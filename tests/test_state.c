@@ -1,0 +1,453 @@
+/* test_state.c - >>state and the frames of >>solve: saved states, and solves that stop and go on. */
+#include "gprojt_design.h"
+
+/* -- frames -- */
+
+enum {
+    GPROJT_ITERATIONS = 16
+};
+
+/* A solve of a fresh roof in one go: its positions and result. */
+static double *gprojt_at_once(int design, const gproj_solve_options *options, gproj_result *result) {
+    gproj_mesh *mesh = gprojt_roof(6, 0.08);
+    gproj_form *form = gprojt_design(mesh, design, NULL);
+    double *positions;
+    *result = gproj_solve(form, GPROJT_ITERATIONS, options);
+    positions = gprojt_keep(mesh);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return positions;
+}
+
+static gproj_solve_options gprojt_nearest_or_not(int nearest) {
+    gproj_solve_options options;
+    memset(&options, 0, sizeof options);
+    options.nearest = nearest != 0;
+    return options;
+}
+
+GPROJT_TEST(frames_are_one_solve) {
+    int design, nearest;
+    for (design = 0; design < GPROJT_DESIGNS; ++design)
+        for (nearest = 0; nearest < 2; ++nearest) {
+            gproj_solve_options options = gprojt_nearest_or_not(nearest);
+            gproj_result whole, result;
+            double *expected = gprojt_at_once(design, &options, &whole);
+            gproj_mesh *mesh = gprojt_roof(6, 0.08);
+            gproj_form *form = gprojt_design(mesh, design, NULL);
+            int32_t frames = 0;
+            GPROJT_CHECK(!gproj_step_is_on(form));
+            GPROJT_CHECK(gproj_step_begin(form, GPROJT_ITERATIONS, &options) && gproj_step_is_on(form));
+            while (gproj_step_is_on(form) && frames++ < 100) {
+                result = gproj_step(form, 0);
+                GPROJT_CHECK(!gproj_step_is_on(form) || result.outcome == GPROJ_TIME_OUT);
+                GPROJT_CHECK(!gproj_step_is_on(form) || result.iterations == frames);
+            }
+            GPROJT_CHECK(result.outcome == whole.outcome && result.iterations == whole.iterations);
+            GPROJT_CHECK(strcmp(result.message, whole.message) == 0);
+            GPROJT_CHECK(gprojt_unmoved(mesh, expected));
+            GPROJT_CHECK(strcmp(gproj_step(form, 0).message, whole.message) == 0); /* again */
+            free(expected);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
+/* As many iterations as fit: with a clock that goes on by 1 at each reading, an iteration takes 10 or so. */
+GPROJT_TEST(frames_have_their_time) {
+    gprojt_ticks ticks = {0, 0};
+    gproj_host host;
+    gproj_mesh *mesh = gprojt_roof(5, 0.08);
+    gproj_form *form;
+    gproj_solve_options options;
+    gproj_result result;
+    double before;
+    int32_t first, second;
+    memset(&host, 0, sizeof host);
+    host.clock.now = gprojt_tick, host.clock.user = &ticks;
+    form = gprojt_design(mesh, GPROJT_PLANAR, &host);
+    memset(&options, 0, sizeof options);
+    GPROJT_REQUIRE(gproj_step_begin(form, 30, NULL));
+    first = gproj_step(form, 1e-3).iterations; /* one fits always */
+    GPROJT_CHECK(first == 1);
+    before = ticks.now;
+    result = gproj_step(form, 60);
+    second = result.iterations - first;
+    GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && second > 1 && second < 10 && ticks.now - before <= 62);
+    GPROJT_CHECK(gproj_step(form, 1e6).outcome == GPROJ_CONVERGED && !gproj_step_is_on(form));
+    /* a budget of the whole counts the seconds inside of steps */
+    gprojt_shake(mesh, 0.05, 3);
+    options.time_budget = 40;
+    GPROJT_REQUIRE(gproj_step_begin(form, 30, &options));
+    while (gproj_step_is_on(form)) {
+        result = gproj_step(form, 0);
+        ticks.now += 1000;
+    }
+    GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && result.iterations > 1 && result.iterations < 10);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+static bool gprojt_cancel(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    (void)system;
+    return iteration->number < *(const int32_t *)user;
+}
+
+GPROJT_TEST(frames_can_be_left) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.08);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    gproj_solve_options options;
+    gproj_error error;
+    int32_t last = 3, v = 7, group;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    double *kept;
+    memset(&options, 0, sizeof options);
+    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing was begun"));
+    gproj_step_begin(form, 20, NULL);
+    gproj_step(form, 0);
+    kept = gprojt_keep(mesh);
+    gproj_step_stop(form);
+    GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !gproj_step_is_on(form));
+    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing was begun"));
+    gproj_step_begin(form, 20, NULL); /* by a solve, by a drag */
+    gproj_solve(form, 2, NULL);
+    GPROJT_CHECK(!gproj_step_is_on(form));
+    gproj_step_begin(form, 20, NULL);
+    gproj_drag_cancel(gproj_drag_begin(form, &handles, NULL, &error));
+    GPROJT_CHECK(gproj_step_is_on(form)); /* as before the drag */
+    options.on_iteration = gprojt_cancel, options.user = &last;
+    gproj_step_begin(form, 20, &options);
+    while (gproj_step_is_on(form)) gproj_step(form, 0);
+    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_CANCELLED && gproj_step(form, 0).iterations == 3);
+    /* what does not go */
+    GPROJT_CHECK(strstr(gproj_step(form, -1).message, "must not be negative"));
+    GPROJT_CHECK(strstr(gproj_step(form, 1).message, "a clock"));
+    GPROJT_CHECK(!gproj_step_begin(form, -1, NULL) && strstr(gproj_step(form, 0).message, "-1 iterations"));
+    gproj_step_begin(form, 20, NULL);
+    group = gproj_add_closeness(form, 0.01);
+    GPROJT_CHECK(group >= 0 && strstr(gproj_step(form, 0).message, "were added") && !gproj_step_is_on(form));
+    GPROJT_CHECK(gproj_step_begin(form, 20, NULL) && gproj_step(form, 0).iterations == 1);
+    mesh->position[0] = HUGE_VAL;
+    GPROJT_CHECK(!gproj_step_begin(form, 20, NULL) && gproj_step(form, 0).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(!gproj_step_begin(NULL, 20, NULL) && gproj_step(NULL, 0).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(!gproj_step_is_on(NULL));
+    gproj_step_stop(NULL);
+    free(kept);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Targets that move between frames are followed. */
+GPROJT_TEST(frames_follow_targets) {
+    gproj_mesh *mesh = gprojt_roof(6, 0.02);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t v = gprojt_middle(mesh), group, k;
+    double to[3];
+    memcpy(to, mesh->position + 3 * v, sizeof to);
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_corners(form, 1);
+    gproj_add_fairness(form, 0.1);
+    group = gproj_add_targets(form, 1, &v, to, 1);
+    gproj_step_begin(form, 40, NULL);
+    for (k = 0; k < 10; ++k) {
+        to[2] += 0.05;
+        gproj_set_targets(form, group, to);
+        gproj_step(form, 0);
+    }
+    while (gproj_step_is_on(form)) gproj_step(form, 0);
+    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, to) < 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- states -- */
+
+/* Goes on to the end. */
+static gproj_result gprojt_go_on(gproj_form *form) {
+    gproj_result result;
+    do result = gproj_step(form, 0);
+    while (gproj_step_is_on(form));
+    return result;
+}
+
+static void gprojt_check_same_form(gproj_form *form, const uint8_t *state, size_t size) {
+    size_t now_size;
+    uint8_t *now = gprojt_save(form, &now_size);
+    GPROJT_CHECK(now_size == size && memcmp(now, state, size) == 0);
+    free(now);
+}
+
+/* A state from the middle of a solve ends at the same bytes: in the same form, and in a fresh one on another mesh. */
+static void gprojt_check_resumed(int design, int nearest, int32_t at) {
+    gproj_solve_options options = gprojt_nearest_or_not(nearest);
+    gproj_result whole, result;
+    double *expected = gprojt_at_once(design, &options, &whole);
+    gproj_mesh *mesh = gprojt_roof(6, 0.08), *other = gprojt_roof(6, 0.08);
+    gproj_form *form = gprojt_design(mesh, design, NULL), *fresh = gprojt_design(other, design, NULL);
+    uint8_t *state;
+    size_t size;
+    int32_t k;
+    gproj_step_begin(form, GPROJT_ITERATIONS, &options);
+    for (k = 0; k < at && gproj_step_is_on(form); ++k) gproj_step(form, 0);
+    state = gprojt_save(form, &size);
+    for (k = 0; k < 2; ++k) {
+        if (k) GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        if (!gproj_step_is_on(form)) continue;
+        gprojt_check_same_form(form, state, size);
+        result = gprojt_go_on(form);
+        GPROJT_CHECK(gprojt_unmoved(mesh, expected));
+        GPROJT_CHECK(strcmp(result.message, whole.message) == 0 && result.damped == whole.damped);
+    }
+    gprojt_shake(other, 0.3, 1); /* positions that do not matter */
+    GPROJT_CHECK(gproj_state_restore(fresh, state, size, NULL) == GPROJ_OK);
+    gprojt_check_same_form(fresh, state, size);
+    if (gproj_step_is_on(fresh)) gprojt_go_on(fresh);
+    GPROJT_CHECK(gprojt_unmoved(other, expected));
+    free(state), free(expected);
+    gproj_form_destroy(form), gproj_form_destroy(fresh);
+    gproj_mesh_destroy(mesh), gproj_mesh_destroy(other);
+}
+
+GPROJT_TEST(resumed_to_the_same_bytes) {
+    int design, nearest;
+    int32_t at;
+    for (design = 0; design < GPROJT_DESIGNS; ++design)
+        for (nearest = 0; nearest < 2; ++nearest)
+            for (at = 0; at < GPROJT_ITERATIONS; at += 1 + 2 * (design != GPROJT_GLIDING))
+                gprojt_check_resumed(design, nearest, at);
+}
+
+/* Undo and redo: weights, targets, forces and positions are those of the state, and what follows is what followed. */
+GPROJT_TEST(undo_and_redo) {
+    gproj_mesh *mesh = gprojt_roof(6, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_STANDING, NULL);
+    int32_t v = gprojt_middle(mesh), targets, k;
+    double to[3], *forces = (double *)malloc((size_t)mesh->edge_count * sizeof *forces), *after[2], weight = 0.5;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    uint8_t *undo, *redo;
+    size_t undo_size, redo_size;
+    gproj_drag *drag;
+    memcpy(to, mesh->position + 3 * v, sizeof to);
+    targets = gproj_add_targets(form, 1, &v, to, 1);
+    undo = gprojt_save(form, &undo_size); /* before anything was solved */
+    for (k = 0; k < 2; ++k) {
+        if (k) GPROJT_CHECK(gproj_state_restore(form, undo, undo_size, NULL) == GPROJ_OK);
+        GPROJT_CHECK(gproj_get_forces(form, forces) == GPROJ_OK && forces[3] == 0);
+        to[2] += k ? 0 : 0.3;
+        gproj_set_targets(form, targets, to);
+        GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+        after[k] = gprojt_keep(mesh);
+    }
+    GPROJT_CHECK(gprojt_unmoved(mesh, after[0]));
+    undo = (uint8_t *)(free(undo), gprojt_save(form, &undo_size));
+    gproj_set_schedule(form, targets, gprojt_schedule(0, 0, 0));
+    gproj_set_element_weights(form, 0, 1, &v, &weight);
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    GPROJT_REQUIRE(drag);
+    to[2] += 0.4;
+    gproj_drag_move(drag, to);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    redo = gprojt_save(form, &redo_size);
+    free(after[1]);
+    after[1] = gprojt_keep(mesh);
+    GPROJT_CHECK(gproj_state_restore(form, undo, undo_size, NULL) == GPROJ_OK && gprojt_unmoved(mesh, after[0]));
+    GPROJT_CHECK(gproj_form_group_info(form, targets).schedule.weight == 1);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_state_restore(form, redo, redo_size, NULL) == GPROJ_OK && gprojt_unmoved(mesh, after[1]));
+    gprojt_check_same_form(form, redo, redo_size);
+    GPROJT_CHECK(gproj_form_group_info(form, targets).schedule.weight == 0);
+    free(undo), free(redo), free(after[0]), free(after[1]), free(forces);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- states that are none -- */
+
+static void gprojt_check_refused(gproj_form *form, const uint8_t *state, size_t size, gproj_code code,
+                                 const char *words) {
+    gproj_error error;
+    GPROJT_CHECK(gproj_state_restore(form, state, size, &error) == code);
+    GPROJT_CHECK(error.code == code && strstr(error.message, words));
+    if (!strstr(error.message, words)) printf("  '%s' is not '%s'\n", error.message, words);
+}
+
+/* A form in the middle of a solve, and its state. */
+static gproj_form *gprojt_form_in_frames(gproj_mesh *mesh, uint8_t **state, size_t *size) {
+    gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL);
+    gproj_step_begin(form, GPROJT_ITERATIONS, NULL);
+    gproj_step(form, 0);
+    *state = gprojt_save(form, size);
+    return form;
+}
+
+GPROJT_TEST(every_damage_is_seen) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    uint8_t *state, *damaged;
+    size_t size, i;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    damaged = (uint8_t *)malloc(size + 8);
+    if (!damaged) abort();
+    for (i = 0; i < size; ++i) {
+        memcpy(damaged, state, size);
+        damaged[i] ^= (uint8_t)(1 + i % 255);
+        GPROJT_CHECK(gproj_state_restore(form, damaged, size, NULL) != GPROJ_OK);
+        memcpy(damaged, state, i);
+        GPROJT_CHECK(gproj_state_restore(form, damaged, i, NULL) == GPROJ_ERROR_SYNTAX);
+    }
+    memcpy(damaged, state, size);
+    damaged[size] = 0;
+    gprojt_check_refused(form, damaged, size + 1, GPROJ_ERROR_SYNTAX, "it says that it has");
+    damaged[size / 2] ^= 1;
+    gprojt_check_refused(form, damaged, size, GPROJ_ERROR_SYNTAX, "checksum");
+    damaged[0] ^= 1;
+    gprojt_check_refused(form, damaged, size, GPROJ_ERROR_SYNTAX, "no saved state");
+    gprojt_check_refused(form, NULL, 100, GPROJ_ERROR_SYNTAX, "no saved state");
+    gprojt_check_same_form(form, state, size);
+    free(state), free(damaged);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The checksum of the format, for forgeries. */
+static void gprojt_seal(uint8_t *state, size_t size) {
+    uint64_t hash = 14695981039346656037u;
+    size_t end = size - 8, i, k, width;
+    for (i = 0; i < end; i += width) {
+        uint64_t value = 0;
+        width = end - i >= 8 ? 8 : 1;
+        for (k = width; k > 0; --k) value = value << 8 | state[i + k - 1];
+        hash = (hash ^ value) * 1099511628211u;
+        hash ^= hash >> 29;
+    }
+    for (i = 0; i < 8; ++i) state[end + i] = (uint8_t)(hash >> 8 * i);
+}
+
+/* Forged states with a right checksum are taken or refused, and never do harm: what they hold is in its range. */
+GPROJT_TEST(forged_states_do_no_harm) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    uint8_t *state, *forged;
+    size_t size;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    uint64_t random = 7;
+    int32_t k, changes, taken = 0, refused = 0;
+    forged = (uint8_t *)malloc(size);
+    if (!forged) abort();
+    memcpy(forged, state, size);
+    gprojt_seal(forged, size);
+    GPROJT_CHECK(memcmp(forged, state, size) == 0); /* this is the checksum */
+    for (k = 0; k < 3000; ++k) {
+        memcpy(forged, state, size);
+        for (changes = gprojt_below(&random, 4); changes >= 0; --changes)
+            forged[24 + gprojt_below(&random, (int32_t)size - 32)] = (uint8_t)gprojt_random(&random);
+        gprojt_seal(forged, size);
+        if (gproj_state_restore(form, forged, size, NULL) == GPROJ_OK) {
+            ++taken;
+            if (taken % 20 == 0) gproj_step(form, 0);
+        } else {
+            ++refused;
+        }
+        GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    }
+    GPROJT_CHECK(taken > 100 && refused > 100 && gproj_form_error(form)->code == GPROJ_OK);
+    gprojt_check_same_form(form, state, size);
+    free(state), free(forged);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(states_of_others) {
+    gproj_mesh *mesh = gprojt_roof(4, 0.05), *moved = gprojt_roof(4, 0.06), *larger = gprojt_roof(5, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL), *other;
+    uint8_t *state;
+    size_t size;
+    int32_t v = 5;
+    gproj_solve(form, 5, NULL);
+    state = gprojt_save(form, &size);
+    other = gprojt_design(moved, GPROJT_GLIDING, NULL);
+    gprojt_check_refused(other, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    gproj_form_destroy(other);
+    other = gprojt_design(larger, GPROJT_GLIDING, NULL);
+    gprojt_check_refused(other, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    gproj_form_destroy(other);
+    other = gprojt_design(mesh, GPROJT_BOUNDED, NULL);
+    gprojt_check_refused(other, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    gprojt_check_refused(NULL, state, size, GPROJ_ERROR_MEMORY, "there is no object");
+    gproj_form_destroy(other);
+    gproj_add_fixed(form, 1, &v, 1);
+    gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh), gproj_mesh_destroy(moved), gproj_mesh_destroy(larger);
+}
+
+GPROJT_TEST(what_cannot_be_saved) {
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    size_t size;
+    uint8_t *state = gprojt_save(form, &size);
+    gproj_error error;
+    GPROJT_CHECK(gproj_state_save(form, state, size - 1, &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(error.message, "see gproj_state_size"));
+    GPROJT_CHECK(gproj_state_save(form, NULL, size, &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_state_save(NULL, state, size, &error) == GPROJ_ERROR_MEMORY && gproj_state_size(NULL) == 0);
+    mesh->position[5] = HUGE_VAL;
+    GPROJT_CHECK(gproj_state_save(form, state, size, &error) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(strstr(error.message, "cannot be saved"));
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- failing allocations: of a state that brings the library's own groups into a fresh form -- */
+
+typedef struct gprojt_saved {
+    uint8_t *state;
+    size_t size;
+    double *end;
+} gprojt_saved;
+
+static bool gprojt_use_state(const gproj_host *host, void *user) {
+    const gprojt_saved *saved = (const gprojt_saved *)user;
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_STANDING, host);
+    gproj_error error;
+    gproj_code code = gproj_state_restore(form, saved->state, saved->size, &error);
+    bool whole = code == GPROJ_OK && gprojt_go_on(form).outcome != GPROJ_FAILED;
+    GPROJT_CHECK(code == GPROJ_OK || (code == GPROJ_ERROR_MEMORY && error.code == code));
+    GPROJT_CHECK(!whole || gprojt_unmoved(mesh, saved->end));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return whole;
+}
+
+GPROJT_TEST(failing_allocations) {
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_STANDING, NULL);
+    gprojt_saved saved;
+    gproj_step_begin(form, GPROJT_ITERATIONS, NULL);
+    gproj_step(form, 0);
+    saved.state = gprojt_save(form, &saved.size);
+    gprojt_go_on(form);
+    saved.end = gprojt_keep(mesh);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_state, &saved) > 50);
+    free(saved.state), free(saved.end);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(frames_are_one_solve);
+    GPROJT_RUN(frames_have_their_time);
+    GPROJT_RUN(frames_can_be_left);
+    GPROJT_RUN(frames_follow_targets);
+    GPROJT_RUN(resumed_to_the_same_bytes);
+    GPROJT_RUN(undo_and_redo);
+    GPROJT_RUN(every_damage_is_seen);
+    GPROJT_RUN(forged_states_do_no_harm);
+    GPROJT_RUN(states_of_others);
+    GPROJT_RUN(what_cannot_be_saved);
+    GPROJT_RUN(failing_allocations);
+    return gprojt_report();
+}
