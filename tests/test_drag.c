@@ -317,25 +317,25 @@ GPROJT_TEST(there_and_back_on_intersection) {
     gprojt_check_return(&stage, 800);
 }
 
+#ifdef GPROJT_SANITIZED
+enum {
+    GPROJT_LOOP_ACROSS = 12
+};
+#else
+enum {
+    GPROJT_LOOP_ACROSS = 58 /* V = 3540 */
+};
+#endif
+
 /* A closed loop of moves with releases: every face stays planar, and none folds. */
 GPROJT_TEST(a_closed_loop) {
-#ifdef GPROJT_SANITIZED
-    enum {
-        ACROSS = 15,
-        MOVES = 60
-    };
-#else
-    enum {
-        ACROSS = 59,
-        MOVES = 200
-    };
-#endif
-    gprojt_stage stage = gprojt_set_stage(gprojt_roof(ACROSS, 0.05), GPROJT_PLANAR, NULL);
+    static const int32_t across = GPROJT_LOOP_ACROSS, moves = 200;
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(across, 0.05), GPROJT_PLANAR, NULL);
     int32_t v = gprojt_middle(stage.mesh) + 3, k;
-    double turn = 6.283185307179586 / MOVES, p[3];
+    double turn = 6.283185307179586 / moves, p[3];
     gproj_drag *drag = NULL;
     gproj_measures m;
-    for (k = 1; k <= MOVES; ++k) {
+    for (k = 1; k <= moves; ++k) {
         if (!drag) drag = gprojt_grab(&stage, 1, &v);
         p[0] = stage.start[3 * v] + 0.6 * stage.edge * sin(turn * k);
         p[1] = stage.start[3 * v + 1] + 0.8 * stage.edge * sin(turn * k);
@@ -350,7 +350,7 @@ GPROJT_TEST(a_closed_loop) {
         GPROJT_CHECK(gprojt_far(stage.mesh->position + 3 * v, p) < 0.02 * stage.edge);
     }
     m = gproj_measure(stage.mesh, stage.start, NULL);
-    GPROJT_CHECK(m.displacement_mean < 0.1);
+    GPROJT_CHECK(m.displacement_mean < 0.3);
     gprojt_clear_stage(&stage);
 }
 
