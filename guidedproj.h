@@ -5,12 +5,13 @@
      Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, static equilibrium, compression
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
-     machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
+     machine precision, and you get an honest verdict: what holds, how exactly, and where it does not. For editors:
+     vertices are dragged at screen rate while everything holds, solves go on frame by frame, states are saved for undo.
      Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
      least squares with bounds, and projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
+     - draw or remesh: it moves vertices and keeps the combinatorics as they are;
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -1111,7 +1112,7 @@ typedef struct gproj_drag_info {
 /* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
    one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6), which
    stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`, nothing
-   has changed. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 9 right-hand sides
+   has changed. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 6 right-hand sides
    for each handle. */
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
                                        const gproj_drag_options *options, gproj_error *error);
@@ -1125,9 +1126,12 @@ GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
 GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
-/* Releases the handles: guided projection, 10 iterations. The mesh keeps what fairness it had before the drag, with weight
-   0.2 * 0.9^n for n <= 5, and the handles stay where they are, with weight 1 * 0.9^n; then nothing is wished. Destroys the
-   drag. The first release adds the groups "drag fairness" and "drag handles" to the form. */
+/* Releases the handles: guided projection, 10 iterations. For n <= 5 wishes guide it: with weight 0.2 * 0.9^n the mesh
+   keeps the fairness it had before the drag (differences of its change, not of its shape, so that features stay), with 0.9^n
+   the handles stay where they are, and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The
+   form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag
+   handles" to the form, so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes
+   on. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
 /* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
@@ -1948,6 +1952,11 @@ GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gpro
     gproji_format_list(error->message, sizeof error->message, format, list);
     va_end(list);
     return code;
+}
+
+/* Another object's error becomes the caller's, which may be NULL. */
+GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error *other) {
+    return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
 
 GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
@@ -4436,7 +4445,7 @@ struct gproj_cholesky {
     gproji_load load; /* during a factorisation */
     void *load_user;
     int32_t batch; /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
-    int32_t room;  /* how many of them the two last but one arrays below have room for */
+    int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
 
     double *values;       /* symbolic.values_size: all panels */
@@ -14951,12 +14960,14 @@ enum {
 
 /* -- the groups that the library adds to a form -- */
 
-#define GPROJI_OWN_GROUPS(X) X(NONE) X(CLOSENESS) X(GUARD) X(FORCES) X(DRAG_FAIRNESS) X(DRAG_HANDLES)
-
+/* Their numbers stand in saved states. */
 typedef enum gproji_own {
-#define GPROJ_X(name) GPROJI_OWN_##name,
-    GPROJI_OWN_GROUPS(GPROJ_X)
-#undef GPROJ_X
+    GPROJI_OWN_NONE, /* the caller's */
+    GPROJI_OWN_CLOSENESS,
+    GPROJI_OWN_GUARD,
+    GPROJI_OWN_FORCES,
+    GPROJI_OWN_DRAG_FAIRNESS,
+    GPROJI_OWN_DRAG_HANDLES,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -15387,10 +15398,7 @@ GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, si
 
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error) {
     gproji_error_clear(error);
-    if (!gproji_form_ready(form)) {
-        if (error) *error = *gproj_form_error(form);
-        return gproj_form_error(form)->code;
-    }
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (!buffer || size != gproj_state_size(form))
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
@@ -15431,10 +15439,7 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
     if (code) return code;
     check = in;
     gproji_pass_state(&check, form);
-    if (!gproji_form_ready(form)) {
-        if (error) *error = *gproj_form_error(form);
-        return gproj_form_error(form)->code;
-    }
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (check.wrong || check.at != in.size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "state: it is damaged: %s",
                            check.wrong ? check.wrong : "more follows than it should have");
@@ -15446,10 +15451,7 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
 
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error) {
     gproji_error_clear(error);
-    if (!gproji_form_ready(form)) {
-        if (error) *error = *gproj_form_error(form);
-        return gproj_form_error(form)->code;
-    }
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (form->system->solving || form->drag)
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "state: a solve or a drag is under way, which must end before");
@@ -15723,6 +15725,14 @@ GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     return true;
 }
 
+/* Says why that failed. Without freedom nothing moves any more. */
+GPROJI_INTERNAL gproj_code gproji_fail_linearising(gproj_drag *drag, gproj_error *error) {
+    drag->info.freedom = 0;
+    if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                       "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+}
+
 /* -- moves -- */
 
 /* x = base + Q m with the m for which the handles come nearest to where they should be. */
@@ -15757,7 +15767,7 @@ GPROJI_INTERNAL void gproji_set_wanted(gproj_drag *drag, const double *positions
 
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     if (!gproji_form_ready(drag->form)) {
-        drag->error = *gproj_form_error(drag->form);
+        gproji_pass_on(&drag->error, gproj_form_error(drag->form));
     } else if (!gproji_has_structure(drag->form->system, drag->structure)) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
@@ -15777,11 +15787,11 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     gproji_set_wanted(drag, positions);
     gproji_follow_handles(drag);
     if (drag->options.residual_bound > 0 && gproji_see_constraints(drag) > drag->options.residual_bound) {
-        gproji_linearise_drag(drag, true);
+        if (!gproji_linearise_drag(drag, true)) gproji_fail_linearising(drag, &drag->error);
         gproji_follow_handles(drag);
     }
     gproji_store_positions(drag->form, drag->form->before);
-    return GPROJ_OK;
+    return drag->error.code;
 }
 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
@@ -15923,9 +15933,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     if (!gproji_form_ready(form) || gproji_compile(s) != GPROJ_OK ||
         !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
         return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
-    if (gproji_linearise_drag(drag, false)) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                       "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+    return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
 }
 
 /* Is there anything that forbids a drag now? */
@@ -15933,7 +15941,7 @@ GPROJI_INTERNAL bool gproji_may_drag(gproj_form *form, const gproj_handles *hand
                                      gproj_error *error) {
     const gproji_statics *statics;
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) {
-        if (error) *error = *gproj_form_error(form);
+        gproji_pass_on(error, gproj_form_error(form));
         return false;
     }
     statics = form->statics;
@@ -15975,7 +15983,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
         if (code == GPROJ_OK) return drag;
         gproji_read_state(form, drag->state, drag->state_size, NULL);
     }
-    if (!gproji_form_ready(form) && error) *error = *gproj_form_error(form);
+    if (!gproji_form_ready(form)) gproji_pass_on(error, gproj_form_error(form));
     if (code == GPROJ_ERROR_MEMORY) gproji_fail_memory(error);
     gproji_destroy_drag(drag);
     return NULL;
