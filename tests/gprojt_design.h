@@ -10,6 +10,7 @@ enum {
     GPROJT_CIRCULAR,
     GPROJT_GLIDING, /* planar, the boundary on its curve, the volume is kept */
     GPROJT_BOUNDED, /* planar, edges and faces not too small */
+    GPROJT_PLAIN,   /* planar, and nothing is wished */
     GPROJT_DESIGNS
 };
 
@@ -53,7 +54,7 @@ static inline void gprojt_add_design(gproj_form *form, const gproj_mesh *mesh, i
     if (design == GPROJT_GLIDING) gproj_add_volume(form, gproj_volume(mesh), 1);
     if (design == GPROJT_BOUNDED) gproj_add_length_bounds(form, mesh->edge_count, NULL, 0.85, 1.4, 1);
     if (design == GPROJT_BOUNDED) gproj_add_area_bounds(form, mesh->face_count, NULL, 0.7, 0, 1);
-    gproj_add_fairness(form, 0.05);
+    if (design != GPROJT_PLAIN) gproj_add_fairness(form, 0.05);
 }
 
 static inline gproj_form *gprojt_design(gproj_mesh *mesh, int design, const gproj_host *host) {

@@ -527,6 +527,27 @@ GPROJT_TEST(misused) {
     gprojt_clear_stage(&stage);
 }
 
+/* Numbers beyond all measure are no tangent space; a form that has met an error is not dragged on. */
+GPROJT_TEST(what_cannot_be_linearised) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+    gproj_system *s;
+    int32_t v = gprojt_middle(stage.mesh), outside = 99, group;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+    gproj_add_fixed(stage.form, 1, &outside, 1);
+    GPROJT_CHECK(gproj_drag_move(drag, stage.start) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "no vertex 99"));
+    GPROJT_CHECK(strstr(gproj_drag_end(drag).message, "no vertex 99"));
+    gprojt_clear_stage(&stage);
+    stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+    s = gproj_form_system(stage.form);
+    group = gprojt_add_group(s, "huge", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, group, 3 * v, 1e200, 0, 0);
+    gprojt_check_refusal(stage.form, &handles, NULL, GPROJ_ERROR_NUMBER, "cannot be linearised");
+    GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start) && gproj_form_error(stage.form)->code == GPROJ_OK);
+    gprojt_clear_stage(&stage);
+}
+
 /* The form's own wishes are put back after a release, and guide during it where that is asked for. */
 GPROJT_TEST(wishes_at_the_release) {
     double far[2];
@@ -621,6 +642,7 @@ int main(void) {
     GPROJT_RUN(cancelled_to_the_bit);
     GPROJT_RUN(refused);
     GPROJT_RUN(misused);
+    GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
     GPROJT_RUN(failing_allocations);
     GPROJT_RUN(same_bits_for_all_workers);

@@ -218,6 +218,43 @@ GPROJT_TEST(resumed_to_the_same_bytes) {
                 gprojt_check_resumed(design, nearest, at);
 }
 
+/* A flat net that is to stand, with its boundary fixed. */
+static gproj_form *gprojt_flat_net(gproj_mesh **mesh) {
+    gproj_form *form;
+    int32_t v;
+    *mesh = gprojt_roof(5, 0);
+    for (v = 0; v < (*mesh)->vertex_count; ++v) (*mesh)->position[3 * v + 2] = 0;
+    form = gproj_form_create(*mesh, NULL);
+    gprojt_add_standing(form, *mesh);
+    gproj_add_fixed_boundary(form, 1);
+    return form;
+}
+
+/* It is bent by uniform forces first, which are guided by a group of their own: fresh forms get it from the state. */
+GPROJT_TEST(resumed_with_forces_that_bend) {
+    gproj_mesh *mesh[3];
+    gproj_form *form[3];
+    uint8_t *state;
+    size_t size;
+    int32_t k;
+    for (k = 0; k < 3; ++k) form[k] = gprojt_flat_net(&mesh[k]);
+    GPROJT_REQUIRE(gproj_step_begin(form[0], 20, NULL));
+    for (k = 0; k < 3; ++k) gproj_step(form[0], 0);
+    state = gprojt_save(form[0], &size);
+    gproj_solve(form[1], 2, NULL); /* has them already */
+    for (k = 0; k < 3; ++k) {
+        if (k) GPROJT_CHECK(gproj_state_restore(form[k], state, size, NULL) == GPROJ_OK);
+        GPROJT_CHECK(gprojt_go_on(form[k]).outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(gprojt_unmoved(mesh[0], mesh[k]->position));
+    }
+    GPROJT_CHECK(mesh[0]->position[3 * gprojt_middle(mesh[0]) + 2] > 0.1);
+    for (k = 0; k < 3; ++k) {
+        gproj_form_destroy(form[k]);
+        gproj_mesh_destroy(mesh[k]);
+    }
+    free(state);
+}
+
 /* Undo and redo: weights, targets, forces and positions are those of the state, and what follows is what followed. */
 GPROJT_TEST(undo_and_redo) {
     gproj_mesh *mesh = gprojt_roof(6, 0.05);
@@ -443,6 +480,7 @@ int main(void) {
     GPROJT_RUN(frames_can_be_left);
     GPROJT_RUN(frames_follow_targets);
     GPROJT_RUN(resumed_to_the_same_bytes);
+    GPROJT_RUN(resumed_with_forces_that_bend);
     GPROJT_RUN(undo_and_redo);
     GPROJT_RUN(every_damage_is_seen);
     GPROJT_RUN(forged_states_do_no_harm);
