@@ -1126,12 +1126,13 @@ GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
 GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
-/* Releases the handles: guided projection, 10 iterations. For n <= 5 wishes guide it: with weight 0.2 * 0.9^n the mesh
-   keeps the fairness it had before the drag (differences of its change, not of its shape, so that features stay), with 0.9^n
-   the handles stay where they are, and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The
-   form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag
-   handles" to the form, so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes
-   on. */
+/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over under a
+   pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go to where they
+   are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its shape, so that
+   features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The form's own wishes
+   rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag handles" to the form,
+   so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
+   mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
 /* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
@@ -15997,7 +15998,7 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
 
 /* -- release -- */
 
-/* The release's wishes: fairness as it was at the beginning, and the handles where they are. */
+/* The release's wishes: the handles where x says, fairness as it was at the beginning, all vertices where they were. */
 GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
     gproj_form *form = drag->form;
     gproj_system *s = form->system;
@@ -16051,6 +16052,7 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
     form = drag->form;
     form->drag = NULL;
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
     if (gproji_form_ready(form)) {

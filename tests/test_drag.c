@@ -594,6 +594,7 @@ static bool gprojt_use_drag(const gproj_host *host, void *user) {
         GPROJT_CHECK(whole || (error.code == GPROJ_ERROR_MEMORY && gprojt_unmoved(mesh, before)));
         if (drag) gproj_drag_move(drag, mesh->position);
         if (drag) whole = gproj_drag_end(drag).outcome != GPROJ_FAILED;
+        GPROJT_CHECK(whole || gprojt_unmoved(mesh, before));
     }
     GPROJT_CHECK(whole || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY || error.code == GPROJ_ERROR_MEMORY);
     free(before);
