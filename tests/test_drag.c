@@ -354,6 +354,33 @@ GPROJT_TEST(a_closed_loop) {
     gprojt_clear_stage(&stage);
 }
 
+/* Whichever way a vertex is dragged, by half an edge: after the release no face has turned over, and the vertex is there. */
+GPROJT_TEST(releases_turn_no_face_over) {
+    static const int designs[] = {GPROJT_PLANAR, GPROJT_STANDING, GPROJT_CIRCULAR};
+    uint64_t random = 11;
+    int32_t d, k, c;
+    for (d = 0; d < 3; ++d) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(9, 0.05), designs[d], NULL);
+        for (k = 0; k < 8; ++k) {
+            int32_t v = 22 + gprojt_below(&random, stage.mesh->vertex_count - 44);
+            gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+            double way[3], to[3], length;
+            gproj_measures m;
+            for (c = 0; c < 3; ++c) way[c] = 2 * gprojt_uniform(&random) - 1;
+            length = gprojt_length3(way);
+            for (c = 0; c < 3; ++c) to[c] = stage.mesh->position[3 * v + c] + 0.5 * stage.edge * way[c] / length;
+            GPROJT_CHECK(gproj_drag_move(drag, to) == GPROJ_OK);
+            GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+            m = gproj_measure(stage.mesh, stage.start, NULL);
+            GPROJT_CHECK(m.folded_edges == 0 && m.turned_faces == 0 && m.planarity_max <= 1e-9);
+            GPROJT_CHECK(gprojt_far(stage.mesh->position + 3 * v, to) < 0.05 * stage.edge);
+            gprojt_put_back(stage.mesh, stage.start);
+            gproj_solve(stage.form, 20, NULL); /* the forces, too */
+        }
+        gprojt_clear_stage(&stage);
+    }
+}
+
 /* A long drag that linearises anew stays near what must hold all the time. */
 GPROJT_TEST(a_long_drag) {
     gprojt_stage stage = gprojt_set_stage(gprojt_roof(8, 0.05), GPROJT_PLANAR, NULL);
@@ -638,6 +665,7 @@ int main(void) {
     GPROJT_RUN(there_and_back);
     GPROJT_RUN(there_and_back_on_intersection);
     GPROJT_RUN(a_closed_loop);
+    GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
