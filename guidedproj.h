@@ -1154,7 +1154,8 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    The bytes are the same on all machines; they may be written to a file. */
 
-/* The size of the state as it is now, in bytes: about 16 for each variable. 0 after an error of the form. */
+/* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a
+   solve. 0 after an error of the form. */
 GPROJ_API size_t gproj_state_size(gproj_form *form);
 /* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. */
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
@@ -7086,8 +7087,9 @@ GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g,
     s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + ahead);
 }
 
-/* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix, so no pivot is less
-   than 1; where rounding says so (rows that depend on each other), the pivot is what rounding lets be known. */
+/* Factors the small matrix in place by rows: L L' = M. No pivot is less than `floor`, which is 1 for I plus a positive
+   semidefinite matrix; where rounding says so (rows that depend on each other), the pivot is what rounding lets be known.
+   */
 GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride, double floor) {
     int32_t i, j, k;
     for (i = 0; i < n; ++i) {
@@ -15201,17 +15203,19 @@ GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) 
     return true;
 }
 
+/* The last segment that vertex i of a gliding part may be on; -1: it stays where it was. */
+GPROJI_INTERNAL int32_t gproji_last_segment(const gproji_part *part, int32_t i) {
+    if (part->curve) return part->curve->segment_count - 1;
+    return gproji_stays(part, i) ? -1 : part->own_curve[part->curve_of[i]]->segment_count - 1;
+}
+
 /* What the form and its parts remember. */
 GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) {
     gproji_part *part;
     int32_t i;
     for (part = form->part; part; part = part->next)
-        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
-            const gproj_curve *curve = part->curve             ? part->curve
-                                       : gproji_stays(part, i) ? NULL
-                                                               : part->own_curve[part->curve_of[i]];
-            gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
-        }
+        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i)
+            gproji_pass_integer(stream, &part->segment[i], -1, gproji_last_segment(part, i));
     if (!form->statics) return;
     gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
     gproji_pass_bool(stream, &form->statics->started);
@@ -15639,33 +15643,33 @@ GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
 }
 
 /* Swaps columns i and j of Q and of S'Q, and their names. */
-GPROJI_INTERNAL void gproji_swap_responses(gproj_drag *drag, int32_t *name, int32_t i, int32_t j) {
+GPROJI_INTERNAL void gproji_swap_responses(gproj_drag *drag, int32_t i, int32_t j) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
     double *a = drag->motion + n * (size_t)i, *b = drag->motion + n * (size_t)j;
     double *c = drag->work + m * (size_t)i, *d = drag->work + m * (size_t)j, other;
-    int32_t named = name[i];
+    int32_t named = drag->name[i];
     for (k = 0; k < n; ++k) other = a[k], a[k] = b[k], b[k] = other;
     for (k = 0; k < m; ++k) other = c[k], c[k] = d[k], d[k] = other;
-    name[i] = name[j];
-    name[j] = named;
+    drag->name[i] = drag->name[j];
+    drag->name[j] = named;
 }
 
 /* How far the response in column i moves its own handle, beside what it would without constraints. */
-GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, const int32_t *name, int32_t i) {
-    size_t handle = (size_t)(name[i] / 3), handles = (size_t)drag->info.handles;
-    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)name[i]] / drag->gram[handle * (handles + 1)];
+GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
+    size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
+    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] / drag->gram[handle * (handles + 1)];
 }
 
 /* Column r becomes orthonormal: q = q / |q|_D, and is taken off the columns after it. */
-GPROJI_INTERNAL void gproji_take_off_response(gproj_drag *drag, const int32_t *name, int32_t r) {
+GPROJI_INTERNAL void gproji_take_off_response(gproj_drag *drag, int32_t r) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
     double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
-    double scale = 1 / sqrt(work[name[r]]);
+    double scale = 1 / sqrt(work[drag->name[r]]);
     int32_t i;
     for (k = 0; k < n; ++k) q[k] *= scale;
     for (k = 0; k < m; ++k) l[k] = work[k] * scale;
     for (i = r + 1; i < drag->columns; ++i) {
-        double part = l[name[i]], *other = drag->motion + n * (size_t)i;
+        double part = l[drag->name[i]], *other = drag->motion + n * (size_t)i;
         work = drag->work + m * (size_t)i;
         for (k = 0; k < n; ++k) other[k] -= part * q[k];
         for (k = 0; k < m; ++k) work[k] -= part * l[k];
@@ -15682,10 +15686,10 @@ GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
     }
     for (r = 0; r < drag->columns; ++r) {
         for (best = r, i = r + 1; i < drag->columns; ++i)
-            if (gproji_yield(drag, drag->name, i) > gproji_yield(drag, drag->name, best)) best = i;
-        if (!(gproji_yield(drag, drag->name, best) > gproji_drag_stiff)) break;
-        gproji_swap_responses(drag, drag->name, r, best);
-        gproji_take_off_response(drag, drag->name, r);
+            if (gproji_yield(drag, i) > gproji_yield(drag, best)) best = i;
+        if (!(gproji_yield(drag, best) > gproji_drag_stiff)) break;
+        gproji_swap_responses(drag, r, best);
+        gproji_take_off_response(drag, r);
     }
     drag->info.freedom = r;
 }
@@ -15696,7 +15700,7 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     double *column = drag->work + (size_t)rank * (size_t)rank;
     for (i = 0; i < rank; ++i)
         for (j = 0; j <= i; ++j)
-            drag->work[i * rank + j] =
+            drag->work[(size_t)i * (size_t)rank + (size_t)j] =
                 gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
     gproji_wide_factor(drag->work, rank, rank, DBL_MIN);
     for (j = 0; j < m; ++j) {
