@@ -62,6 +62,7 @@
        >>api-least-squares  linear least squares with bounds, usable by itself
        >>api-system     quadratic equations and guided projection, without meshes
        >>api-mesh       half-edge meshes, OBJ and OFF
+       >>api-edit       changes of a mesh's combinatorics
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-offset     parallel meshes at constant distance, supports
@@ -87,6 +88,7 @@
        >>hierarchy      bounding boxes
        >>curve          polylines
        >>surface        reference surfaces
+       >>edit           changes of the combinatorics
        >>measure        what a mesh is like
        >>offset         parallel meshes and what is between them
        >>form           a mesh and its system
@@ -671,6 +673,120 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
    complete. The format follows the ending: .obj or .off. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
+
+   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy of them that can be changed, each change in time
+   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as often
+   as wanted, and says where each element has gone:
+
+       gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
+       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
+       gproj_edit_split_face(edit, 4, v, 23, NULL);                  // from there across face 4 to vertex 23
+       gproj_mesh *after = gproj_edit_mesh(edit, NULL, NULL);
+       handle = edit->vertex_number[handle];                         // a vertex of `mesh`, or v, in `after`
+       gproj_edit_destroy(edit);
+
+   NUMBERS  Vertices, edges and faces of the mesh keep their numbers in the edit, whatever is done; new elements get the
+   following ones, and numbers of removed ones are not given again. The number of a vertex or edge that was merged into
+   another one stands for that one, in all functions here; of the two the lower number stays.
+   REFUSALS  After each change the edit is an orientable manifold of the kind that gproj_mesh_create accepts. A change
+   that would end that is refused: it returns -1, with an error that names the element, and the edit is as it was, as it
+   is when there is no memory. A refusal has no consequences for later changes. `error` may be NULL.
+   POLYLINES of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new vertex. */
+
+/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those of
+   gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
+   merged into another one, like one without a face, vertex_halfedge -1. Half-edge h has the twin h ^ 1 and the edge h / 2. */
+typedef struct gproj_edit {
+    int32_t vertex_count; /* numbers given so far, those of removed elements included */
+    int32_t edge_count;
+    int32_t face_count;
+
+    double *position;               /* 3 * vertex_count */
+    const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1 */
+    const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
+    const int32_t *face_degree;     /* number of corners */
+    const int32_t *face_parent;     /* the face of the first mesh of which this one is a part */
+
+    const int32_t *next; /* of each of the 2 * edge_count half-edges, as in gproj_mesh */
+    const int32_t *prev;
+    const int32_t *origin;
+    const int32_t *face;
+
+    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: for merged
+       elements that of what they were merged into, -1 where nothing is left. NULL before. */
+    const int32_t *vertex_number;
+    const int32_t *edge_number;
+    const int32_t *face_number;
+} gproj_edit;
+
+/* The mesh is copied. */
+GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
+GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
+GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
+
+/* A mesh of what the edit is now, its elements in the order of their numbers (edges in that of all meshes: as they
+   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is left
+   is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
+GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
+
+/* The vertex that this number stands for: itself, or what it was merged into; -1 out of range. */
+GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex);
+/* The edge between two vertices; -1: none. */
+GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other);
+
+/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one corner
+   more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new vertex. */
+GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part is
+   the last face. Refused where the corners have an edge already. Returns the new edge. */
+GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
+                                        gproj_error *error);
+
+/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i
+   to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be pinched
+   or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or are
+   corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a component
+   would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns the vertex. */
+GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Of all ways to do so, one is taken whose
+   triangles are not turned over in the plane orthogonal to the face's vectorial area (if there is one: the face may be
+   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of
+   (a^2 + b^2 + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are
+   left (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new
+   faces. */
+GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
+
+/* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
+   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs; all
+   can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
+
+   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction in
+   which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads stay
+   quads; other faces at the ends of the strip get one corner more. Refused where no quad is at the edge. Returns the new
+   part of the edge, from the new vertex to j: a rung of the new strip. */
+GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva, Shepherd,
+   Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish. Refused
+   where one of the collapses is. Takes time in the size of the mesh. After gproj_edit_insert_strip with the edge that it
+   returned and t = 1 all is as it was, but for numbers of faces. Returns the number of rungs. */
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a face
+   whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces come, in
+   their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices; then
+   the vertices of the boundary with a single face, which are corners of their own dual face; then vertices without a
+   face, which stay as they are. So a grid of quads with boundary has one. Polylines stay where all of their vertices do.
+   vertex_face: vertex_count numbers to be filled with the dual face of each vertex, -1 without; may be NULL. For a closed
+   mesh without isolated vertices face v is that of vertex v, and the dual of the dual has the combinatorics of the mesh.
+   Refused where two faces have more than one edge in common, for their vertices would have two edges. */
+GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
+                                      gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
@@ -10297,6 +10413,1372 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
     hit.distance = gproji_distance3(hit.point, point);
     hit.face = surface->triangle_face[item];
     return hit;
+}
+
+/* ============================================================================================================
+   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh, surface (polygons).
+
+   Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them Euler
+   operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and triangulations
+   are sequences of them; those that may be refused midway work with a copy to go back to.
+   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into lead to
+   lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
+typedef enum gproji_edit_kind {
+    GPROJI_EDIT_VERTEX,
+    GPROJI_EDIT_HALFEDGE,
+    GPROJI_EDIT_EDGE,
+    GPROJI_EDIT_FACE,
+    GPROJI_EDIT_KINDS
+} gproji_edit_kind;
+
+/* How many integers an element has: each is an array below. */
+static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
+
+/* The state of an edit: what a copy to go back to must have. */
+typedef struct gproji_edit_store {
+    int32_t count[GPROJI_EDIT_KINDS];
+    int32_t room[GPROJI_EDIT_KINDS];
+    int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
+    double *position;                  /* 3 * room of vertices */
+    int32_t polyline_count;
+    int32_t polyline_room;
+    int32_t *polyline_start;  /* polyline_count + 1 */
+    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for what they were merged into */
+
+    int32_t *vertex_halfedge;
+    int32_t *vertex_into; /* itself, or what it was merged into */
+    int32_t *vertex_mark; /* the last stamp that met it */
+    int32_t *on_polyline; /* is it a vertex of a polyline? */
+    int32_t *next, *prev, *origin, *face;
+    int32_t *edge_into; /* itself, what it was merged into, or -1: collapsed */
+    int32_t *face_halfedge, *face_degree, *face_parent;
+    int32_t *face_mark;
+} gproji_edit_store;
+
+/* The owner of a gproj_edit. */
+typedef struct gproji_edit_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_edit edit;
+    gproj_mesh view; /* the same arrays for the functions of >>mesh that go round a vertex or a face */
+    gproji_edit_store now;
+    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made */
+    int32_t number_count[GPROJI_EDIT_KINDS];
+    int32_t stamp;
+} gproji_edit_object;
+
+/* -- memory -- */
+
+/* The arrays within the blocks. */
+GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
+    size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
+           faces = (size_t)s->room[GPROJI_EDIT_FACE];
+    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX];
+    s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_mark = s->vertex_into + vertices;
+    s->on_polyline = s->vertex_mark + vertices;
+    s->next = s->block[GPROJI_EDIT_HALFEDGE];
+    s->prev = s->next + halfedges;
+    s->origin = s->prev + halfedges;
+    s->face = s->origin + halfedges;
+    s->edge_into = s->block[GPROJI_EDIT_EDGE];
+    s->face_halfedge = s->block[GPROJI_EDIT_FACE];
+    s->face_degree = s->face_halfedge + faces;
+    s->face_parent = s->face_degree + faces;
+    s->face_mark = s->face_parent + faces;
+}
+
+/* Shows the arrays in the public struct and in the view. */
+GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
+    gproji_edit_store *s = &object->now;
+    gproj_edit *edit = &object->edit;
+    gproj_mesh *view = &object->view;
+    gproji_edit_point(s);
+    edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
+    edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
+    edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
+    edit->position = view->position = s->position;
+    edit->vertex_halfedge = view->vertex_halfedge = s->vertex_halfedge;
+    edit->face_halfedge = view->face_halfedge = s->face_halfedge;
+    edit->face_degree = view->face_degree = s->face_degree;
+    edit->face_parent = s->face_parent;
+    edit->next = view->next = s->next;
+    edit->prev = view->prev = s->prev;
+    edit->origin = view->origin = s->origin;
+    edit->face = view->face = s->face;
+    edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
+    edit->edge_number = object->number[GPROJI_EDIT_EDGE];
+    edit->face_number = object->number[GPROJI_EDIT_FACE];
+}
+
+GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(heap, s->block[kind], (size_t)s->room[kind], (size_t)gproji_edit_rows[kind] * sizeof(int32_t));
+    gproji_give(heap, s->position, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    gproji_give(heap, s->polyline_start, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
+}
+
+/* Takes the arrays for the counts and rooms of a store; after a failure what there is can be given back. */
+GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
+    bool complete = true;
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        s->block[kind] = (int32_t *)gproji_take_zeroed(heap, (size_t)s->room[kind], size);
+        complete = complete && s->block[kind];
+    }
+    s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
+    if (!complete || !s->position || !s->polyline_start || !s->polyline_vertex) return false;
+    gproji_edit_point(s);
+    return true;
+}
+
+/* A copy to go back to; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
+    const gproji_edit_store *s = &object->now;
+    int32_t kind;
+    *copy = *s;
+    if (!gproji_edit_take(&object->heap, copy)) {
+        gproji_edit_give(&object->heap, copy);
+        return false;
+    }
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        memcpy(copy->block[kind], s->block[kind],
+               (size_t)gproji_edit_rows[kind] * (size_t)s->room[kind] * sizeof(int32_t));
+    memcpy(copy->position, s->position, (size_t)s->count[GPROJI_EDIT_VERTEX] * 3 * sizeof(double));
+    memcpy(copy->polyline_start, s->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(copy->polyline_vertex, s->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    return true;
+}
+
+/* The end of what began with gproji_edit_save: back to the copy after an error. Returns the error. */
+GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
+    gproji_edit_give(&object->heap, code ? &object->now : copy);
+    if (code) object->now = *copy;
+    gproji_edit_publish(object);
+    return code;
+}
+
+/* Makes room for `more` elements of a kind, at least doubling it. */
+GPROJI_INTERNAL bool gproji_edit_grow(gproji_edit_object *object, int32_t kind, int32_t more) {
+    gproji_edit_store *s = &object->now;
+    int32_t rows = gproji_edit_rows[kind], old_room = s->room[kind], room, r, *block;
+    int32_t needed = s->count[kind] + more;
+    double *position = NULL;
+    if (needed <= old_room) return true;
+    room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old_room) : needed;
+    block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, (size_t)rows * sizeof(int32_t));
+    if (!block) return false;
+    if (kind == GPROJI_EDIT_VERTEX) {
+        position =
+            (double *)gproji_retake(&object->heap, s->position, (size_t)old_room, (size_t)room, 3 * sizeof(double));
+        if (!position) {
+            gproji_give(&object->heap, block, (size_t)room, (size_t)rows * sizeof(int32_t));
+            return false;
+        }
+        s->position = position;
+    }
+    for (r = 0; r < rows; ++r)
+        memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old_room,
+               (size_t)s->count[kind] * sizeof(int32_t));
+    gproji_give(&object->heap, s->block[kind], (size_t)old_room, (size_t)rows * sizeof(int32_t));
+    s->block[kind] = block;
+    s->room[kind] = room;
+    gproji_edit_publish(object);
+    return true;
+}
+
+/* Makes room for new elements, so that those who add them cannot fail. */
+GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
+                                               int64_t faces, gproj_error *error) {
+    const int32_t *count = object->now.count;
+    if (count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
+        count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2) {
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
+                           (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
+    }
+    if (!gproji_edit_grow(object, GPROJI_EDIT_VERTEX, (int32_t)vertices) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_HALFEDGE, (int32_t)(2 * edges)) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_EDGE, (int32_t)edges) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_FACE, (int32_t)faces)) {
+        return gproji_fail_memory(error);
+    }
+    return GPROJ_OK;
+}
+
+/* -- elements -- */
+
+GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
+    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
+    s->vertex_into[v] = v;
+    return v;
+}
+
+/* Its half-edges are 2e and 2e + 1. */
+GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
+    int32_t e = s->count[GPROJI_EDIT_EDGE]++;
+    s->count[GPROJI_EDIT_HALFEDGE] += 2;
+    s->edge_into[e] = e;
+    return e;
+}
+
+/* A part of face `whole`. */
+GPROJI_INTERNAL int32_t gproji_edit_add_face(gproji_edit_store *s, int32_t whole) {
+    int32_t f = s->count[GPROJI_EDIT_FACE]++;
+    s->face_parent[f] = s->face_parent[whole];
+    return f;
+}
+
+/* What a number stands for, by the chain of merges, which is shortened on the way; -1: nothing. */
+GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
+    while (number >= 0 && into[number] != number) {
+        if (into[number] >= 0) into[number] = into[into[number]];
+        number = into[number];
+    }
+    return number;
+}
+
+GPROJI_INLINE void gproji_edit_link(gproji_edit_store *s, int32_t h, int32_t following) {
+    s->next[h] = following;
+    s->prev[following] = h;
+}
+
+/* Chooses vertex_halfedge, given an outgoing half-edge. */
+GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
+    gproji_edit_store *s = &object->now;
+    int32_t h = outgoing;
+    while (s->face[h] >= 0) {
+        h = gproji_rotate(&object->view, h);
+        if (h == outgoing) break;
+    }
+    s->vertex_halfedge[s->origin[h]] = h;
+}
+
+/* The half-edge of a face that starts at a vertex; -1: it is no corner. */
+GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t face, int32_t vertex) {
+    int32_t start = s->face_halfedge[face], h = start;
+    do {
+        if (s->origin[h] == vertex) return h;
+        h = s->next[h];
+    } while (h != start);
+    return -1;
+}
+
+/* The half-edge from vertex a to vertex b; -1: none. */
+GPROJI_INTERNAL int32_t gproji_edit_joined(const gproji_edit_object *object, int32_t a, int32_t b) {
+    const gproj_mesh *view = &object->view;
+    int32_t start = view->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (view->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(view, h);
+    } while (h != start);
+    return -1;
+}
+
+/* A new stamp for marks, greater than all that are in use. */
+GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
+    gproji_edit_store *s = &object->now;
+    if (object->stamp == INT32_MAX) {
+        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
+        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
+        object->stamp = 0;
+    }
+    return ++object->stamp;
+}
+
+/* out = (1 - t) v_a + t v_b. `out` may be one of them. */
+GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, int32_t b, double t, int32_t out) {
+    const double *p = s->position + 3 * (size_t)a, *q = s->position + 3 * (size_t)b;
+    double *x = s->position + 3 * (size_t)out;
+    int32_t k;
+    for (k = 0; k < 3; ++k) x[k] = t < 0.5 ? p[k] + t * (q[k] - p[k]) : q[k] + (1 - t) * (p[k] - q[k]);
+}
+
+/* -- what calls give -- */
+
+GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
+    gproji_error_clear(error);
+    if (!edit) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the edit is NULL");
+        return NULL;
+    }
+    return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
+}
+
+/* Numbers of an element in the range? */
+GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
+                                     gproj_place place, int32_t number, gproj_error *error) {
+    int32_t count = object->now.count[kind];
+    if (number >= 0 && number < count) return true;
+    gproji_fail(error, GPROJ_ERROR_INDEX, place, number, "%s %d does not exist: they are 0 to %d", what, number,
+                count - 1);
+    return false;
+}
+
+/* Half-edge 2e of the edge e that a number stands for; -1 and an error where there is none. */
+GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
+    int32_t root;
+    if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    root = gproji_edit_root(object->now.edge_into, edge);
+    if (root < 0) {
+        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+        return -1;
+    }
+    if (!(t >= 0 && t <= 1)) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                    "the parameter %g on edge %d is not from 0 to 1", t, edge);
+        return -1;
+    }
+    return 2 * root;
+}
+
+GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
+    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, "face", GPROJ_PLACE_FACE, face, error)) return false;
+    if (object->now.face_halfedge[face] >= 0) return true;
+    gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face);
+    return false;
+}
+
+/* The half-edge of a face at the corner that a vertex number stands for; -1 and an error where there is none. */
+GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
+                                                 gproj_error *error) {
+    int32_t h;
+    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, "vertex", GPROJ_PLACE_VERTEX, vertex, error)) return -1;
+    h = gproji_edit_corner(&object->now, face, gproji_edit_root(object->now.vertex_into, vertex));
+    if (h < 0)
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face, "face %d has no corner at vertex %d", face,
+                    vertex);
+    return h;
+}
+
+/* -- polylines -- */
+
+/* Do vertices at `i` and `i + 1` of the polylines run along the edge between a and b? */
+GPROJI_INLINE bool gproji_polyline_runs(const gproji_edit_store *s, int32_t i, int32_t a, int32_t b) {
+    int32_t u = s->polyline_vertex[i], v = s->polyline_vertex[i + 1];
+    return (u == a && v == b) || (u == b && v == a);
+}
+
+/* How often polylines run along a half-edge's edge. */
+GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, int32_t h) {
+    int32_t a = s->origin[h], b = s->origin[h ^ 1], p, i, count = 0;
+    if (!s->on_polyline[a] || !s->on_polyline[b]) return 0;
+    for (p = 0; p < s->polyline_count; ++p)
+        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) count += gproji_polyline_runs(s, i, a, b);
+    return count;
+}
+
+/* Makes room for `more` vertices of polylines. */
+GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
+    gproji_edit_store *s = &object->now;
+    int64_t needed = s->polyline_start[s->polyline_count] + more;
+    int32_t *moved, room;
+    if (needed <= s->polyline_room) return GPROJ_OK;
+    if (needed > INT32_MAX / 2) {
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
+    }
+    room = 2 * (int32_t)needed;
+    moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
+                                     sizeof(int32_t));
+    if (!moved) return gproji_fail_memory(error);
+    s->polyline_vertex = moved;
+    s->polyline_room = room;
+    return GPROJ_OK;
+}
+
+/* Puts vertex x, new between a and b, into polylines that run along their edge. There is room. */
+GPROJI_INTERNAL void gproji_polyline_split(gproji_edit_store *s, int32_t a, int32_t b, int32_t x) {
+    int32_t p, q, i;
+    if (!s->on_polyline[a] || !s->on_polyline[b]) return;
+    for (p = 0; p < s->polyline_count; ++p) {
+        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
+            int32_t *place = s->polyline_vertex + i + 1;
+            if (!gproji_polyline_runs(s, i, a, b)) continue;
+            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
+            *place = x;
+            s->on_polyline[x] = 1;
+            for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
+            ++i;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_polyline_merge(gproji_edit_store *s, int32_t gone, int32_t kept) {
+    int32_t i;
+    if (!s->on_polyline[gone]) return;
+    s->on_polyline[kept] = 1;
+    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
+}
+
+/* -- the three operators; there is room -- */
+
+/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on, of
+   the new edge, is returned. */
+GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
+    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1;
+    gproji_edit_between(s, a, b, t, x);
+    s->origin[onward] = s->origin[g] = x;
+    s->origin[back] = b;
+    s->face[onward] = s->face[h];
+    s->face[back] = s->face[g];
+    gproji_edit_link(s, onward, s->next[h]);
+    gproji_edit_link(s, h, onward);
+    gproji_edit_link(s, s->prev[g], back);
+    gproji_edit_link(s, back, g);
+    if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
+    if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
+    if (s->face[g] >= 0 && s->face_halfedge[s->face[g]] == g) s->face_halfedge[s->face[g]] = back;
+    if (s->vertex_halfedge[b] == g) s->vertex_halfedge[b] = back;
+    s->vertex_halfedge[x] = s->face[g] < 0 ? g : onward;
+    gproji_polyline_split(s, a, b, x);
+    gproji_edit_publish(object);
+    return onward;
+}
+
+/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin: it
+   is in the part with `to`, its twin in the part with `from`. */
+GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+    gproji_edit_store *s = &object->now;
+    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = gproji_edit_add_face(s, whole);
+    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
+    bool first = false; /* is the first corner of the whole in the part with `from`? */
+    s->origin[d] = s->origin[from];
+    s->origin[o] = s->origin[to];
+    gproji_edit_link(s, before_from, d);
+    gproji_edit_link(s, d, to);
+    gproji_edit_link(s, before_to, o);
+    gproji_edit_link(s, o, from);
+    for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
+    s->face[d] = s->face[o] = whole;
+    start = h = first ? d : o;
+    do {
+        s->face[h] = part;
+        ++count;
+        h = s->next[h];
+    } while (h != start);
+    s->face_halfedge[part] = start;
+    s->face_degree[part] = count;
+    s->face_degree[whole] += 2 - count;
+    gproji_edit_publish(object);
+    return d;
+}
+
+/* Half-edge h takes the place of half-edge `other`, which has the same two ends, and their edges become one, that of h. */
+GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
+    int32_t f = s->face[other];
+    gproji_edit_link(s, s->prev[other], h);
+    gproji_edit_link(s, h, s->next[other]);
+    s->face[h] = f;
+    if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
+    s->origin[other] = s->origin[other ^ 1] = -1;
+    s->edge_into[other / 2] = h / 2;
+}
+
+/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are left,
+   whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of the
+   triangle, or -1. */
+GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
+    int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
+    *apex = -1;
+    gproji_edit_link(s, y, x);
+    if (f < 0) return x;
+    if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
+    if (--s->face_degree[f] > 2) return x;
+    s->face_halfedge[f] = -1;
+    if (x < y) {
+        gproji_edit_replace(s, x, y ^ 1);
+        *apex = x ^ 1;
+        return x;
+    }
+    gproji_edit_replace(s, y, x ^ 1);
+    *apex = y;
+    return y ^ 1;
+}
+
+/* Collapses the edge of half-edge h to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
+GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
+    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing, apex[2];
+    gproji_edit_between(s, a, b, t, kept);
+    do {
+        s->origin[i] = kept;
+        i = gproji_rotate(&object->view, i);
+    } while (i != start);
+    gproji_edit_unlink(s, h, &apex[0]);
+    outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
+    s->origin[h] = s->origin[h ^ 1] = -1;
+    s->edge_into[h / 2] = -1;
+    s->vertex_into[gone] = kept;
+    s->vertex_halfedge[gone] = -1;
+    gproji_edit_anchor(object, outgoing);
+    for (i = 0; i < 2; ++i)
+        if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
+    gproji_polyline_merge(s, gone, kept);
+    return kept;
+}
+
+/* -- may an edge be collapsed? -- */
+
+GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
+}
+
+/* A triangle at half-edge h would become an edge without a face. */
+GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
+    int32_t x, y;
+    if (!gproji_is_triangle(s, h)) return GPROJ_OK;
+    x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
+    if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                       "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its edges",
+                       h / 2, s->face[h]);
+}
+
+/* Marks the neighbours of the origin of h, and its faces. */
+GPROJI_INTERNAL int32_t gproji_edit_mark_star(gproji_edit_object *object, int32_t h) {
+    gproji_edit_store *s = &object->now;
+    int32_t stamp = gproji_edit_stamp(object), i = h;
+    do {
+        s->vertex_mark[s->origin[i ^ 1]] = stamp;
+        if (s->face[i] >= 0) s->face_mark[s->face[i]] = stamp;
+        i = gproji_rotate(&object->view, i);
+    } while (i != h);
+    return stamp;
+}
+
+/* The ends of h have no neighbour in common but the third vertices of triangles at h, and no face but those at h. */
+GPROJI_INTERNAL gproj_code gproji_check_link(gproji_edit_object *object, int32_t h, gproj_error *error) {
+    const gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, stamp = gproji_edit_mark_star(object, h), i;
+    int32_t left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
+    int32_t right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
+        int32_t v = s->origin[i ^ 1], f = s->face[i];
+        if (s->vertex_mark[v] == stamp && v != left && v != right) {
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
+                               "triangle is between",
+                               h / 2, s->origin[h], s->origin[g], v);
+        }
+        if (f >= 0 && s->face_mark[f] == stamp && f != s->face[h] && f != s->face[g]) {
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2,
+                               s->origin[h], s->origin[g], f);
+        }
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
+    const gproji_edit_store *s = &object->now;
+    int32_t a = s->origin[h], b = s->origin[h ^ 1];
+    gproj_code code = gproji_check_vanishing(s, h, error);
+    if (!code) code = gproji_check_vanishing(s, h ^ 1, error);
+    if (code) return code;
+    if (s->face[h] >= 0 && s->face[h ^ 1] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
+        gproj_mesh_is_boundary_vertex(&object->view, b)) {
+        return gproji_fail(
+            error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
+            "and the mesh would be pinched there",
+            h / 2, a, b);
+    }
+    return gproji_check_link(object, h, error);
+}
+
+/* -- life -- */
+
+GPROJI_INTERNAL void gproji_edit_load(gproji_edit_object *object, const gproj_mesh *mesh) {
+    gproji_edit_store *s = &object->now;
+    size_t vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count,
+           faces = (size_t)mesh->face_count;
+    int32_t i;
+    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
+    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
+    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
+    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
+    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
+    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
+    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
+    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
+    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
+    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
+    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
+    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
+}
+
+GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
+    gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
+    int32_t kind;
+    if (!object) return;
+    gproji_edit_give(&object->heap, &object->now);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+    gproji_destroy_object(object, sizeof *object);
+}
+
+GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    gproji_edit_object *object;
+    gproji_edit_store *s;
+    int32_t kind;
+    gproji_error_clear(error);
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
+        return NULL;
+    }
+    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object);
+    if (!object) {
+        gproji_fail_memory(error);
+        return NULL;
+    }
+    s = &object->now;
+    s->count[GPROJI_EDIT_VERTEX] = mesh->vertex_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
+    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_FACE] = mesh->face_count;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) s->room[kind] = s->count[kind];
+    s->polyline_count = mesh->polyline_count;
+    s->polyline_room = mesh->polyline_start[mesh->polyline_count];
+    if (!gproji_edit_take(&object->heap, s)) {
+        gproji_fail_memory(error);
+        gproj_edit_destroy(&object->edit);
+        return NULL;
+    }
+    gproji_edit_load(object, mesh);
+    gproji_edit_publish(object);
+    return &object->edit;
+}
+
+GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!edit) return none;
+    return ((const gproji_edit_object *)(const void *)((const char *)edit - offsetof(gproji_edit_object, edit)))
+        ->heap.account;
+}
+
+/* -- from an edit to a mesh -- */
+
+/* What gproj_edit_mesh works with: all arrays as large as they can become. */
+typedef struct gproji_edit_out {
+    int32_t *number[GPROJI_EDIT_KINDS];
+    gproji_soup soup;
+    double *position;
+    int32_t *degree, *corner;
+    int32_t polyline_count, *start, *vertex;
+} gproji_edit_out;
+
+GPROJI_INTERNAL void gproji_edit_out_give(gproji_edit_object *object, gproji_edit_out *out) {
+    const gproji_edit_store *s = &object->now;
+    gproji_heap *heap = &object->heap;
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(heap, out->number[kind], (size_t)s->count[kind], sizeof(int32_t));
+    gproji_give(heap, out->position, (size_t)s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    gproji_give(heap, out->degree, (size_t)s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    gproji_give(heap, out->corner, (size_t)s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    gproji_give(heap, out->start, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    gproji_give(heap, out->vertex, (size_t)s->polyline_room, sizeof(int32_t));
+}
+
+/* False when there is no memory; what was taken is given back by gproji_edit_out_give. */
+GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_edit_out *out) {
+    static const int32_t kinds[3] = {GPROJI_EDIT_VERTEX, GPROJI_EDIT_EDGE, GPROJI_EDIT_FACE};
+    const gproji_edit_store *s = &object->now;
+    gproji_heap *heap = &object->heap;
+    bool complete = true;
+    int32_t k;
+    memset(out, 0, sizeof *out);
+    for (k = 0; k < 3; ++k) {
+        out->number[kinds[k]] = (int32_t *)gproji_take(heap, (size_t)s->count[kinds[k]], sizeof(int32_t));
+        complete = complete && out->number[kinds[k]];
+    }
+    out->position = (double *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    out->degree = (int32_t *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    out->corner = (int32_t *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    out->start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    out->vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
+    return complete && out->position && out->degree && out->corner && out->start && out->vertex;
+}
+
+/* Numbers the vertices and faces that are left, and writes them down as polygons. */
+GPROJI_INTERNAL void gproji_edit_write_soup(const gproji_edit_store *s, gproji_edit_out *out) {
+    gproji_soup *soup = &out->soup;
+    int32_t *vertex = out->number[GPROJI_EDIT_VERTEX], *face = out->number[GPROJI_EDIT_FACE];
+    int32_t v, f, h, k, corners = 0;
+    for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
+        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
+        if (s->vertex_into[v] != v) continue;
+        memcpy(out->position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+    }
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        h = s->face_halfedge[f];
+        face[f] = h < 0 ? -1 : soup->face_count;
+        if (h < 0) continue;
+        out->degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) out->corner[corners++] = vertex[s->origin[h]];
+    }
+    soup->position = out->position;
+    soup->face_degree = out->degree;
+    soup->face_vertex = out->corner;
+}
+
+/* Writes down the polylines in new numbers, without repeated vertices, and those with at least two. */
+GPROJI_INTERNAL void gproji_edit_write_polylines(const gproji_edit_store *s, gproji_edit_out *out) {
+    int32_t p, i, begin, end = 0;
+    out->start[0] = 0;
+    for (p = 0; p < s->polyline_count; ++p) {
+        begin = end;
+        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
+            int32_t v = out->number[GPROJI_EDIT_VERTEX][s->polyline_vertex[i]];
+            if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
+        }
+        if (end < begin + 2) {
+            end = begin;
+            continue;
+        }
+        out->start[++out->polyline_count] = end;
+    }
+}
+
+/* Edges have the numbers that the mesh gave them. */
+GPROJI_INTERNAL void gproji_edit_number_edges(const gproji_edit_store *s, const gproj_mesh *mesh,
+                                              gproji_edit_out *out) {
+    int32_t *edge = out->number[GPROJI_EDIT_EDGE], f, e, h, k, i;
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        if (s->face_halfedge[f] < 0) continue;
+        h = s->face_halfedge[f], k = mesh->face_halfedge[out->number[GPROJI_EDIT_FACE][f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = mesh->next[k]) edge[h / 2] = k / 2;
+    }
+    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
+        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
+}
+
+/* The new maps of numbers for the old ones. */
+GPROJI_INTERNAL void gproji_edit_keep_numbers(gproji_edit_object *object, gproji_edit_out *out) {
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+        object->number[kind] = out->number[kind];
+        object->number_count[kind] = object->now.count[kind];
+        out->number[kind] = NULL;
+    }
+    gproji_edit_publish(object);
+}
+
+GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_mesh_object *made;
+    gproji_edit_out out;
+    gproj_code code;
+    if (!object) return NULL;
+    made = gproji_mesh_begin(host, error);
+    if (!made) return NULL;
+    code = gproji_edit_out_take(object, &out) ? GPROJ_OK : gproji_fail_memory(error);
+    if (!code) {
+        gproji_edit_write_soup(&object->now, &out);
+        gproji_edit_write_polylines(&object->now, &out);
+        code = gproji_mesh_build(made, &out.soup, error);
+    }
+    if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
+    if (!code) {
+        gproji_edit_number_edges(&object->now, &made->mesh, &out);
+        gproji_edit_keep_numbers(object, &out);
+    }
+    gproji_edit_out_give(object, &out);
+    return gproji_mesh_done(made, code);
+}
+
+/* -- edges and faces -- */
+
+GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
+    gproji_edit_object *object = gproji_edit_owner(edit, NULL);
+    if (!object || vertex < 0 || vertex >= edit->vertex_count) return -1;
+    return gproji_edit_root(object->now.vertex_into, vertex);
+}
+
+GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other) {
+    gproji_edit_object *object = gproji_edit_owner(edit, NULL);
+    int32_t a = gproj_edit_vertex(edit, vertex), b = gproj_edit_vertex(edit, other), h;
+    h = a < 0 || b < 0 ? -1 : gproji_edit_joined(object, a, b);
+    return h < 0 ? -1 : h / 2;
+}
+
+GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
+        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error)) {
+        return -1;
+    }
+    return object->now.origin[gproji_edit_split(object, h, t)];
+}
+
+GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
+                                        gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t from, to;
+    if (!object || !gproji_edit_given_face(object, face, error)) return -1;
+    from = gproji_edit_given_corner(object, face, vertex, error);
+    to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
+    if (to < 0) return -1;
+    if (from == to) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                    "face %d cannot be cut from vertex %d to itself", face, vertex);
+        return -1;
+    }
+    if (gproji_edit_joined(object, object->now.origin[from], object->now.origin[to]) >= 0) {
+        gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                    "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex, other);
+        return -1;
+    }
+    return gproji_edit_reserve(object, 0, 1, 1, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
+}
+
+GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    return h < 0 || gproji_check_collapse(object, h, error) ? -1 : gproji_edit_collapse(object, h, t);
+}
+
+/* -- triangles -- */
+
+enum {
+    GPROJI_KLINCSEK_MAX = 128 /* corners of a polygon for which all triangulations are compared: O(n^3) */
+};
+
+/* The work of cutting faces into triangles. */
+typedef struct gproji_triangulation {
+    gproji_polygon polygon;
+    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part of the face that is left */
+    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order of cutting */
+    int32_t ear_count;
+    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners that are left for the comparison */
+    int32_t ring_count;
+    double *least; /* ring_max^2: the least sum for the part of the ring from i to j */
+    int32_t *apex; /* ring_max^2: the third corner of the triangle at i and j for which it is least */
+    int32_t ring_max;
+} gproji_triangulation;
+
+GPROJI_INTERNAL void gproji_triangulation_give(gproji_heap *heap, gproji_triangulation *work) {
+    size_t capacity = (size_t)work->polygon.capacity, pairs = (size_t)work->ring_max * (size_t)work->ring_max;
+    gproji_give(heap, work->polygon.xy, capacity, 2 * sizeof(double));
+    gproji_give(heap, work->polygon.vertex, capacity, sizeof(int32_t));
+    gproji_give(heap, work->polygon.next, capacity, sizeof(int32_t));
+    gproji_give(heap, work->polygon.prev, capacity, sizeof(int32_t));
+    gproji_give(heap, work->halfedge, capacity, sizeof(int32_t));
+    gproji_give(heap, work->ear, capacity, 2 * sizeof(int32_t));
+    gproji_give(heap, work->least, pairs, sizeof(double));
+    gproji_give(heap, work->apex, pairs, sizeof(int32_t));
+}
+
+/* For faces of at most `degree` corners. False when there is no memory; what was taken is given back all the same. */
+GPROJI_INTERNAL bool gproji_triangulation_take(gproji_heap *heap, gproji_triangulation *work, int32_t degree) {
+    size_t capacity = (size_t)degree, pairs;
+    memset(work, 0, sizeof *work);
+    work->polygon.capacity = degree;
+    work->ring_max = gproji_min(degree, GPROJI_KLINCSEK_MAX);
+    pairs = (size_t)work->ring_max * (size_t)work->ring_max;
+    work->polygon.xy = (double *)gproji_take(heap, capacity, 2 * sizeof(double));
+    work->polygon.vertex = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    work->polygon.next = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    work->polygon.prev = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    work->halfedge = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
+    work->ear = (int32_t *)gproji_take(heap, capacity, 2 * sizeof(int32_t));
+    work->least = (double *)gproji_take(heap, pairs, sizeof(double));
+    work->apex = (int32_t *)gproji_take(heap, pairs, sizeof(int32_t));
+    if (work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
+        work->ear && work->least && work->apex)
+        return true;
+    gproji_triangulation_give(heap, work);
+    return false;
+}
+
+GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
+                                         int32_t b) {
+    return gproji_edit_joined(object, polygon->vertex[a], polygon->vertex[b]) >= 0;
+}
+
+/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any more, any
+   whose neighbours have no edge yet is taken; false where there is none. */
+GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
+    gproji_polygon *polygon = &work->polygon;
+    int64_t budget = 512 * (int64_t)polygon->count;
+    int32_t left = polygon->count, b = 0, refused = 0, i;
+    bool any = false;
+    work->ear_count = 0;
+    while (left > GPROJI_KLINCSEK_MAX) {
+        int32_t a = polygon->prev[b], c = polygon->next[b];
+        any = any || refused >= left || budget <= 0;
+        if (refused >= 2 * left) return false;
+        if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
+            ++refused;
+            b = c;
+            continue;
+        }
+        work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
+        ++work->ear_count;
+        polygon->next[a] = c, polygon->prev[c] = a;
+        --left, refused = 0;
+        any = false;
+        b = c;
+    }
+    for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
+    work->ring_count = left;
+    return true;
+}
+
+/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for x near
+   0 and for triangles that are turned over, the tangent of that at 1e-6. */
+GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
+    const double least = 1e-6;
+    const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
+    double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
+    double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
+    double x = squares > 0 ? gproji_turn(polygon, a, b, c) / squares : 0;
+    return x >= least ? 1 / x : (2 - x / least) / least;
+}
+
+/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where each
+   needs a diagonal that is an edge already. */
+GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
+    int32_t n = work->ring_count, gap, i, j, k;
+    for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
+    for (gap = 2; gap < n; ++gap) {
+        for (i = 0; i + gap < n; ++i) {
+            double *least = &work->least[i * n + i + gap];
+            j = i + gap;
+            *least = HUGE_VAL;
+            work->apex[i * n + j] = -1;
+            if (gap < n - 1 && gproji_corners_joined(object, &work->polygon, work->ring[i], work->ring[j])) continue;
+            for (k = i + 1; k < j; ++k) {
+                double sum = work->least[i * n + k] + work->least[k * n + j];
+                if (!(sum < *least)) continue;
+                sum += gproji_triangle_cost(&work->polygon, work->ring[i], work->ring[k], work->ring[j]);
+                if (!(sum < *least)) continue;
+                *least = sum;
+                work->apex[i * n + j] = k;
+            }
+        }
+    }
+    return work->apex[n - 1] >= 0;
+}
+
+/* Decides on the diagonals of a face. Nothing is changed. */
+GPROJI_INTERNAL gproj_code gproji_plan_triangles(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                 gproj_error *error) {
+    int32_t h = object->now.face_halfedge[face], i;
+    gproji_polygon_set(&work->polygon, &object->view, face);
+    for (i = 0; i < work->polygon.count; ++i, h = object->now.next[h]) work->halfedge[i] = h;
+    if (gproji_plan_ears(object, work) && gproji_plan_ring(object, work)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                       "face %d cannot be cut into triangles: its diagonals are edges already", face);
+}
+
+/* Cuts a face as planned; there is room. */
+GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_triangulation *work) {
+    int32_t *halfedge = work->halfedge, n = work->ring_count, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i;
+    for (i = 0; i < work->ear_count; ++i) {
+        int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
+        halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
+    }
+    stack[depth++] = 0, stack[depth++] = n - 1; /* parts of the ring, from a corner to a corner, one face each */
+    while (depth) {
+        int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
+        int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]],
+                closing = object->now.prev[from];
+        if (apex > first + 1) {
+            gproji_edit_cut(object, from, middle);
+            stack[depth++] = first, stack[depth++] = apex;
+        }
+        if (last > apex + 1) {
+            gproji_edit_cut(object, middle, closing);
+            stack[depth++] = apex, stack[depth++] = last;
+        }
+    }
+}
+
+/* Cuts one face. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                   gproj_error *error) {
+    gproj_code code = gproji_plan_triangles(object, work, face, error);
+    if (!code) gproji_cut_triangles(object, work);
+    return code;
+}
+
+/* Cuts all faces, or none where one cannot be cut. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_all(gproji_edit_object *object, gproji_triangulation *work,
+                                                  gproj_error *error) {
+    gproji_edit_store copy;
+    gproj_code code = GPROJ_OK;
+    int32_t f, count = object->now.count[GPROJI_EDIT_FACE];
+    if (!gproji_edit_save(object, &copy)) return gproji_fail_memory(error);
+    for (f = 0; f < count && !code; ++f)
+        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
+            code = gproji_triangulate_face(object, work, f, error);
+    return gproji_edit_settle(object, &copy, code);
+}
+
+GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_triangulation work;
+    gproj_code code;
+    int64_t cuts = 0;
+    int32_t f, first = face, last = face, degree = 3;
+    if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
+    if (face == -1) first = 0, last = edit->face_count - 1;
+    for (f = first; f <= last; ++f) {
+        if (edit->face_halfedge[f] < 0) continue;
+        degree = gproji_max(degree, edit->face_degree[f]);
+        cuts += edit->face_degree[f] - 3;
+    }
+    if (!cuts) return 0;
+    code = gproji_edit_reserve(object, 0, cuts, cuts, error);
+    if (!code && !gproji_triangulation_take(&object->heap, &work, degree)) code = gproji_fail_memory(error);
+    if (code) return -1;
+    code =
+        face == -1 ? gproji_triangulate_all(object, &work, error) : gproji_triangulate_face(object, &work, face, error);
+    gproji_triangulation_give(&object->heap, &work);
+    return code ? -1 : (int32_t)cuts;
+}
+
+/* -- strips -- */
+
+/* The rungs of a strip, as half-edges of one direction, in order. */
+typedef struct gproji_strip {
+    int32_t count;
+    int32_t given; /* the place of the half-edge that the walk began with */
+    bool closed;   /* is there a quad between the last and the first? */
+    int32_t *rung; /* count */
+    int32_t *side; /* count: the origins of the rungs */
+} gproji_strip;
+
+GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
+}
+
+/* The rung after h, across the quad at its left; -1 where there is none. */
+GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
+    return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
+}
+
+/* The first rung of the strip of half-edge h: h itself where the strip is closed. */
+GPROJI_INTERNAL int32_t gproji_strip_first(const gproji_edit_store *s, int32_t h) {
+    int32_t g = h;
+    while (gproji_is_quad(s, g ^ 1)) {
+        g = s->next[s->next[g ^ 1]];
+        if (g == h) break;
+    }
+    return g;
+}
+
+GPROJI_INTERNAL void gproji_strip_give(gproji_heap *heap, gproji_strip *strip) {
+    gproji_give(heap, strip->rung, (size_t)strip->count, sizeof(int32_t));
+    gproji_give(heap, strip->side, (size_t)strip->count, sizeof(int32_t));
+}
+
+/* Walks along the strip of half-edge h. After a failure there is nothing to give back. */
+GPROJI_INTERNAL gproj_code gproji_strip_take(gproji_edit_object *object, int32_t h, gproji_strip *strip,
+                                             gproj_error *error) {
+    const gproji_edit_store *s = &object->now;
+    int32_t first = gproji_strip_first(s, h), g, i;
+    memset(strip, 0, sizeof *strip);
+    g = first;
+    do {
+        ++strip->count;
+        g = gproji_strip_next(s, g);
+    } while (g >= 0 && g != first);
+    strip->closed = g == first;
+    if (strip->count == 1) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
+                           h / 2);
+    }
+    strip->rung = (int32_t *)gproji_take(&object->heap, (size_t)strip->count, sizeof(int32_t));
+    strip->side = (int32_t *)gproji_take(&object->heap, (size_t)strip->count, sizeof(int32_t));
+    if (!strip->rung || !strip->side) {
+        gproji_strip_give(&object->heap, strip);
+        return gproji_fail_memory(error);
+    }
+    for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
+        if (g == h) strip->given = i;
+        strip->rung[i] = g;
+        strip->side[i] = s->origin[g];
+    }
+    return GPROJ_OK;
+}
+
+/* Room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has one more vertex,
+   edge, and cut. */
+GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
+                                                gproj_error *error) {
+    int64_t count = strip->count, runs = 0;
+    int32_t i;
+    gproj_code code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
+    for (i = 0; i < strip->count; ++i) runs += gproji_polyline_count_runs(&object->now, strip->rung[i]);
+    return code ? code : gproji_polyline_reserve(object, runs, error);
+}
+
+/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the strip
+   already, from side to side, that cut is split at t and met there. */
+GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
+    if (to < 0) {
+        cut = s->next[s->next[from]]; /* from x: to the end of the rung, to the cut, along it */
+        gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
+        from = cut ^ 1;
+        to = gproji_edit_corner(s, s->face[from], y);
+    }
+    gproji_edit_cut(object, from, to);
+}
+
+/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from the new vertices on. */
+GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
+    const int32_t *origin = object->now.origin;
+    int32_t i, crossings = strip->closed ? strip->count : strip->count - 1;
+    for (i = 0; i < strip->count; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
+    for (i = 0; i < crossings; ++i) {
+        int32_t following = strip->rung[i + 1 < strip->count ? i + 1 : 0];
+        gproji_strip_cross(object, strip->rung[i], origin[following], t);
+    }
+}
+
+GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, made = -1;
+    gproji_strip strip;
+    if (h < 0 || gproji_strip_take(object, h, &strip, error)) return -1;
+    if (!gproji_strip_reserve(object, &strip, error)) {
+        gproji_strip_insert(object, &strip, t);
+        made = strip.rung[strip.given] / 2;
+    }
+    gproji_strip_give(&object->heap, &strip);
+    return made;
+}
+
+/* Collapses the rungs of a strip one by one. One that was merged into another, where the strip crosses itself, has its
+   turn with that. */
+GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, const gproji_strip *strip, double t,
+                                                 gproj_error *error) {
+    gproji_edit_store *s = &object->now;
+    gproj_code code = GPROJ_OK;
+    int32_t i;
+    for (i = 0; i < strip->count && !code; ++i) {
+        int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+        if (e < 0) continue;
+        h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+        code = gproji_check_collapse(object, h, error);
+        if (!code) gproji_edit_collapse(object, h, t);
+    }
+    return code;
+}
+
+/* Says why a strip stays: `error` has why one of its rungs does. */
+GPROJI_INTERNAL void gproji_tell_strip(int32_t edge, gproj_error *error) {
+    char message[GPROJ_MESSAGE_SIZE];
+    if (!error) return;
+    gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+    memcpy(error->message, message, sizeof message);
+}
+
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    gproji_strip strip;
+    gproji_edit_store copy;
+    gproj_code code;
+    if (h < 0 || gproji_strip_take(object, h, &strip, error)) return -1;
+    if (gproji_edit_save(object, &copy)) {
+        code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
+        if (code) gproji_tell_strip(edge, error);
+    } else {
+        code = gproji_fail_memory(error);
+    }
+    gproji_strip_give(&object->heap, &strip);
+    return code ? -1 : strip.count;
+}
+
+/* -- the dual -- */
+
+/* The work of gproj_mesh_dual. */
+typedef struct gproji_dual {
+    gproji_soup soup;
+    double *position;
+    int32_t *degree, *corner;
+    int32_t *vertex;   /* vertex_count: the number of a vertex that is in the dual, too, or -1 */
+    int32_t *midpoint; /* edge_count: the vertex in the middle of a boundary edge, or -1 */
+    int32_t *seen;     /* face_count: the last face that met it as a neighbour */
+    int32_t *start, *polyline;
+    int32_t polyline_count;
+} gproji_dual;
+
+/* Bounds for what a dual has: each half-edge with a face gives one corner, each boundary vertex two or three more. */
+GPROJI_INTERNAL size_t gproji_dual_vertices(const gproj_mesh *mesh) {
+    return (size_t)mesh->face_count + (size_t)mesh->edge_count + (size_t)mesh->vertex_count;
+}
+GPROJI_INTERNAL size_t gproji_dual_corners(const gproj_mesh *mesh) {
+    return (size_t)mesh->halfedge_count + 3 * (size_t)mesh->vertex_count;
+}
+
+GPROJI_INTERNAL void gproji_dual_give(gproji_heap *heap, const gproj_mesh *mesh, gproji_dual *dual) {
+    gproji_give(heap, dual->position, gproji_dual_vertices(mesh), 3 * sizeof(double));
+    gproji_give(heap, dual->corner, gproji_dual_corners(mesh), sizeof(int32_t));
+    gproji_give(heap, dual->degree, (size_t)mesh->vertex_count, sizeof(int32_t));
+    gproji_give(heap, dual->vertex, (size_t)mesh->vertex_count, sizeof(int32_t));
+    gproji_give(heap, dual->midpoint, (size_t)mesh->edge_count, sizeof(int32_t));
+    gproji_give(heap, dual->seen, (size_t)mesh->face_count, sizeof(int32_t));
+    gproji_give(heap, dual->start, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
+    gproji_give(heap, dual->polyline, (size_t)mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+}
+
+/* False when there is no memory; what was taken is given back by gproji_dual_give. */
+GPROJI_INTERNAL bool gproji_dual_take(gproji_heap *heap, const gproj_mesh *mesh, gproji_dual *dual) {
+    memset(dual, 0, sizeof *dual);
+    dual->position = (double *)gproji_take(heap, gproji_dual_vertices(mesh), 3 * sizeof(double));
+    dual->corner = (int32_t *)gproji_take(heap, gproji_dual_corners(mesh), sizeof(int32_t));
+    dual->degree = (int32_t *)gproji_take(heap, (size_t)mesh->vertex_count, sizeof(int32_t));
+    dual->vertex = (int32_t *)gproji_take(heap, (size_t)mesh->vertex_count, sizeof(int32_t));
+    dual->midpoint = (int32_t *)gproji_take(heap, (size_t)mesh->edge_count, sizeof(int32_t));
+    dual->seen = (int32_t *)gproji_take(heap, (size_t)mesh->face_count, sizeof(int32_t));
+    dual->start = (int32_t *)gproji_take(heap, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
+    dual->polyline = (int32_t *)gproji_take(heap, (size_t)mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+    return dual->position && dual->corner && dual->degree && dual->vertex && dual->midpoint && dual->seen &&
+           dual->start && dual->polyline;
+}
+
+/* No two faces have two edges in common. */
+GPROJI_INTERNAL gproj_code gproji_check_dual(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
+    int32_t f, k, h, g;
+    gproji_fill(dual->seen, mesh->face_count, -1);
+    for (f = 0; f < mesh->face_count; ++f) {
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            g = mesh->face[h ^ 1];
+            if (g < 0) continue;
+            if (dual->seen[g] == f) {
+                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
+            }
+            dual->seen[g] = f;
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* A new vertex of the dual, at the mean of the origins of `count` half-edges, h and those that follow it. */
+GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
+    int32_t number = dual->soup.vertex_count++, k;
+    double *x = dual->position + 3 * (size_t)number;
+    gproji_set3(0, 0, 0, x);
+    for (k = 0; k < count; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
+    return number;
+}
+
+/* Is it a vertex of the boundary with a single face? */
+GPROJI_INLINE bool gproji_is_outer_corner(const gproj_mesh *mesh, int32_t vertex) {
+    return gproj_mesh_is_boundary_vertex(mesh, vertex) && gproj_mesh_valence(mesh, vertex) == 2;
+}
+
+/* A vertex that is in the dual, too, gets its number there. */
+GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
+    int32_t number = dual->soup.vertex_count++;
+    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
+    dual->vertex[vertex] = number;
+}
+
+GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual *dual) {
+    int32_t f, e, v;
+    for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
+    for (e = 0; e < mesh->edge_count; ++e)
+        dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
+    gproji_fill(dual->vertex, mesh->vertex_count, -1);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (gproji_is_outer_corner(mesh, v)) gproji_dual_keep(mesh, dual, v);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
+}
+
+/* The face of a vertex that has faces: those around it; at the boundary the middle of an edge, the faces, the middle of
+   the other edge, and the vertex if it has one face only. */
+GPROJI_INTERNAL void gproji_dual_face(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
+    gproji_soup *soup = &dual->soup;
+    int32_t last = mesh->vertex_halfedge[vertex], h, begin = soup->corner_count;
+    bool boundary = mesh->face[last] < 0;
+    h = boundary ? gproji_rotate(mesh, last) : last;
+    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+    do {
+        dual->corner[soup->corner_count++] = mesh->face[h];
+        h = gproji_rotate(mesh, h);
+    } while (h != last);
+    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
+    if (dual->vertex[vertex] >= 0) dual->corner[soup->corner_count++] = dual->vertex[vertex];
+    dual->degree[soup->face_count++] = soup->corner_count - begin;
+}
+
+/* Polylines all of whose vertices are in the dual. */
+GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *dual) {
+    int32_t p, i, begin, end = 0;
+    dual->start[0] = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        bool whole = true;
+        begin = end;
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            int32_t v = dual->vertex[mesh->polyline_vertex[i]];
+            whole = whole && v >= 0;
+            dual->polyline[end++] = v;
+        }
+        if (whole)
+            dual->start[++dual->polyline_count] = end;
+        else
+            end = begin;
+    }
+}
+
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproji_mesh_object *made, gproj_error *error) {
+    gproj_code code = gproji_check_dual(mesh, dual, error);
+    int32_t v;
+    if (code) return code;
+    gproji_dual_vertices_of(mesh, dual);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        bool isolated = mesh->vertex_halfedge[v] < 0;
+        if (vertex_face) vertex_face[v] = isolated ? -1 : dual->soup.face_count;
+        if (!isolated) gproji_dual_face(mesh, dual, v);
+    }
+    gproji_dual_polylines(mesh, dual);
+    dual->soup.position = dual->position;
+    dual->soup.face_degree = dual->degree;
+    dual->soup.face_vertex = dual->corner;
+    code = gproji_mesh_build(made, &dual->soup, error);
+    return code ? code : gproji_mesh_set_polylines(made, dual->polyline_count, dual->start, dual->polyline, error);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
+                                      gproj_error *error) {
+    gproji_mesh_object *made;
+    gproji_dual dual;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
+        return NULL;
+    }
+    made = gproji_mesh_begin(host, error);
+    if (!made) return NULL;
+    code = gproji_dual_take(&made->heap, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
+                                                      : gproji_fail_memory(error);
+    gproji_dual_give(&made->heap, mesh, &dual);
+    return gproji_mesh_done(made, code);
 }
 
 /* ============================================================================================================
