@@ -10416,7 +10416,8 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 }
 
 /* ============================================================================================================
-   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh, surface (polygons).
+   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, ordering (pools), mesh, surface
+   (polygons).
 
    Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them Euler
    operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and triangulations
@@ -10461,7 +10462,7 @@ typedef struct gproji_edit_object {
     gproj_edit edit;
     gproj_mesh view; /* the same arrays for the functions of >>mesh that go round a vertex or a face */
     gproji_edit_store now;
-    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made */
+    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
     int32_t number_count[GPROJI_EDIT_KINDS];
     int32_t stamp;
 } gproji_edit_object;
@@ -11078,36 +11079,22 @@ typedef struct gproji_edit_out {
     int32_t polyline_count, *start, *vertex;
 } gproji_edit_out;
 
-GPROJI_INTERNAL void gproji_edit_out_give(gproji_edit_object *object, gproji_edit_out *out) {
+/* False when there is no memory. The numbers stay with the edit if all goes well: see gproji_edit_keep_numbers. */
+GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
     const gproji_edit_store *s = &object->now;
-    gproji_heap *heap = &object->heap;
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(heap, out->number[kind], (size_t)s->count[kind], sizeof(int32_t));
-    gproji_give(heap, out->position, (size_t)s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    gproji_give(heap, out->degree, (size_t)s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    gproji_give(heap, out->corner, (size_t)s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
-    gproji_give(heap, out->start, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    gproji_give(heap, out->vertex, (size_t)s->polyline_room, sizeof(int32_t));
-}
-
-/* False when there is no memory; what was taken is given back by gproji_edit_out_give. */
-GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_edit_out *out) {
-    static const int32_t kinds[3] = {GPROJI_EDIT_VERTEX, GPROJI_EDIT_EDGE, GPROJI_EDIT_FACE};
-    const gproji_edit_store *s = &object->now;
-    gproji_heap *heap = &object->heap;
     bool complete = true;
-    int32_t k;
+    int32_t kind;
     memset(out, 0, sizeof *out);
-    for (k = 0; k < 3; ++k) {
-        out->number[kinds[k]] = (int32_t *)gproji_take(heap, (size_t)s->count[kinds[k]], sizeof(int32_t));
-        complete = complete && out->number[kinds[k]];
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        if (kind == GPROJI_EDIT_HALFEDGE) continue;
+        out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        complete = complete && out->number[kind];
     }
-    out->position = (double *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    out->degree = (int32_t *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    out->corner = (int32_t *)gproji_take(heap, (size_t)s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
-    out->start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    out->vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
+    out->position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    out->degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    out->corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
+    out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
     return complete && out->position && out->degree && out->corner && out->start && out->vertex;
 }
 
@@ -11180,11 +11167,14 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     gproji_mesh_object *made;
     gproji_edit_out out;
+    gproji_pool pool;
     gproj_code code;
+    int32_t kind;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
-    code = gproji_edit_out_take(object, &out) ? GPROJ_OK : gproji_fail_memory(error);
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_edit_out_take(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
     if (!code) {
         gproji_edit_write_soup(&object->now, &out);
         gproji_edit_write_polylines(&object->now, &out);
@@ -11195,7 +11185,9 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
         gproji_edit_number_edges(&object->now, &made->mesh, &out);
         gproji_edit_keep_numbers(object, &out);
     }
-    gproji_edit_out_give(object, &out);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(&object->heap, out.number[kind], (size_t)object->now.count[kind], sizeof(int32_t));
+    gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
 
@@ -11265,43 +11257,25 @@ typedef struct gproji_triangulation {
     int32_t ear_count;
     int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners that are left for the comparison */
     int32_t ring_count;
-    double *least; /* ring_max^2: the least sum for the part of the ring from i to j */
-    int32_t *apex; /* ring_max^2: the third corner of the triangle at i and j for which it is least */
-    int32_t ring_max;
+    double *least; /* ring_count^2: the least sum for the part of the ring from i to j */
+    int32_t *apex; /* ring_count^2: the third corner of the triangle at i and j for which it is least */
 } gproji_triangulation;
 
-GPROJI_INTERNAL void gproji_triangulation_give(gproji_heap *heap, gproji_triangulation *work) {
-    size_t capacity = (size_t)work->polygon.capacity, pairs = (size_t)work->ring_max * (size_t)work->ring_max;
-    gproji_give(heap, work->polygon.xy, capacity, 2 * sizeof(double));
-    gproji_give(heap, work->polygon.vertex, capacity, sizeof(int32_t));
-    gproji_give(heap, work->polygon.next, capacity, sizeof(int32_t));
-    gproji_give(heap, work->polygon.prev, capacity, sizeof(int32_t));
-    gproji_give(heap, work->halfedge, capacity, sizeof(int32_t));
-    gproji_give(heap, work->ear, capacity, 2 * sizeof(int32_t));
-    gproji_give(heap, work->least, pairs, sizeof(double));
-    gproji_give(heap, work->apex, pairs, sizeof(int32_t));
-}
-
-/* For faces of at most `degree` corners. False when there is no memory; what was taken is given back all the same. */
-GPROJI_INTERNAL bool gproji_triangulation_take(gproji_heap *heap, gproji_triangulation *work, int32_t degree) {
-    size_t capacity = (size_t)degree, pairs;
+/* For faces of at most `degree` corners. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_triangulation_take(gproji_pool *pool, gproji_triangulation *work, int32_t degree) {
+    int64_t side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
     memset(work, 0, sizeof *work);
     work->polygon.capacity = degree;
-    work->ring_max = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    pairs = (size_t)work->ring_max * (size_t)work->ring_max;
-    work->polygon.xy = (double *)gproji_take(heap, capacity, 2 * sizeof(double));
-    work->polygon.vertex = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    work->polygon.next = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    work->polygon.prev = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    work->halfedge = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    work->ear = (int32_t *)gproji_take(heap, capacity, 2 * sizeof(int32_t));
-    work->least = (double *)gproji_take(heap, pairs, sizeof(double));
-    work->apex = (int32_t *)gproji_take(heap, pairs, sizeof(int32_t));
-    if (work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
-        work->ear && work->least && work->apex)
-        return true;
-    gproji_triangulation_give(heap, work);
-    return false;
+    work->polygon.xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
+    work->polygon.vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->polygon.next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->polygon.prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->halfedge = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->ear = (int32_t *)gproji_pool_take(pool, degree, 2 * sizeof(int32_t));
+    work->least = (double *)gproji_pool_take(pool, side * side, sizeof(double));
+    work->apex = (int32_t *)gproji_pool_take(pool, side * side, sizeof(int32_t));
+    return work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
+           work->ear && work->least && work->apex;
 }
 
 GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
@@ -11432,6 +11406,7 @@ GPROJI_INTERNAL gproj_code gproji_triangulate_all(gproji_edit_object *object, gp
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     gproji_triangulation work;
+    gproji_pool pool;
     gproj_code code;
     int64_t cuts = 0;
     int32_t f, first = face, last = face, degree = 3;
@@ -11443,12 +11418,13 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
         cuts += edit->face_degree[f] - 3;
     }
     if (!cuts) return 0;
+    gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, error);
-    if (!code && !gproji_triangulation_take(&object->heap, &work, degree)) code = gproji_fail_memory(error);
-    if (code) return -1;
-    code =
-        face == -1 ? gproji_triangulate_all(object, &work, error) : gproji_triangulate_face(object, &work, face, error);
-    gproji_triangulation_give(&object->heap, &work);
+    if (!code && !gproji_triangulation_take(&pool, &work, degree)) code = gproji_fail_memory(error);
+    if (!code)
+        code = face == -1 ? gproji_triangulate_all(object, &work, error)
+                          : gproji_triangulate_face(object, &work, face, error);
+    gproji_pool_give_all(&pool);
     return code ? -1 : (int32_t)cuts;
 }
 
@@ -11482,15 +11458,9 @@ GPROJI_INTERNAL int32_t gproji_strip_first(const gproji_edit_store *s, int32_t h
     return g;
 }
 
-GPROJI_INTERNAL void gproji_strip_give(gproji_heap *heap, gproji_strip *strip) {
-    gproji_give(heap, strip->rung, (size_t)strip->count, sizeof(int32_t));
-    gproji_give(heap, strip->side, (size_t)strip->count, sizeof(int32_t));
-}
-
-/* Walks along the strip of half-edge h. After a failure there is nothing to give back. */
-GPROJI_INTERNAL gproj_code gproji_strip_take(gproji_edit_object *object, int32_t h, gproji_strip *strip,
-                                             gproj_error *error) {
-    const gproji_edit_store *s = &object->now;
+/* Walks along the strip of half-edge h. */
+GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
+                                             gproji_strip *strip, gproj_error *error) {
     int32_t first = gproji_strip_first(s, h), g, i;
     memset(strip, 0, sizeof *strip);
     g = first;
@@ -11503,12 +11473,9 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(gproji_edit_object *object, int32_t
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
                            h / 2);
     }
-    strip->rung = (int32_t *)gproji_take(&object->heap, (size_t)strip->count, sizeof(int32_t));
-    strip->side = (int32_t *)gproji_take(&object->heap, (size_t)strip->count, sizeof(int32_t));
-    if (!strip->rung || !strip->side) {
-        gproji_strip_give(&object->heap, strip);
-        return gproji_fail_memory(error);
-    }
+    strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    if (!strip->rung || !strip->side) return gproji_fail_memory(error);
     for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
         if (g == h) strip->given = i;
         strip->rung[i] = g;
@@ -11555,15 +11522,20 @@ GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_stri
 
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, made = -1;
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
     gproji_strip strip;
-    if (h < 0 || gproji_strip_take(object, h, &strip, error)) return -1;
-    if (!gproji_strip_reserve(object, &strip, error)) {
+    gproji_pool pool;
+    gproj_code code;
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
+    if (!code) code = gproji_strip_reserve(object, &strip, error);
+    if (!code) {
         gproji_strip_insert(object, &strip, t);
-        made = strip.rung[strip.given] / 2;
+        h = strip.rung[strip.given];
     }
-    gproji_strip_give(&object->heap, &strip);
-    return made;
+    gproji_pool_give_all(&pool);
+    return code ? -1 : h / 2;
 }
 
 /* Collapses the rungs of a strip one by one. One that was merged into another, where the strip crosses itself, has its
@@ -11594,23 +11566,26 @@ GPROJI_INTERNAL void gproji_tell_strip(int32_t edge, gproj_error *error) {
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
-    gproji_strip strip;
     gproji_edit_store copy;
+    gproji_strip strip;
+    gproji_pool pool;
     gproj_code code;
-    if (h < 0 || gproji_strip_take(object, h, &strip, error)) return -1;
-    if (gproji_edit_save(object, &copy)) {
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
+    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
+    if (!code) {
         code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
         if (code) gproji_tell_strip(edge, error);
-    } else {
-        code = gproji_fail_memory(error);
     }
-    gproji_strip_give(&object->heap, &strip);
+    gproji_pool_give_all(&pool);
     return code ? -1 : strip.count;
 }
 
 /* -- the dual -- */
 
-/* The work of gproj_mesh_dual. */
+/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each vertex
+   of the boundary two or three more. */
 typedef struct gproji_dual {
     gproji_soup soup;
     double *position;
@@ -11622,36 +11597,18 @@ typedef struct gproji_dual {
     int32_t polyline_count;
 } gproji_dual;
 
-/* Bounds for what a dual has: each half-edge with a face gives one corner, each boundary vertex two or three more. */
-GPROJI_INTERNAL size_t gproji_dual_vertices(const gproj_mesh *mesh) {
-    return (size_t)mesh->face_count + (size_t)mesh->edge_count + (size_t)mesh->vertex_count;
-}
-GPROJI_INTERNAL size_t gproji_dual_corners(const gproj_mesh *mesh) {
-    return (size_t)mesh->halfedge_count + 3 * (size_t)mesh->vertex_count;
-}
-
-GPROJI_INTERNAL void gproji_dual_give(gproji_heap *heap, const gproj_mesh *mesh, gproji_dual *dual) {
-    gproji_give(heap, dual->position, gproji_dual_vertices(mesh), 3 * sizeof(double));
-    gproji_give(heap, dual->corner, gproji_dual_corners(mesh), sizeof(int32_t));
-    gproji_give(heap, dual->degree, (size_t)mesh->vertex_count, sizeof(int32_t));
-    gproji_give(heap, dual->vertex, (size_t)mesh->vertex_count, sizeof(int32_t));
-    gproji_give(heap, dual->midpoint, (size_t)mesh->edge_count, sizeof(int32_t));
-    gproji_give(heap, dual->seen, (size_t)mesh->face_count, sizeof(int32_t));
-    gproji_give(heap, dual->start, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
-    gproji_give(heap, dual->polyline, (size_t)mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
-}
-
-/* False when there is no memory; what was taken is given back by gproji_dual_give. */
-GPROJI_INTERNAL bool gproji_dual_take(gproji_heap *heap, const gproj_mesh *mesh, gproji_dual *dual) {
+/* False when there is no memory. */
+GPROJI_INTERNAL bool gproji_dual_take(gproji_pool *pool, const gproj_mesh *mesh, gproji_dual *dual) {
+    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
     memset(dual, 0, sizeof *dual);
-    dual->position = (double *)gproji_take(heap, gproji_dual_vertices(mesh), 3 * sizeof(double));
-    dual->corner = (int32_t *)gproji_take(heap, gproji_dual_corners(mesh), sizeof(int32_t));
-    dual->degree = (int32_t *)gproji_take(heap, (size_t)mesh->vertex_count, sizeof(int32_t));
-    dual->vertex = (int32_t *)gproji_take(heap, (size_t)mesh->vertex_count, sizeof(int32_t));
-    dual->midpoint = (int32_t *)gproji_take(heap, (size_t)mesh->edge_count, sizeof(int32_t));
-    dual->seen = (int32_t *)gproji_take(heap, (size_t)mesh->face_count, sizeof(int32_t));
-    dual->start = (int32_t *)gproji_take(heap, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
-    dual->polyline = (int32_t *)gproji_take(heap, (size_t)mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+    dual->position = (double *)gproji_pool_take(pool, faces + edges + vertices, 3 * sizeof(double));
+    dual->corner = (int32_t *)gproji_pool_take(pool, 2 * edges + 3 * vertices, sizeof(int32_t));
+    dual->degree = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
+    dual->vertex = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
+    dual->midpoint = (int32_t *)gproji_pool_take(pool, edges, sizeof(int32_t));
+    dual->seen = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
+    dual->start = (int32_t *)gproji_pool_take(pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    dual->polyline = (int32_t *)gproji_pool_take(pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
     return dual->position && dual->corner && dual->degree && dual->vertex && dual->midpoint && dual->seen &&
            dual->start && dual->polyline;
 }
@@ -11767,6 +11724,7 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
                                       gproj_error *error) {
     gproji_mesh_object *made;
     gproji_dual dual;
+    gproji_pool pool;
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh) {
@@ -11775,9 +11733,10 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     }
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
-    code = gproji_dual_take(&made->heap, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
-                                                      : gproji_fail_memory(error);
-    gproji_dual_give(&made->heap, mesh, &dual);
+    gproji_pool_start(&pool, &made->heap);
+    code = gproji_dual_take(&pool, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
+                                                : gproji_fail_memory(error);
+    gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
 
