@@ -11484,13 +11484,20 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     return GPROJ_OK;
 }
 
-/* Room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has one more vertex,
+/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has one more vertex,
    edge, and cut. */
 GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
                                                 gproj_error *error) {
     int64_t count = strip->count, runs = 0;
-    int32_t i;
-    gproj_code code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
+    int32_t i, e = strip->rung[0] / 2;
+    gproj_code code;
+    if (strip->closed && count == 2) {
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, e,
+                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
+                           "would be two edges between the new vertices",
+                           e, strip->rung[1] / 2);
+    }
+    code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
     for (i = 0; i < strip->count; ++i) runs += gproji_polyline_count_runs(&object->now, strip->rung[i]);
     return code ? code : gproji_polyline_reserve(object, runs, error);
 }
@@ -11538,21 +11545,39 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
     return code ? -1 : h / 2;
 }
 
-/* Collapses the rungs of a strip one by one. One that was merged into another, where the strip crosses itself, has its
-   turn with that. */
-GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, const gproji_strip *strip, double t,
-                                                 gproj_error *error) {
+/* Collapses the rung in place i of a strip, if that may be. One that was merged into another, where the strip crosses
+   itself, is gone with that. */
+GPROJI_INTERNAL gproj_code gproji_strip_collapse_rung(gproji_edit_object *object, const gproji_strip *strip, int32_t i,
+                                                      double t, gproj_error *error) {
     gproji_edit_store *s = &object->now;
-    gproj_code code = GPROJ_OK;
-    int32_t i;
-    for (i = 0; i < strip->count && !code; ++i) {
-        int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
-        if (e < 0) continue;
-        h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
-        code = gproji_check_collapse(object, h, error);
-        if (!code) gproji_edit_collapse(object, h, t);
-    }
+    int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+    gproj_code code;
+    if (e < 0) return GPROJ_OK;
+    h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+    code = gproji_check_collapse(object, h, error);
+    if (!code) gproji_edit_collapse(object, h, t);
     return code;
+}
+
+/* Collapses the rungs of a strip one by one; those that are refused again, after the others, as long as that helps. */
+GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
+                                                 gproj_error *error) {
+    int32_t left = strip->count, tried, i;
+    gproj_code code, refusal;
+    do {
+        tried = left;
+        left = 0;
+        refusal = GPROJ_OK;
+        gproji_error_clear(error);
+        for (i = 0; i < tried; ++i) {
+            code = gproji_strip_collapse_rung(object, strip, i, t, error);
+            if (!code) continue;
+            refusal = code;
+            strip->rung[left] = strip->rung[i];
+            strip->side[left++] = strip->side[i];
+        }
+    } while (left && left < tried);
+    return refusal;
 }
 
 /* Says why a strip stays: `error` has why one of its rungs does. */
