@@ -214,7 +214,7 @@ static int32_t gprojt_rungs(const gproj_edit *e, int32_t edge, int32_t *rung) {
 /* One edit; false when it was refused. The numbers of elements change as theory says. */
 static bool gprojt_random_edit(gproj_edit *e, int kind, uint64_t *state) {
     int32_t vertices = gprojt_alive(e, GPROJ_PLACE_VERTEX), edges = gprojt_alive(e, GPROJ_PLACE_EDGE);
-    int32_t faces = gprojt_alive(e, GPROJ_PLACE_FACE), edge = gprojt_some_edge(e, state), f, h, k, result = -1;
+    int32_t faces = gprojt_alive(e, GPROJ_PLACE_FACE), edge = gprojt_some_edge(e, state), f = -1, h, k, result = -1;
     int32_t more[3] = {0, 0, 0}; /* vertices, edges, faces */
     uint64_t before = gprojt_edit_hash(e);
     double t = gprojt_uniform(state);
@@ -227,9 +227,13 @@ static bool gprojt_random_edit(gproj_edit *e, int kind, uint64_t *state) {
         more[0] = more[1] = 1;
         break;
     case GPROJT_SPLIT_FACE:
-        f = gprojt_some_face(e, state), h = e->face_halfedge[f];
+        for (k = 0; k < 10; ++k) {
+            f = gprojt_some_face(e, state);
+            if (e->face_degree[f] > 3) break;
+        }
+        h = e->face_halfedge[f];
         for (k = gprojt_below(state, e->face_degree[f]); k > 0; --k) h = e->next[h];
-        for (k = 2 + gprojt_below(state, e->face_degree[f]), edge = h; k > 0; --k) edge = e->next[edge];
+        for (k = 2 + gprojt_below(state, e->face_degree[f] - 2), edge = h; k > 0; --k) edge = e->next[edge];
         result = gproj_edit_split_face(e, f, e->origin[h], e->origin[edge], &error);
         more[1] = more[2] = 1;
         break;
@@ -267,19 +271,35 @@ static bool gprojt_random_edit(gproj_edit *e, int kind, uint64_t *state) {
     return true;
 }
 
+/* Vertices between two faces have no dual face: mostly removes them. */
+static void gprojt_remove_vertices_of_two(gproj_edit *e) {
+    int32_t v, h;
+    for (v = 0; v < e->vertex_count; ++v) {
+        h = e->vertex_halfedge[v];
+        if (h >= 0 && e->face[h] >= 0 && (e->prev[e->prev[h] ^ 1] ^ 1) == h)
+            gproj_edit_collapse_edge(e, h / 2, h & 1, NULL);
+    }
+}
+
 /* The edit goes on with the dual of its mesh; false when it was refused. */
-static bool gprojt_go_on_with_dual(gproj_edit **e, const gproj_mesh *mesh) {
+static bool gprojt_go_on_with_dual(gproj_edit **e) {
     gproj_error error;
-    gproj_mesh *dual = gproj_mesh_dual(mesh, NULL, NULL, &error);
-    const char *wrong = dual ? gprojt_validate_mesh(dual) : NULL;
+    gproj_mesh *mesh, *dual;
+    const char *wrong;
+    gprojt_remove_vertices_of_two(*e);
+    mesh = gprojt_edit_mesh(*e);
+    dual = mesh ? gproj_mesh_dual(mesh, NULL, NULL, &error) : NULL;
+    wrong = dual ? gprojt_validate_mesh(dual) : NULL;
     GPROJT_CHECK(!wrong && (dual || error.place == GPROJ_PLACE_FACE));
-    if (!dual) return false;
-    GPROJT_CHECK(gprojt_euler(dual) == gprojt_euler(mesh) && dual->loop_count == mesh->loop_count &&
-                 dual->component_count == mesh->component_count);
-    gproj_edit_destroy(*e);
-    *e = gproj_edit_create(dual, NULL, NULL);
+    if (dual) {
+        GPROJT_CHECK(gprojt_euler(dual) == gprojt_euler(mesh) && dual->loop_count == mesh->loop_count &&
+                     dual->component_count == mesh->component_count);
+        gproj_edit_destroy(*e);
+        *e = gproj_edit_create(dual, NULL, NULL);
+    }
+    gproj_mesh_destroy(mesh);
     gproj_mesh_destroy(dual);
-    return true;
+    return dual != NULL;
 }
 
 /* Which edit next: one that makes a large mesh smaller, or the one that was done least, or any. */
@@ -302,8 +322,7 @@ static void gprojt_random_edits(long wanted, uint64_t state) {
         for (step = 0; step < 150 && mesh && !gprojt_failed_checks; ++step) {
             kind = gprojt_choose(mesh, done, &state);
             tried[kind]++;
-            if (!(kind == GPROJT_DUAL ? gprojt_go_on_with_dual(&e, mesh) : gprojt_random_edit(e, kind, &state)))
-                continue;
+            if (!(kind == GPROJT_DUAL ? gprojt_go_on_with_dual(&e) : gprojt_random_edit(e, kind, &state))) continue;
             done[kind]++;
             after = gprojt_edit_mesh(e);
             if (after) {
