@@ -306,7 +306,7 @@ static bool gprojt_go_on_with_dual(gproj_edit **e) {
 /* Which edit next: one that makes a large mesh smaller, or the one that was done least, or any. */
 static int gprojt_choose(const gproj_mesh *mesh, const long *done, uint64_t *state) {
     int kind, least = 0;
-    if (mesh->face_count > 20) return gprojt_below(state, 3) ? GPROJT_COLLAPSE : GPROJT_REMOVE;
+    if (mesh->face_count > 25 && gprojt_below(state, 2)) return GPROJT_COLLAPSE;
     for (kind = 1; kind < GPROJT_EDITS; ++kind)
         if (done[kind] < done[least]) least = kind;
     return gprojt_below(state, 2) ? least : gprojt_below(state, GPROJT_EDITS);
@@ -320,7 +320,7 @@ static void gprojt_random_edits(long wanted, uint64_t state) {
         gproj_edit *e = gprojt_edit_shape(shape, 2 + gprojt_below(&state, 2));
         gproj_mesh *mesh = gprojt_edit_mesh(e), *after;
         int step;
-        for (step = 0; step < 150 && mesh && !gprojt_failed_checks; ++step) {
+        for (step = 0; step < 150 && mesh && mesh->face_count < 50 && !gprojt_failed_checks; ++step) {
             kind = gprojt_choose(mesh, done, &state);
             tried[kind]++;
             if (!(kind == GPROJT_DUAL ? gprojt_go_on_with_dual(&e) : gprojt_random_edit(e, kind, &state))) continue;
