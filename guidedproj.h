@@ -779,9 +779,9 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a face
    whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces come, in
-   their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices; then
-   the vertices of the boundary with a single face, which are corners of their own dual face; then vertices without a
-   face, which stay as they are. So a grid of quads with boundary has one. Polylines stay where all of their vertices do.
+   their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices; then the
+   corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face, which stay as
+   they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices do.
    vertex_face: vertex_count numbers to be filled with the dual face of each vertex, -1 without; may be NULL. For a closed
    mesh without isolated vertices face v is that of vertex v, and the dual of the dual has the combinatorics of the mesh.
    Refused where two faces have more than one edge in common, for their vertices would have two edges. */
@@ -8857,6 +8857,23 @@ GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
 }
 
+/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex are h
+   and prev[h]. */
+GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
+    static const double none[3] = {0, 0, 0};
+    const double *p;
+    double in[3], out[3];
+    int32_t h;
+    if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
+    if (gproj_mesh_valence(mesh, vertex) == 2) return true;
+    h = mesh->vertex_halfedge[vertex];
+    p = position + 3 * (size_t)vertex;
+    gproji_sub3(p, position + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
+    gproji_sub3(position + 3 * (size_t)mesh->origin[h ^ 1], p, out);
+    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+}
+
 /* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
    interface, without cancellation far from the coordinates' origin. */
 GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
@@ -11666,11 +11683,6 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* Is it a vertex of the boundary with a single face? */
-GPROJI_INLINE bool gproji_is_outer_corner(const gproj_mesh *mesh, int32_t vertex) {
-    return gproj_mesh_is_boundary_vertex(mesh, vertex) && gproj_mesh_valence(mesh, vertex) == 2;
-}
-
 /* A vertex that is in the dual, too, gets its number there. */
 GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
     int32_t number = dual->soup.vertex_count++;
@@ -11685,13 +11697,13 @@ GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
     gproji_fill(dual->vertex, mesh->vertex_count, -1);
     for (v = 0; v < mesh->vertex_count; ++v)
-        if (gproji_is_outer_corner(mesh, v)) gproji_dual_keep(mesh, dual, v);
+        if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
     for (v = 0; v < mesh->vertex_count; ++v)
         if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
 }
 
 /* The face of a vertex that has faces: those around it; at the boundary the middle of an edge, the faces, the middle of
-   the other edge, and the vertex if it has one face only. */
+   the other edge, and the vertex if it is a corner. */
 GPROJI_INTERNAL void gproji_dual_face(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
     gproji_soup *soup = &dual->soup;
     int32_t last = mesh->vertex_halfedge[vertex], h, begin = soup->corner_count;
@@ -13018,23 +13030,8 @@ GPROJI_INTERNAL bool gproji_select_boundary(const gproj_form *form, int32_t vert
     return gproj_mesh_is_boundary_vertex(form->mesh, vertex);
 }
 
-/* The half-edges with face -1 that leave and enter a boundary vertex are h and prev[h]. */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex) {
-    const gproj_mesh *mesh;
-    const double *p;
-    double in[3], out[3];
-    int32_t h;
-    static const double none[3] = {0, 0, 0};
-    if (!form || !form->mesh || !form->original || vertex < 0 || vertex >= form->mesh->vertex_count) return false;
-    mesh = form->mesh;
-    if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
-    if (gproj_mesh_valence(mesh, vertex) == 2) return true;
-    h = mesh->vertex_halfedge[vertex];
-    p = form->original + 3 * (size_t)vertex;
-    gproji_sub3(p, form->original + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
-    gproji_sub3(form->original + 3 * (size_t)mesh->origin[mesh->twin[h]], p, out);
-    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
-    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+    return form && form->mesh && form->original && gproji_is_corner(form->mesh, form->original, vertex);
 }
 
 GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex) {

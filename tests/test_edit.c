@@ -789,8 +789,11 @@ GPROJT_TEST(dual_of_the_dual) {
 /* At the boundary the dual ends where the mesh does. */
 GPROJT_TEST(dual_with_boundary) {
     gprojt_soup s = gprojt_quad_grid(4, 3);
-    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL), *dual = gproj_mesh_dual(mesh, NULL, NULL, NULL);
+    gproj_mesh *mesh, *dual;
     int shape, v, k;
+    for (v = 0; v < s.vertex_count; ++v) s.position[3 * v + 2] = 0;
+    mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    dual = gproj_mesh_dual(mesh, NULL, NULL, NULL);
     GPROJT_REQUIRE(dual != NULL);
     GPROJT_CHECK(dual->face_count == 20 && dual->vertex_count == 12 + 14 + 4 && dual->loop_count == 1);
     for (k = 0; k < dual->face_count; ++k) GPROJT_CHECK(dual->face_degree[k] == 4);
