@@ -6,11 +6,13 @@
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
      machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
-     least squares with bounds, and projection onto any system of quadratic equations and inequalities.
+     Its parts can be used alone: half-edge meshes with OBJ and OFF, changes of their combinatorics, closest points, a
+     sparse Cholesky factorisation, least squares with bounds, and projection onto any system of quadratic equations and
+     inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
+     - draw, edit interactively, or remesh: solving moves vertices and keeps the combinatorics as they are (you can
+       change them: >>api-edit);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -678,8 +680,8 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
 
    The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy of them that can be changed, each change in time
-   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as often
-   as wanted, and says where each element has gone:
+   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as
+   often as wanted, and says where each element has gone:
 
        gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
        int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
@@ -694,11 +696,13 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    REFUSALS  After each change the edit is an orientable manifold of the kind that gproj_mesh_create accepts. A change
    that would end that is refused: it returns -1, with an error that names the element, and the edit is as it was, as it
    is when there is no memory. A refusal has no consequences for later changes. `error` may be NULL.
-   POLYLINES of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new vertex. */
+   POLYLINES  Those of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new
+   vertex. */
 
-/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those of
-   gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
-   merged into another one, like one without a face, vertex_halfedge -1. Half-edge h has the twin h ^ 1 and the edge h / 2. */
+/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those
+   of gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
+   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge
+   h / 2. */
 typedef struct gproj_edit {
     int32_t vertex_count; /* numbers given so far, those of removed elements included */
     int32_t edge_count;
@@ -728,8 +732,8 @@ GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
 GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
 
 /* A mesh of what the edit is now, its elements in the order of their numbers (edges in that of all meshes: as they
-   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is left
-   is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
+   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is
+   left is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
 
 /* The vertex that this number stands for: itself, or what it was merged into; -1 out of range. */
@@ -737,54 +741,57 @@ GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex);
 /* The edge between two vertices; -1: none. */
 GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other);
 
-/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one corner
-   more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new vertex. */
+/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one
+   corner more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new
+   vertex. */
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part is
-   the last face. Refused where the corners have an edge already. Returns the new edge. */
+/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part
+   is the last face. Refused where the corners have an edge already. Returns the new edge. */
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error);
 
-/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i
-   to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be pinched
-   or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or are
-   corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a component
-   would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns the vertex. */
+/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes
+   from i to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be
+   pinched or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or
+   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a
+   component would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns
+   the vertex. */
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
 /* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Of all ways to do so, one is taken whose
    triangles are not turned over in the plane orthogonal to the face's vectorial area (if there is one: the face may be
-   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of
-   (a^2 + b^2 + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are
-   left (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new
-   faces. */
+   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of (a^2 + b^2
+   + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are left
+   (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new faces. */
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
 
 /* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
-   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs; all
-   can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
+   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs;
+   all can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
 
-   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction in
-   which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads stay
-   quads; other faces at the ends of the strip get one corner more. Refused where no quad is at the edge. Returns the new
-   part of the edge, from the new vertex to j: a rung of the new strip. */
+   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction
+   in which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads
+   stay quads; other faces at the ends of the strip get one corner more. Refused where no quad is at the edge, and where
+   a closed strip has two quads only. Returns the new part of the edge, from the new vertex to j: a rung of the new
+   strip. */
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva, Shepherd,
-   Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish. Refused
-   where one of the collapses is. Takes time in the size of the mesh. After gproj_edit_insert_strip with the edge that it
-   returned and t = 1 all is as it was, but for numbers of faces. Returns the number of rungs. */
+/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva,
+   Shepherd, Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish.
+   Refused where the mesh would be pinched or folded onto itself, as for a single edge. Takes time in the size of the
+   mesh. After gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for the numbers
+   of faces. Returns the number of rungs. */
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a face
-   whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces come, in
-   their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices; then the
-   corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face, which stay as
-   they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices do.
-   vertex_face: vertex_count numbers to be filled with the dual face of each vertex, -1 without; may be NULL. For a closed
-   mesh without isolated vertices face v is that of vertex v, and the dual of the dual has the combinatorics of the mesh.
-   Refused where two faces have more than one edge in common, for their vertices would have two edges. */
+/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a
+   face whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces
+   come, in their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices;
+   then the corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face,
+   which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices
+   do. `vertex_face`: vertex_count numbers to be filled with the dual face of each vertex, -1 for those without a face;
+   may be NULL. The dual of the dual of a closed mesh has the combinatorics of the mesh. Refused where two faces have
+   more than one edge in common, for their vertices would have two edges. */
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
                                       gproj_error *error);
 
@@ -8857,8 +8864,8 @@ GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
 }
 
-/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex are h
-   and prev[h]. */
+/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex
+   are h and prev[h]. */
 GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
     static const double none[3] = {0, 0, 0};
     const double *p;
@@ -10433,14 +10440,14 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 }
 
 /* ============================================================================================================
-   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, ordering (pools), mesh, surface
-   (polygons).
+   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, ordering (pools), mesh,
+   surface (polygons).
 
-   Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them Euler
-   operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and triangulations
-   are sequences of them; those that may be refused midway work with a copy to go back to.
-   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into lead to
-   lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
+   Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them
+   Euler operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and
+   triangulations are sequences of them; those that may be refused midway work with a copy to go back to.
+   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into
+   lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
     GPROJI_EDIT_HALFEDGE,
@@ -10837,8 +10844,8 @@ GPROJI_INTERNAL void gproji_polyline_merge(gproji_edit_store *s, int32_t gone, i
 
 /* -- the three operators; there is room -- */
 
-/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on, of
-   the new edge, is returned. */
+/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on,
+   of the new edge, is returned. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
@@ -10862,8 +10869,8 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
     return onward;
 }
 
-/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin: it
-   is in the part with `to`, its twin in the part with `from`. */
+/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin:
+   it is in the part with `to`, its twin in the part with `from`. */
 GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
     gproji_edit_store *s = &object->now;
     int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = gproji_edit_add_face(s, whole);
@@ -10890,7 +10897,7 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     return d;
 }
 
-/* Half-edge h takes the place of half-edge `other`, which has the same two ends, and their edges become one, that of h. */
+/* Half-edge h takes the place of half-edge `other`, which has the same ends, and their edges become one, that of h. */
 GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
     int32_t f = s->face[other];
     gproji_edit_link(s, s->prev[other], h);
@@ -10901,9 +10908,9 @@ GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_
     s->edge_into[other / 2] = h / 2;
 }
 
-/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are left,
-   whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of the
-   triangle, or -1. */
+/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are
+   left, whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of
+   the triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
     int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
     *apex = -1;
@@ -11300,8 +11307,8 @@ GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const
     return gproji_edit_joined(object, polygon->vertex[a], polygon->vertex[b]) >= 0;
 }
 
-/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any more, any
-   whose neighbours have no edge yet is taken; false where there is none. */
+/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any
+   more, any whose neighbours have no edge yet is taken; false where there is none. */
 GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
     gproji_polygon *polygon = &work->polygon;
     int64_t budget = 512 * (int64_t)polygon->count;
@@ -11329,8 +11336,8 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
     return true;
 }
 
-/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for x near
-   0 and for triangles that are turned over, the tangent of that at 1e-6. */
+/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for
+   x near 0 and for triangles that are turned over, the tangent of that at 1e-6. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     const double least = 1e-6;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
@@ -11340,8 +11347,8 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
 
-/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where each
-   needs a diagonal that is an edge already. */
+/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where
+   each needs a diagonal that is an edge already. */
 GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
@@ -11501,8 +11508,8 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     return GPROJ_OK;
 }
 
-/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has one more vertex,
-   edge, and cut. */
+/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has
+   one more vertex, edge, and cut. */
 GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
                                                 gproj_error *error) {
     int64_t count = strip->count, runs = 0;
@@ -11519,8 +11526,8 @@ GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, cons
     return code ? code : gproji_polyline_reserve(object, runs, error);
 }
 
-/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the strip
-   already, from side to side, that cut is split at t and met there. */
+/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the
+   strip already, from side to side, that cut is split at t and met there. */
 GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
     gproji_edit_store *s = &object->now;
     int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
@@ -11533,7 +11540,7 @@ GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from
     gproji_edit_cut(object, from, to);
 }
 
-/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from the new vertices on. */
+/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from new vertices on. */
 GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
     const int32_t *origin = object->now.origin;
     int32_t i, crossings = strip->closed ? strip->count : strip->count - 1;
@@ -11626,8 +11633,8 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each vertex
-   of the boundary two or three more. */
+/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each
+   vertex of the boundary two or three more. */
 typedef struct gproji_dual {
     gproji_soup soup;
     double *position;

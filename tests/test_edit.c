@@ -1,4 +1,5 @@
-/* test_edit.c - >>edit: each change of the combinatorics keeps what a mesh promises, or is refused and changes nothing. */
+/* test_edit.c - >>edit: each change of the combinatorics keeps what a mesh promises, or is refused and changes nothing.
+   */
 #include "gprojt_mesh.h"
 
 /* -- the edit itself -- */
@@ -146,8 +147,8 @@ static int32_t gprojt_some_face(const gproj_edit *e, uint64_t *state) {
     }
 }
 
-/* The mesh of an edit with vertices merged, group[v] the vertex for v: faces lose repeated corners in a row, and vanish with
-   fewer than 3. NULL if that is no mesh. */
+/* The mesh of an edit with vertices merged, group[v] the vertex for v: faces lose repeated corners in a row, and vanish
+   with fewer than 3. NULL if that is no mesh. */
 static gproj_mesh *gprojt_merged(const gproj_edit *e, const int32_t *group) {
     gprojt_soup s;
     gproj_mesh *mesh;
@@ -171,8 +172,8 @@ static gproj_mesh *gprojt_merged(const gproj_edit *e, const int32_t *group) {
     return mesh;
 }
 
-/* Would merging the ends of edges keep what the mesh is: would it be a mesh, with the same components, boundary loops and
-   Euler characteristic, and none of its remaining vertices without a face? */
+/* Would merging the ends of edges keep what the mesh is: would it be a mesh, with the same components, boundary loops
+   and Euler characteristic, and none of its remaining vertices without a face? */
 static bool gprojt_may_merge(gproj_edit *e, int32_t count, const int32_t *edge) {
     int32_t *group = (int32_t *)malloc((size_t)e->vertex_count * sizeof(int32_t)), i, k, left = 0;
     gproj_mesh *before = gproj_edit_mesh(e, NULL, NULL), *after;
@@ -211,8 +212,8 @@ static int32_t gprojt_rungs(const gproj_edit *e, int32_t edge, int32_t *rung) {
     return count;
 }
 
-/* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a vertex,
-   4 edges and 3 faces. Returns how many are crossed twice. */
+/* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a
+   vertex, 4 edges and 3 faces. Returns how many are crossed twice. */
 static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t more[3]) {
     int32_t *rung = (int32_t *)malloc((size_t)e->edge_count * sizeof(int32_t)), twice = 0, once = 0, f, k, i;
     int32_t rungs = gprojt_rungs(e, edge, rung);
@@ -594,7 +595,8 @@ static gproj_edit *gprojt_polygon_edit(int32_t count, const double *xy) {
     return edit;
 }
 
-/* Cut into triangles, none turned over, with the same total area. Returns the least of 2 area / (sum of squared sides). */
+/* Cut into triangles, none turned over, with the same total area. Returns the least of 2 area / (sum of squared sides).
+   */
 static double gprojt_check_triangles(gproj_edit *e) {
     gproj_mesh *before = gprojt_edit_mesh(e), *after;
     double whole[3], area[3], sum = 0, least = 1, size;
@@ -714,8 +716,8 @@ GPROJT_TEST(triangles_are_the_best) {
     }
 }
 
-/* The torus of 7 vertices (Moebius 1861): each two have an edge, so a face that was joined from its triangles can only be
-   cut as it was. */
+/* The torus of 7 vertices (Moebius 1861): each two have an edge, so a face that was joined from its triangles can only
+   be cut as it was. */
 GPROJT_TEST(diagonals_that_are_edges) {
     double position[21];
     int32_t degree[14], corner[42], faces, corners, i, k, join;
