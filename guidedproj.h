@@ -11344,6 +11344,7 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
     double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
     double x = squares > 0 ? gproji_turn(polygon, a, b, c) / squares : 0;
+    if (!(x > -1)) x = -1; /* a position is not finite */
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
 

@@ -915,6 +915,7 @@ GPROJT_TEST(arguments_are_checked) {
     gproj_edit_destroy(NULL);
     /* positions that no mesh has; the edit goes on */
     e->position[7] = HUGE_VAL;
+    GPROJT_CHECK(gproj_edit_triangulate(e, e->face[e->vertex_halfedge[2] ^ 1], &error) == 1);
     GPROJT_CHECK(!gproj_edit_mesh(e, NULL, &error) && error.code == GPROJ_ERROR_NUMBER && !e->vertex_number);
     e->position[7] = 0;
     gproj_mesh_destroy(gprojt_edit_mesh(e));
