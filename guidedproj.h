@@ -10735,7 +10735,7 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
-/* Numbers of an element in the range? */
+/* Is a number in the range of its kind? */
 GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
                                      gproj_place place, int32_t number, gproj_error *error) {
     int32_t count = object->now.count[kind];

@@ -835,6 +835,24 @@ GPROJT_TEST(dual_with_boundary) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A mesh of vertices alone is edited into itself, and is its dual. */
+GPROJT_TEST(nothing_but_vertices) {
+    static const double position[6] = {0, 1, 2, 3, 4, 5};
+    gproj_mesh *mesh = gproj_mesh_create(2, position, 0, NULL, NULL, NULL, NULL), *after, *dual;
+    gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
+    int32_t face[2] = {7, 7};
+    GPROJT_CHECK(gproj_edit_triangulate(e, -1, NULL) == 0 && gproj_edit_edge(e, 0, 1) == -1);
+    GPROJT_CHECK(gproj_edit_split_edge(e, 0, 0.5, NULL) == -1);
+    after = gprojt_edit_mesh(e);
+    dual = gproj_mesh_dual(mesh, face, NULL, NULL);
+    GPROJT_CHECK(after && gprojt_same_mesh(mesh, after) && dual && gprojt_same_mesh(mesh, dual));
+    GPROJT_CHECK(face[0] == -1 && face[1] == -1);
+    gproj_mesh_destroy(after);
+    gproj_mesh_destroy(dual);
+    gproj_mesh_destroy(mesh);
+    gproj_edit_destroy(e);
+}
+
 /* -- large ones -- */
 
 /* Thousands of edits in one go: a grid loses nine vertices of ten, its shortest edges first, more or less. */
@@ -1060,6 +1078,7 @@ int main(void) {
     GPROJT_RUN(diagonals_that_are_edges);
     GPROJT_RUN(dual_of_the_dual);
     GPROJT_RUN(dual_with_boundary);
+    GPROJT_RUN(nothing_but_vertices);
     GPROJT_RUN(a_large_mesh_made_small);
     GPROJT_RUN(arguments_are_checked);
     GPROJT_RUN(what_would_be_no_mesh_is_refused);
