@@ -772,9 +772,9 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
 
    Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction
    in which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads
-   stay quads; other faces at the ends of the strip get one corner more. Refused where no quad is at the edge, and where
-   a closed strip has two quads only. Returns the new part of the edge, from the new vertex to j: a rung of the new
-   strip. */
+   stay quads; at the ends of the strip triangles are cut in two, and faces with 5 or more corners get one more. Refused
+   where no quad is at the edge, and where a closed strip has two quads only. Returns the new part of the edge, from the
+   new vertex to j: a rung of the new strip. */
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
 /* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva,
@@ -10716,12 +10716,16 @@ GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
     return ++object->stamp;
 }
 
-/* out = (1 - t) v_a + t v_b. `out` may be one of them. */
+/* out = (1 - t) v_a + t v_b, bit for bit one of them at t = 0 and 1. `out` may be one of them. */
 GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, int32_t b, double t, int32_t out) {
     const double *p = s->position + 3 * (size_t)a, *q = s->position + 3 * (size_t)b;
     double *x = s->position + 3 * (size_t)out;
     int32_t k;
-    for (k = 0; k < 3; ++k) x[k] = t < 0.5 ? p[k] + t * (q[k] - p[k]) : q[k] + (1 - t) * (p[k] - q[k]);
+    if (t <= 0 || t >= 1) {
+        gproji_copy3(t <= 0 ? p : q, x);
+        return;
+    }
+    for (k = 0; k < 3; ++k) x[k] = p[k] + t * (q[k] - p[k]);
 }
 
 /* -- what calls give -- */
@@ -11541,15 +11545,24 @@ GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from
     gproji_edit_cut(object, from, to);
 }
 
+/* Where a strip ends at a triangle, which has got a fourth corner at the origin of half-edge h, it is cut into two: as a
+   quad it would lead on. */
+GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
+    const gproji_edit_store *s = &object->now;
+    if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
+}
+
 /* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from new vertices on. */
 GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
-    const int32_t *origin = object->now.origin;
-    int32_t i, crossings = strip->closed ? strip->count : strip->count - 1;
-    for (i = 0; i < strip->count; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
-    for (i = 0; i < crossings; ++i) {
-        int32_t following = strip->rung[i + 1 < strip->count ? i + 1 : 0];
-        gproji_strip_cross(object, strip->rung[i], origin[following], t);
+    const gproji_edit_store *s = &object->now;
+    int32_t i, last = strip->count - 1;
+    for (i = 0; i <= last; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
+    if (!strip->closed) {
+        gproji_strip_end(object, s->next[strip->rung[0] ^ 1]);
+        gproji_strip_end(object, strip->rung[last]);
     }
+    for (i = 0; i < last; ++i) gproji_strip_cross(object, strip->rung[i], s->origin[strip->rung[i + 1]], t);
+    if (strip->closed) gproji_strip_cross(object, strip->rung[last], s->origin[strip->rung[0]], t);
 }
 
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
