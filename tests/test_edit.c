@@ -210,8 +210,8 @@ static int32_t gprojt_rungs(const gproj_edit *e, int32_t edge, int32_t *rung) {
     return count;
 }
 
-/* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a vertex,
-   4 edges and 3 faces; in a triangle where it ends an edge and a face. Returns how many are crossed twice. */
+/* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a
+   vertex, 4 edges and 3 faces; in a triangle where it ends an edge and a face. Returns how many are crossed twice. */
 static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t more[3]) {
     int32_t *rung = (int32_t *)malloc((size_t)e->edge_count * sizeof(int32_t)), twice = 0, once = 0, f, k, i;
     int32_t rungs = gprojt_rungs(e, edge, rung);
@@ -226,6 +226,37 @@ static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t mor
     more[0] = rungs + twice, more[1] = rungs + once + 4 * twice, more[2] = once + 3 * twice;
     free(rung);
     return twice;
+}
+
+/* The same vertices, bit for bit, and the same faces up to their numbers and first corners. */
+static bool gprojt_same_faces(const gproj_mesh *a, const gproj_mesh *b) {
+    int32_t f, h, g, k;
+    if (a->vertex_count != b->vertex_count || a->edge_count != b->edge_count || a->face_count != b->face_count ||
+        memcmp(a->position, b->position, (size_t)a->vertex_count * 3 * sizeof(double)))
+        return false;
+    for (f = 0; f < a->face_count; ++f) {
+        h = a->face_halfedge[f];
+        for (g = 0; g < b->halfedge_count; ++g)
+            if (b->origin[g] == a->origin[h] && b->origin[g ^ 1] == a->origin[h ^ 1]) break;
+        if (g == b->halfedge_count || b->face[g] < 0 || b->face_degree[b->face[g]] != a->face_degree[f]) return false;
+        for (k = 0; k < a->face_degree[f]; ++k, h = a->next[h], g = b->next[g])
+            if (a->origin[h] != b->origin[g]) return false;
+    }
+    return true;
+}
+
+/* On a copy: a strip, inserted and removed, leaves everything as it was. */
+static bool gprojt_strip_comes_and_goes(gproj_edit *e, int32_t edge, double t) {
+    gproj_mesh *before = gproj_edit_mesh(e, NULL, NULL), *after;
+    gproj_edit *copy = gproj_edit_create(before, NULL, NULL);
+    int32_t strip = gproj_edit_insert_strip(copy, e->edge_number[edge], t, NULL);
+    bool same = strip < 0 || gproj_edit_remove_strip(copy, strip, 1, NULL) >= 0;
+    after = gproj_edit_mesh(copy, NULL, NULL);
+    same = same && after && gprojt_same_faces(before, after);
+    gproj_mesh_destroy(before);
+    gproj_mesh_destroy(after);
+    gproj_edit_destroy(copy);
+    return same;
 }
 
 /* One edit; false when it was refused. The numbers of elements change as theory says. */
@@ -264,6 +295,7 @@ static bool gprojt_random_edit(gproj_edit *e, int kind, uint64_t *state) {
         break;
     case GPROJT_INSERT:
         gprojt_count_strip(e, edge, more);
+        if (gprojt_below(state, 2)) GPROJT_CHECK(gprojt_strip_comes_and_goes(e, edge, t));
         result = gproj_edit_insert_strip(e, edge, t, &error);
         break;
     case GPROJT_REMOVE:
@@ -464,23 +496,6 @@ GPROJT_TEST(split_and_collapse_is_nothing) {
 }
 
 /* -- strips -- */
-
-/* The same vertices, bit for bit, and the same faces up to their numbers and first corners. */
-static bool gprojt_same_faces(const gproj_mesh *a, const gproj_mesh *b) {
-    int32_t f, h, g, k;
-    if (a->vertex_count != b->vertex_count || a->edge_count != b->edge_count || a->face_count != b->face_count ||
-        memcmp(a->position, b->position, (size_t)a->vertex_count * 3 * sizeof(double)))
-        return false;
-    for (f = 0; f < a->face_count; ++f) {
-        h = a->face_halfedge[f];
-        for (g = 0; g < b->halfedge_count; ++g)
-            if (b->origin[g] == a->origin[h] && b->origin[g ^ 1] == a->origin[h ^ 1]) break;
-        if (g == b->halfedge_count || b->face[g] < 0 || b->face_degree[b->face[g]] != a->face_degree[f]) return false;
-        for (k = 0; k < a->face_degree[f]; ++k, h = a->next[h], g = b->next[g])
-            if (a->origin[h] != b->origin[g]) return false;
-    }
-    return true;
-}
 
 /* A strip inserted at each edge that has one and removed again. Quads stay quads. */
 GPROJT_TEST(strips_come_and_go) {
