@@ -3211,6 +3211,7 @@ enum {
     GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
     GPROJI_ND_WORDS = 4,   /* for both */
     GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
     GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
 };
 
@@ -3239,6 +3240,7 @@ typedef struct gproji_nd_cut {
     int32_t axis;
     int32_t at;
     int32_t range;  /* positions are 0..range-1 */
+    double below;   /* weight of the nodes with position < at */
     int32_t weight; /* of a separator, not yet the smallest */
 } gproji_nd_cut;
 
@@ -3562,12 +3564,13 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
     return best;
 }
 
-/* Coordinates from distances. Returns how many nodes a search reaches; when these are not all, there are none. */
-GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd) {
+/* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
+   nodes a search reaches; when these are not all, there are none. */
+GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     int32_t *const *d = nd->distance, *value = nd->position;
-    int32_t i, reached = gproji_nd_search(nd, 0, d[0]);
+    int32_t i, reached = gproji_nd_search(nd, start, d[0]);
     if (reached < nd->nodes) return reached;
-    gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
+    if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
     gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
     for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
@@ -3702,7 +3705,8 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *b
         weight[low < high ? 0 : 1] -= weight[2];
         cost = gproji_nd_cost(nd, weight, halo);
         if (cost >= best->cost) continue;
-        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->weight = (int32_t)weight[2];
+        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
+        best->weight = (int32_t)weight[2];
         better = true;
     }
     if (!better) return;
@@ -4121,25 +4125,38 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
     gproji_pool_give_all(&pool);
 }
 
+/* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
+   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   nodes are connected; when these are not all, there is no cut. */
+GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
+    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    memset(best, 0, sizeof *best);
+    best->cost = HUGE_VAL;
+    for (k = 0; k < starts; ++k) {
+        reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
+        if (reached < nd->nodes) break;
+        for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+    }
+    return reached;
+}
+
 /* Orders the part on top of the stack or cuts it. */
 GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
     gproji_nd_part part = nd->stack[--nd->parts];
     gproji_nd_cut best;
-    int32_t axis, reached;
+    int32_t reached;
     gproji_nd_enter(nd, &part);
     if (part.nodes <= GPROJI_ND_LEAF) {
         gproji_nd_order_leaf(nd, part.place);
         return;
     }
-    reached = gproji_nd_coordinates(nd);
+    reached = gproji_nd_find_cut(nd, &best);
     if (reached < part.nodes) {
         gproji_nd_split_components(nd, reached);
         gproji_nd_divide(nd, &part);
         return;
     }
-    memset(&best, 0, sizeof best);
-    best.cost = HUGE_VAL;
-    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, &best);
     if (best.cost < HUGE_VAL && gproji_nd_separate(nd, &best)) {
         gproji_nd_divide(nd, &part);
     } else {
