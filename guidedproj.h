@@ -4730,6 +4730,8 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
 GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t k;
+    out->exact_entries = 0;
+    out->flops = 0;
     for (k = 0; k < out->nodes; ++k) {
         int64_t w = an->graph->weight[out->order[k]], below = an->count[k] - w;
         out->exact_entries += w * (w + 1) / 2 + w * below;
@@ -4752,36 +4754,16 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
     gproji_sum_counts(an);
 }
 
-/* What a factorisation in this order costs. The order becomes a postorder of its elimination tree. */
-GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *graph, int32_t *order, double *flops) {
-    gproji_symbolic out;
-    gproji_analysis an;
-    bool done;
-    memset(&an, 0, sizeof an);
-    memset(&out, 0, sizeof out);
-    an.graph = graph, an.out = &out;
-    gproji_pool_start(&an.pool, heap);
-    out.nodes = graph->nodes, out.order = order;
-    out.place = (int32_t *)gproji_pool_take(&an.pool, graph->nodes, sizeof(int32_t));
-    done = out.place && gproji_analysis_take(&an);
-    if (done) {
-        gproji_count_factor(&an, false);
-        *flops = out.flops;
-    }
-    gproji_pool_give_all(&an.pool);
-    return done;
-}
-
 enum {
     GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 /* Condensed nodes, then the others by dissection. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, int32_t *order) {
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
     gproji_heap *heap = an->keep->heap;
     gproji_condensation condensed;
-    int32_t *rest, k, total = an->out->columns;
+    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
     bool done = gproji_condense(&condensed, heap, an->graph);
     for (k = 0; done && k < condensed.count; ++k) {
         order[k] = condensed.first[k];
@@ -4794,31 +4776,39 @@ GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, int32_t *order)
     return done;
 }
 
-/* The better one of minimum degree and dissection. Dissection takes five times as long, half a microsecond for each node,
-   and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
-GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an) {
-    int32_t nodes = an->out->nodes, *order = an->out->order, *other;
-    gproji_heap *heap = an->keep->heap;
-    double flops, dissected;
-    if (!gproji_amd_order(heap, an->graph, an->out->columns, order, &flops)) return false;
-    if (flops <= (double)GPROJI_DISSECT_FLOPS * nodes) return true;
-    other = (int32_t *)gproji_pool_take(&an->pool, nodes, sizeof(int32_t));
-    if (!other || !gproji_dissected_order(an, other) || !gproji_order_flops(heap, an->graph, other, &dissected))
-        return false;
-    if (dissected < flops) memcpy(order, other, (size_t)nodes * sizeof(int32_t));
+/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
+   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
+GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
+    gproji_symbolic *out = an->out;
+    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    double flops;
+    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
+    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_dissected_order(an)) return false;
+        gproji_count_factor(an, keep_order);
+        if (out->flops < flops) return true;
+    }
+    if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
+    gproji_count_factor(an, keep_order);
     return true;
 }
 
-/* The order of elimination asked for. permutation: of nodes. */
-GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
+/* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
+GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_cholesky_options *options,
+                                         const int32_t *permutation) {
     gproji_symbolic *out = an->out;
+    gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (out->nodes > GPROJI_DISSECT_MOST && ordering < GPROJ_ORDERING_GIVEN) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an);
-    if (ordering == GPROJ_ORDERING_DISSECTION) return gproji_dissected_order(an, out->order);
-    if (ordering == GPROJ_ORDERING_AMD)
-        return gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL);
-    for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
+    if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
+    if (ordering == GPROJ_ORDERING_DISSECTION) {
+        if (!gproji_dissected_order(an)) return false;
+    } else if (ordering == GPROJ_ORDERING_AMD) {
+        if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
+    } else {
+        for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    }
+    gproji_count_factor(an, options->disable_postorder);
     return true;
 }
 
@@ -4830,8 +4820,7 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     out->column = (int32_t *)gproji_pool_take(an->keep, (int64_t)out->nodes + 1, sizeof(int32_t));
     out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
     if (!out->order || !out->place || !out->column || !out->front_of) return false;
-    if (!gproji_choose_order(an, options->ordering, permutation) || !gproji_analysis_take(an)) return false;
-    gproji_count_factor(an, options->disable_postorder);
+    if (!gproji_analysis_take(an) || !gproji_choose_order(an, options, permutation)) return false;
     gproji_find_supernodes(an);
     if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
     if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
