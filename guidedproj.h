@@ -10110,9 +10110,9 @@ GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, con
             counts.polyline_vertices > INT32_MAX) {
             return gproji_fail(
                 error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "subdivide: level %d would have %l vertices and %l faces, more than a mesh can have; take "
-                "fewer levels",
-                level, counts.vertices, counts.faces);
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
         }
     }
     return GPROJ_OK;

@@ -700,7 +700,7 @@ GPROJT_TEST(creases_meet) {
     const int32_t nx = 4, middle = 2 * 5 + 2;
     gproj_mesh *grid = gprojt_random_mesh(gprojt_quad_grid(nx, 4), 15), *smooth, *fine;
     gproj_subdivide_options options = gprojt_levels(GPROJ_CATMULL_CLARK, 1);
-    int32_t edges[4], k;
+    int32_t edges[4], k, pass;
     double sharpness[4] = {INFINITY, INFINITY, INFINITY, 0};
     const double *p = grid->position;
     edges[0] = gprojt_edge_between(grid, middle, middle - 1), edges[1] = gprojt_edge_between(grid, middle, middle + 1);
@@ -719,13 +719,19 @@ GPROJT_TEST(creases_meet) {
         }
         gproj_mesh_destroy(fine);
     }
-    sharpness[1] = 0.25, options.crease_count = 2; /* a crease with 1/4, the end of one with 3/4 */
-    fine = gproj_mesh_subdivide(grid, &options, NULL, NULL, NULL);
-    for (k = 0; k < 3; ++k) {
-        double crease = (p[3 * (middle - 1) + k] + 6 * p[3 * middle + k] + p[3 * (middle + 1) + k]) / 8;
-        GPROJT_NEAR(fine->position[3 * middle + k], 0.25 * crease + 0.75 * smooth->position[3 * middle + k], 1e-15);
+    options.crease_count = 2;
+    for (pass = 0; pass < 2; ++pass) {
+        /* a crease of which one edge ends with 1/4, the other goes on; one that ends with the mean of 1 and 1/2 */
+        double sharp = pass ? 0.75 : 0.25;
+        sharpness[0] = pass ? 1 : INFINITY, sharpness[1] = pass ? 0.5 : 0.25;
+        fine = gproj_mesh_subdivide(grid, &options, NULL, NULL, NULL);
+        for (k = 0; k < 3; ++k) {
+            double crease = (p[3 * (middle - 1) + k] + 6 * p[3 * middle + k] + p[3 * (middle + 1) + k]) / 8;
+            double wanted = sharp * crease + (1 - sharp) * smooth->position[3 * middle + k];
+            GPROJT_NEAR(fine->position[3 * middle + k], wanted, 1e-15);
+        }
+        gproj_mesh_destroy(fine);
     }
-    gproj_mesh_destroy(fine);
     gproj_mesh_destroy(smooth);
     gproj_mesh_destroy(grid);
 }
@@ -836,6 +842,29 @@ GPROJT_TEST(refusals) {
     gproj_mesh_destroy(mesh);
 }
 
+/* What is too large is refused by the counts of the levels, for each of them. */
+GPROJT_TEST(sizes_are_refused) {
+    enum {
+        TURNS = 70000
+    };
+    static const char mesh_text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl";
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(2, 2));
+    gproj_subdivide_options options = gprojt_levels(GPROJ_CATMULL_CLARK, 13);
+    gprojt_text text;
+    int32_t i;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "level 13 would have 268468225 vertices");
+    gproj_mesh_destroy(mesh);
+    memset(&text, 0, sizeof text);
+    gprojt_text_write(&text, mesh_text, sizeof mesh_text - 1);
+    for (i = 0; i < TURNS; ++i) gprojt_text_write(&text, " 1 2", 4);
+    mesh = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_OBJ, NULL, NULL);
+    free(text.text);
+    GPROJT_REQUIRE(mesh);
+    options.levels = 14;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "2293760000 in polylines");
+    gproj_mesh_destroy(mesh);
+}
+
 static bool gprojt_use_subdivision(const gproj_host *host, void *user) {
     gproj_subdivide_options options = gprojt_levels(GPROJ_CATMULL_CLARK, 3);
     gproj_error error;
@@ -884,6 +913,7 @@ int main(void) {
     GPROJT_RUN(corners_stay_or_become_round);
     GPROJT_RUN(polylines_are_refined);
     GPROJT_RUN(refusals);
+    GPROJT_RUN(sizes_are_refused);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }
