@@ -687,7 +687,7 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    are refined in it, the rest of the polyline is kept.
 
    Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
-       face            mean of its corners c
+       face            mean of its corners
        edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
                        Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
        vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
@@ -705,21 +705,25 @@ typedef enum gproj_scheme {
 
 typedef struct gproj_subdivide_options {
     gproj_scheme scheme;
-    int32_t levels;         /* 1 to 14; 0 means 1 */
-    int32_t stencil_level;  /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
-    int32_t crease_count;   /* edges that are sharp; those of the boundary are anyway */
-    const int32_t *creases; /* NULL: the first `crease_count` ones */
-    const double
-        *sharpness;       /* of each crease, >= 0, INFINITY: always sharp; NULL: all are. Of repeated edges the largest
-                                counts */
-    int32_t corner_count; /* vertices that stay where they are */
-    const int32_t *corners; /* NULL: the first `corner_count` ones */
-    bool round_corners;     /* boundary vertices with one face do not stay, unless they are among `corners` */
+    int32_t levels;        /* 1 to 14; 0 means 1 */
+    int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
+       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    int32_t crease_count;
+    const int32_t *creases;
+    const double *sharpness;
+    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+       well, unless round_corners. */
+    int32_t corner_count;
+    const int32_t *corners;
+    bool round_corners;
 } gproj_subdivide_options;
 
 /* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
    the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
-   sum is 1. So coarse vertices are handles of the finer mesh. All arrays are owned by the stencil. */
+   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
+   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
+   are owned by the stencil. */
 typedef struct gproj_stencil {
     int32_t row_count;
     int32_t column_count;
@@ -9615,7 +9619,12 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 
    A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
    coarse ones, and the faces go to the mesh builder as any others do.
-   Invariant: boundary edges have infinite sharpness, on all levels. */
+   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+
+enum {
+    GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
+    GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
+};
 
 /* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
 typedef struct gproji_stencil_object {
@@ -9783,7 +9792,7 @@ GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *e
 typedef struct gproji_level {
     const gproj_mesh *mesh;
     gproj_scheme scheme;
-    double *sharpness;  /* of each edge, INFINITY at the boundary */
+    double *sharpness;  /* of each edge, > 1 at the boundary */
     const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
     int32_t corner_count;
 } gproji_level;
@@ -10084,10 +10093,6 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
 
 /* -- all levels -- */
 
-enum {
-    GPROJI_LEVELS_MAX = 14 /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
-};
-
 /* The state between two levels. Meshes and stencils have their own memory. */
 typedef struct gproji_subdivision {
     gproji_heap heap; /* of the work arrays */
@@ -10141,6 +10146,15 @@ GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_
     return GPROJ_OK;
 }
 
+/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
+    double x = options->sharpness ? options->sharpness[crease] : GPROJI_SHARP;
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    if (bits == UINT64_C(0x7ff0000000000000)) return GPROJI_SHARP; /* infinite */
+    return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
+}
+
 GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                 gproj_error *error) {
     int32_t k;
@@ -10155,7 +10169,7 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
                                "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
                                mesh->edge_count);
         }
-        if (options->sharpness && !(options->sharpness[k] >= 0)) {
+        if (gproji_crease_sharpness(options, k) < 0) {
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
                                "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
                                options->sharpness[k]);
@@ -10204,10 +10218,10 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const
     s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
     if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
     for (k = 0; k < mesh->edge_count; ++k)
-        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? HUGE_VAL : 0;
+        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
     for (k = 0; k < options->crease_count; ++k) {
         double *edge = sharpness + (options->creases ? options->creases[k] : k);
-        *edge = gproji_fmax(*edge, options->sharpness ? options->sharpness[k] : HUGE_VAL);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
     }
     for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
     for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
