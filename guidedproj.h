@@ -10148,8 +10148,9 @@ GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_
 
 /* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
 GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
-    double x = options->sharpness ? options->sharpness[crease] : GPROJI_SHARP;
+    double x = GPROJI_SHARP;
     uint64_t bits;
+    if (options->sharpness) x = options->sharpness[crease];
     memcpy(&bits, &x, sizeof bits);
     if (bits == UINT64_C(0x7ff0000000000000)) return GPROJI_SHARP; /* infinite */
     return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
