@@ -413,6 +413,25 @@ GPROJT_TEST(all_meshes_become_finer) {
     }
 }
 
+GPROJT_TEST(real_meshes_become_finer) {
+    int i, loops = 0;
+    for (i = 0; i < GPROJT_REAL_MESHES; ++i) {
+        gproj_mesh *mesh = gprojt_load_real_mesh(i, NULL, NULL), *fine;
+        gproj_scheme scheme = GPROJ_LOOP;
+        int32_t f;
+        if (!mesh) GPROJT_SKIP("the folder of real meshes is not there");
+        for (f = 0; f < mesh->face_count; ++f)
+            if (mesh->face_degree[f] != 3) scheme = GPROJ_CATMULL_CLARK;
+        loops += scheme == GPROJ_LOOP;
+        fine = gprojt_subdivided(mesh, scheme, 1, NULL);
+        GPROJT_REQUIRE(fine);
+        GPROJT_CHECK(!gprojt_validate_mesh(fine) && gprojt_euler(fine) == gprojt_euler(mesh));
+        gproj_mesh_destroy(fine);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(loops >= 1);
+}
+
 /* Vertices with two edges inside a mesh, a mesh of one face, one without faces. */
 GPROJT_TEST(unusual_meshes) {
     gprojt_soup pillow, leaf, one;
@@ -902,6 +921,7 @@ int main(void) {
     GPROJT_RUN(extraordinary_vertices_have_their_limits);
     GPROJT_RUN(values_by_hand);
     GPROJT_RUN(all_meshes_become_finer);
+    GPROJT_RUN(real_meshes_become_finer);
     GPROJT_RUN(unusual_meshes);
     GPROJT_RUN(affine_maps_go_through);
     GPROJT_RUN(symmetry_stays);
