@@ -906,10 +906,28 @@ static bool gprojt_use_subdivision(const gproj_host *host, void *user) {
     return whole;
 }
 
+/* A closed prism: n quads between two faces of n corners, which make long rows. */
+static gproj_mesh *gprojt_prism(int32_t n) {
+    gprojt_soup s;
+    int32_t ring[2][64], k;
+    memset(&s, 0, sizeof s);
+    for (k = 0; k < n; ++k) {
+        ring[0][n - 1 - k] = gprojt_add_vertex(&s, k, k * k, 0);
+        ring[1][k] = gprojt_add_vertex(&s, k, k * k, 1);
+    }
+    for (k = 0; k < n; ++k) gprojt_add_quad(&s, 2 * k, 2 * ((k + 1) % n), 2 * ((k + 1) % n) + 1, 2 * k + 1);
+    gprojt_add_face(&s, n, ring[0]), gprojt_add_face(&s, n, ring[1]);
+    return gprojt_mesh_of(s);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 3\nf 1 2 3 4\nf 3 2 5\nl 1 2 3 1\n";
     gproj_mesh *mesh = gproj_mesh_read(text, sizeof text - 1, GPROJ_FORMAT_OBJ, NULL, NULL);
     GPROJT_REQUIRE(mesh);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_subdivision, mesh) >= 60);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_prism(40);
+    gprojt_check_levels(mesh, GPROJ_CATMULL_CLARK);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_subdivision, mesh) >= 60);
     gproj_mesh_destroy(mesh);
 }
