@@ -62,6 +62,7 @@
        >>api-least-squares  linear least squares with bounds, usable by itself
        >>api-system     quadratic equations and guided projection, without meshes
        >>api-mesh       half-edge meshes, OBJ and OFF
+       >>api-subdivide  subdivision, and how fine meshes follow their cages
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-offset     parallel meshes at constant distance, supports
@@ -85,6 +86,7 @@
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
        >>text           OBJ and OFF
+       >>subdivide      subdivision by stencils
        >>hierarchy      bounding boxes
        >>curve          polylines
        >>surface        reference surfaces
@@ -673,6 +675,87 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
    complete. The format follows the ending: .obj or .off. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
+
+   The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
+   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count +
+   edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face f,
+   at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
+       Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
+       Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
+   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its polylines
+   are refined in it, the rest of the polyline is kept.
+
+   Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
+       face            mean of its corners
+       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+                       Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
+       vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
+                       Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
+       vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
+       vertex, S > 2   v, as for corners
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and vertices
+   are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that become smooth
+   there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the boundary. */
+typedef enum gproj_scheme {
+    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
+    GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
+    GPROJ_SCHEME_FORCE_INT = 0x7fffffff
+} gproj_scheme;
+
+typedef struct gproj_subdivide_options {
+    gproj_scheme scheme;
+    int32_t levels;        /* 1 to 14; 0 means 1 */
+    int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
+       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    int32_t crease_count;
+    const int32_t *creases;
+    const double *sharpness;
+    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+       well, unless round_corners. */
+    int32_t corner_count;
+    const int32_t *corners;
+    bool round_corners;
+} gproj_subdivide_options;
+
+/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
+   the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
+   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
+   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
+   are owned by the stencil. */
+typedef struct gproj_stencil {
+    int32_t row_count;
+    int32_t column_count;
+    const int64_t *start; /* row_count + 1 */
+    const int32_t *column;
+    const double *weight;
+} gproj_stencil;
+
+/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil` may
+   be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Of
+   one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels take
+   the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level.
+   Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme
+   GPROJ_ERROR_ARGUMENT where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners;
+   GPROJ_ERROR_SIZE, before memory is taken, where a level would have more than a mesh can. */
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil);
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil);
+/* fine = stencil * coarse, for any data with `size` numbers a vertex: 3 for positions. coarse: size * column_count
+   numbers, fine: size * row_count others. */
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine);
+/* The stencil that leads through both: fine * coarse, where the columns of `fine` are the rows of `coarse`. */
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error);
+/* The transposed matrix: row j is what coarse vertex j moves. When that moves by d, fine vertex column[k] moves by
+   weight[k] * d. Its rows do not sum to 1. */
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
@@ -10122,6 +10205,699 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 }
 
 #endif /* GPROJ_NO_STDIO */
+
+/* ============================================================================================================
+   >>subdivide   Subdivision by stencils. Uses platform, memory, error, mesh.
+
+   Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
+   subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
+   for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Products and transposition of
+   matrices are Gustavson's (1978).
+
+   A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
+   coarse ones, and the faces go to the mesh builder as any others do.
+   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+
+enum {
+    GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
+    GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
+};
+
+/* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
+typedef struct gproji_stencil_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_stencil stencil;
+    int64_t *start;
+    int32_t *column;
+    double *weight;
+    size_t column_capacity, weight_capacity;
+} gproji_stencil_object;
+
+GPROJI_INLINE gproji_stencil_object *gproji_stencil_owner(gproj_stencil *stencil) {
+    return (gproji_stencil_object *)(void *)((char *)stencil - offsetof(gproji_stencil_object, stencil));
+}
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
+    gproji_stencil_object *object;
+    if (!stencil) return;
+    object = gproji_stencil_owner(stencil);
+    gproji_give(&object->heap, object->start, (size_t)stencil->row_count + 1, sizeof *object->start);
+    gproji_give(&object->heap, object->column, object->column_capacity, sizeof *object->column);
+    gproji_give(&object->heap, object->weight, object->weight_capacity, sizeof *object->weight);
+    gproji_destroy_object(object, sizeof *object);
+}
+
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!stencil) return none;
+    return ((const gproji_stencil_object *)(const void *)((const char *)stencil -
+                                                          offsetof(gproji_stencil_object, stencil)))
+        ->heap.account;
+}
+
+/* Makes room for `entries` entries; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
+    void *column = object->column, *weight = object->weight;
+    bool enough = gproji_reserve(&object->heap, &column, &object->column_capacity, entries, sizeof(int32_t)) &&
+                  gproji_reserve(&object->heap, &weight, &object->weight_capacity, entries, sizeof(double));
+    object->stencil.column = object->column = (int32_t *)column;
+    object->stencil.weight = object->weight = (double *)weight;
+    return enough;
+}
+
+/* A stencil of zeros with room for `entries` entries; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
+                                                    const gproj_host *host) {
+    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
+    gproj_stencil *stencil;
+    if (!object) return NULL;
+    stencil = &object->stencil;
+    stencil->row_count = rows, stencil->column_count = columns;
+    stencil->start = object->start = (int64_t *)gproji_take_zeroed(&object->heap, (size_t)rows + 1, sizeof(int64_t));
+    if (object->start && gproji_stencil_reserve(object, entries)) return stencil;
+    gproj_stencil_destroy(stencil);
+    return NULL;
+}
+
+/* The transposed matrix, with its columns in ascending order; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
+    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, count;
+    gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
+    gproji_stencil_object *object;
+    int32_t i;
+    if (!out) return NULL;
+    object = gproji_stencil_owner(out);
+    /* start[j] counts, then is where row j begins, then, as row j fills, where it ends; which is start[j + 1] */
+    for (k = 0; k < entries; ++k) object->start[stencil->column[k]]++;
+    for (i = 0; i <= out->row_count; ++i) {
+        count = object->start[i];
+        object->start[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < stencil->row_count; ++i) {
+        for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k) {
+            int64_t to = object->start[stencil->column[k]]++;
+            object->column[to] = i;
+            object->weight[to] = stencil->weight[k];
+        }
+    }
+    memmove(object->start + 1, object->start, (size_t)out->row_count * sizeof *object->start);
+    object->start[0] = 0;
+    return out;
+}
+
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine) {
+    int32_t i, d;
+    int64_t k;
+    for (i = 0; stencil && i < stencil->row_count; ++i) {
+        for (d = 0; d < size; ++d) {
+            double sum = 0;
+            for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k)
+                sum += stencil->weight[k] * coarse[(size_t)size * (size_t)stencil->column[k] + (size_t)d];
+            *fine++ = sum;
+        }
+    }
+}
+
+/* -- rows -- */
+
+/* A stencil that is made row by row. Memory that is missing is noticed at the end. */
+typedef struct gproji_rows {
+    gproji_heap *heap; /* of `place` */
+    const gproj_host *host;
+    gproj_stencil *stencil; /* NULL: no memory */
+    int32_t column_count;
+    int32_t row;    /* the one that is being made */
+    int64_t count;  /* of all entries so far */
+    int64_t *place; /* of each column, its entry in this row; one of an earlier row, or -1: it has none */
+} gproji_rows;
+
+GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
+    gproj_stencil_destroy(rows->stencil);
+    rows->stencil = NULL;
+}
+
+GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
+                                       const gproj_host *host) {
+    int32_t j;
+    rows->heap = heap, rows->host = host;
+    rows->column_count = column_count, rows->row = 0, rows->count = 0;
+    rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
+    rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
+    if (!rows->place) gproji_rows_drop(rows);
+    for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
+}
+
+/* Adds a weight to an entry of the row. */
+GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
+    gproji_stencil_object *object;
+    if (!rows->stencil) return;
+    object = gproji_stencil_owner(rows->stencil);
+    if (rows->place[column] < object->start[rows->row]) {
+        if (!gproji_stencil_reserve(object, (size_t)rows->count + 1)) {
+            gproji_rows_drop(rows);
+            return;
+        }
+        object->column[rows->count] = column;
+        object->weight[rows->count] = 0;
+        rows->place[column] = rows->count++;
+    }
+    object->weight[rows->place[column]] += weight;
+}
+
+GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
+    rows->row++;
+    if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+}
+
+/* The finished stencil with its columns in ascending order: the transposed of the transposed. NULL without memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
+    gproj_stencil *turned = NULL, *sorted = NULL;
+    gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
+    gproji_rows_drop(rows);
+    if (turned) sorted = gproji_transposed(turned, rows->host);
+    gproj_stencil_destroy(turned);
+    if (!sorted) gproji_fail_memory(error);
+    return sorted;
+}
+
+/* -- the rules -- */
+
+/* The mesh of a level and what the rules need besides it. */
+typedef struct gproji_level {
+    const gproj_mesh *mesh;
+    gproj_scheme scheme;
+    double *sharpness;  /* of each edge, > 1 at the boundary */
+    const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
+    int32_t corner_count;
+} gproji_level;
+
+/* The mean of a face's corners. */
+GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
+    int32_t h = mesh->face_halfedge[face], k;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
+}
+
+/* An edge: the smooth rule and the sharp one, blended by its sharpness. */
+GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    bool loop = level->scheme == GPROJ_LOOP;
+    double sharp = gproji_fmin(level->sharpness[edge], 1), smooth = 1 - sharp;
+    double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
+    int32_t h;
+    for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
+    for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
+        if (loop)
+            gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
+        else
+            gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, rows);
+    }
+}
+
+/* A vertex without a corner or crease, inside. */
+GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t vertex, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    double n = gproj_mesh_valence(mesh, vertex), ring;
+    if (level->scheme == GPROJ_LOOP) {
+        double c = 0.375 + 0.25 * cos(6.283185307179586 / n);
+        ring = share * (0.625 - c * c) / n;
+        gproji_rows_add(rows, vertex, share - n * ring);
+    } else {
+        ring = share / (n * n);
+        gproji_rows_add(rows, vertex, share * (n - 2) / n);
+    }
+    do {
+        gproji_rows_add(rows, mesh->origin[h ^ 1], ring);
+        if (level->scheme != GPROJ_LOOP) gproji_add_face_rule(mesh, mesh->face[h], ring, rows);
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+}
+
+/* A vertex whose edges of more than this sharpness are sharp: smooth, on a crease, or a corner. */
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
+    do {
+        if (level->sharpness[h / 2] > least) {
+            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
+            ++sharp;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    if (sharp < 2) {
+        gproji_add_smooth_rule(level, vertex, share, rows);
+    } else if (sharp == 2) {
+        gproji_rows_add(rows, end[0], 0.125 * share);
+        gproji_rows_add(rows, vertex, 0.75 * share);
+        gproji_rows_add(rows, end[1], 0.125 * share);
+    } else {
+        gproji_rows_add(rows, vertex, share);
+    }
+}
+
+/* The mean sharpness of the edges at a vertex that are sharp on this level and smooth on the next; 1 without any. */
+GPROJI_INTERNAL double gproji_ending_sharpness(const gproji_level *level, int32_t vertex) {
+    int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double sum = 0;
+    do {
+        double s = level->sharpness[h / 2];
+        if (s > 0 && s <= 1) sum += s, ++count;
+        h = gproji_rotate(level->mesh, h);
+    } while (h != start);
+    return count ? sum / count : 1;
+}
+
+GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
+    double now;
+    if (level->mesh->vertex_halfedge[vertex] < 0 || (vertex < level->corner_count && level->corner[vertex])) {
+        gproji_rows_add(rows, vertex, 1);
+        return;
+    }
+    now = gproji_ending_sharpness(level, vertex);
+    gproji_add_vertex_rule(level, vertex, 0, now, rows);
+    if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
+}
+
+/* -- one level -- */
+
+/* How large a level is. */
+typedef struct gproji_counts {
+    int64_t vertices, edges, faces, corners;
+    int64_t polyline_vertices; /* at most: if all polylines run along edges */
+} gproji_counts;
+
+GPROJI_INTERNAL gproji_counts gproji_count(const gproj_mesh *mesh) {
+    gproji_counts counts = {0, 0, 0, 0, 0};
+    int32_t f;
+    counts.vertices = mesh->vertex_count;
+    counts.edges = mesh->edge_count;
+    counts.faces = mesh->face_count;
+    for (f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    counts.polyline_vertices = mesh->polyline_start[mesh->polyline_count];
+    return counts;
+}
+
+GPROJI_INTERNAL gproji_counts gproji_count_next(gproji_counts counts, gproj_scheme scheme) {
+    gproji_counts next;
+    next.vertices = counts.vertices + counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
+    next.edges = 2 * counts.edges + counts.corners;
+    next.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
+    next.corners = 4 * counts.corners;
+    next.polyline_vertices = 2 * counts.polyline_vertices;
+    return next;
+}
+
+GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
+                                                    const gproj_host *host, gproj_error *error) {
+    const gproj_mesh *mesh = level->mesh;
+    gproji_rows rows;
+    int32_t i;
+    gproji_counts next = gproji_count_next(gproji_count(mesh), level->scheme);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
+    for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
+        gproji_add_vertex_row(level, i, &rows);
+    for (i = 0; rows.stencil && i < mesh->edge_count; ++i, gproji_rows_next(&rows))
+        gproji_add_edge_rule(level, i, &rows);
+    for (i = 0; rows.stencil && level->scheme != GPROJ_LOOP && i < mesh->face_count; ++i, gproji_rows_next(&rows))
+        gproji_add_face_rule(mesh, i, 1, &rows);
+    return gproji_rows_end(&rows, error);
+}
+
+/* The faces of the next level: their degrees and corners, one after the other. */
+GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degree, int32_t *corner) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    bool loop = level->scheme == GPROJ_LOOP;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            *corner++ = mesh->origin[h];
+            *corner++ = edges + h / 2;
+            if (!loop) *corner++ = faces + f;
+            *corner++ = edges + mesh->prev[h] / 2;
+            *degree++ = loop ? 3 : 4;
+        }
+        if (!loop) continue;
+        for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
+        *degree++ = 3;
+    }
+}
+
+/* The half-edge from vertex a to vertex b; -1: they have no edge. */
+GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
+    int32_t start = mesh->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (mesh->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return -1;
+}
+
+/* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
+   number of their vertices. */
+GPROJI_INTERNAL int32_t gproji_level_polylines(const gproj_mesh *mesh, int32_t *start, int32_t *vertex) {
+    int32_t p, i, h, count = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        start[p] = count;
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            int32_t v = mesh->polyline_vertex[i];
+            bool last = i + 1 == mesh->polyline_start[p + 1];
+            if (vertex) vertex[count] = v;
+            ++count;
+            h = last ? -1 : gproji_halfedge_between(mesh, v, mesh->polyline_vertex[i + 1]);
+            if (h < 0) continue;
+            if (vertex) vertex[count] = mesh->vertex_count + h / 2;
+            ++count;
+        }
+    }
+    start[p] = count;
+    return count;
+}
+
+GPROJI_INTERNAL gproj_code gproji_set_level_polylines(gproji_mesh_object *object, const gproj_mesh *mesh,
+                                                      gproji_heap *heap, gproj_error *error) {
+    size_t starts = (size_t)mesh->polyline_count + 1, vertices = 0;
+    int32_t *start = (int32_t *)gproji_take(heap, starts, sizeof *start), *vertex = NULL;
+    gproj_code code;
+    if (start) {
+        vertices = (size_t)gproji_level_polylines(mesh, start, NULL);
+        vertex = (int32_t *)gproji_take(heap, vertices, sizeof *vertex);
+    }
+    if (vertex) {
+        gproji_level_polylines(mesh, start, vertex);
+        code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    } else {
+        code = gproji_fail_memory(error);
+    }
+    gproji_give(heap, vertex, vertices, sizeof *vertex);
+    gproji_give(heap, start, starts, sizeof *start);
+    return code;
+}
+
+/* The mesh of the next level. */
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
+                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
+    gproji_counts next = gproji_count_next(gproji_count(level->mesh), level->scheme);
+    size_t vertices = (size_t)next.vertices, faces = (size_t)next.faces, corners = (size_t)next.corners;
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    double *position = (double *)gproji_take(heap, vertices, 3 * sizeof *position);
+    int32_t *degree = (int32_t *)gproji_take(heap, faces, sizeof *degree);
+    int32_t *corner = (int32_t *)gproji_take(heap, corners, sizeof *corner);
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (object && position && degree && corner) {
+        gproji_soup soup;
+        gproj_stencil_apply(stencil, 3, level->mesh->position, position);
+        gproji_level_faces(level, degree, corner);
+        soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
+        soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
+        code = gproji_mesh_build(object, &soup, error);
+        if (!code) code = gproji_set_level_polylines(object, level->mesh, heap, error);
+    } else {
+        gproji_fail_memory(error);
+    }
+    gproji_give(heap, position, vertices, 3 * sizeof *position);
+    gproji_give(heap, degree, faces, sizeof *degree);
+    gproji_give(heap, corner, corners, sizeof *corner);
+    return object ? gproji_mesh_done(object, code) : NULL;
+}
+
+/* What is left of the sharpness on the next level: of each half of an edge one less, of new edges nothing. Each coarse
+   corner's face there begins with the halves of two edges, the last one and the first one of its corner. */
+GPROJI_INTERNAL void gproji_level_creases(const gproji_level *level, const gproj_mesh *fine, double *sharpness) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, e, at = 0;
+    for (e = 0; e < fine->edge_count; ++e) sharpness[e] = 0;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
+            int32_t half = fine->face_halfedge[at];
+            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+        }
+        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+    }
+}
+
+/* -- the stencil's functions -- */
+
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error) {
+    gproj_stencil *transposed;
+    gproji_error_clear(error);
+    if (!stencil) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the stencil to transpose is NULL");
+        return NULL;
+    }
+    transposed = gproji_transposed(stencil, host);
+    if (!transposed) gproji_fail_memory(error);
+    return transposed;
+}
+
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproji_rows rows;
+    int64_t k, l;
+    int32_t i;
+    gproji_error_clear(error);
+    if (!fine || !coarse) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a stencil to multiply is NULL");
+        return NULL;
+    }
+    if (fine->column_count != coarse->row_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
+                    fine->column_count, coarse->row_count);
+        return NULL;
+    }
+    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
+    for (i = 0; rows.stencil && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+        for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
+            int32_t middle = fine->column[k];
+            for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
+                gproji_rows_add(&rows, coarse->column[l], fine->weight[k] * coarse->weight[l]);
+        }
+    }
+    return gproji_rows_end(&rows, error);
+}
+
+/* -- all levels -- */
+
+/* The state between two levels. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* of the work arrays */
+    const gproj_host *host;
+    gproj_error *error;
+    const gproj_subdivide_options *options;
+    gproji_level level;
+    bool *corner;           /* of each vertex of the first mesh */
+    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
+
+GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                     gproj_error *error) {
+    gproji_counts counts = gproji_count(mesh);
+    int32_t level;
+    for (level = 1; level <= options->levels; ++level) {
+        counts = gproji_count_next(counts, options->scheme);
+        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
+            counts.polyline_vertices > INT32_MAX) {
+            return gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* Loop's scheme takes triangles, no two of them with the same corners: those of the next level would share edges. */
+GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_error *error) {
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3) {
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        }
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
+    double x = GPROJI_SHARP;
+    uint64_t bits;
+    if (options->sharpness) x = options->sharpness[crease];
+    memcpy(&bits, &x, sizeof bits);
+    if (bits == UINT64_C(0x7ff0000000000000)) return GPROJI_SHARP; /* infinite */
+    return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                gproj_error *error) {
+    int32_t k;
+    if (options->crease_count < 0 || options->corner_count < 0) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: %d creases and %d corners",
+                           options->crease_count, options->corner_count);
+    }
+    for (k = 0; k < options->crease_count; ++k) {
+        int32_t e = options->creases ? options->creases[k] : k;
+        if (e < 0 || e >= mesh->edge_count) {
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
+                               "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
+                               mesh->edge_count);
+        }
+        if (gproji_crease_sharpness(options, k) < 0) {
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
+                               options->sharpness[k]);
+        }
+    }
+    for (k = 0; k < options->corner_count; ++k) {
+        int32_t v = options->corners ? options->corners[k] : k;
+        if (v >= 0 && v < mesh->vertex_count) continue;
+        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
+                           "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
+                           mesh->vertex_count);
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                    gproj_error *error) {
+    gproj_code code;
+    if (options->scheme != GPROJ_CATMULL_CLARK && options->scheme != GPROJ_LOOP) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
+                           (int32_t)options->scheme);
+    }
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                           (int32_t)GPROJI_LEVELS_MAX);
+    }
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: a stencil from level %d to level %d; take 0 to %d", options->stencil_level,
+                           options->levels, options->levels - 1);
+    }
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (!code && options->scheme == GPROJ_LOOP) code = gproji_check_triangles(mesh, error);
+    if (!code) code = gproji_check_creases(mesh, options, error);
+    return code ? code : gproji_check_level_counts(mesh, options, error);
+}
+
+/* The first level: corners, and the sharpness of the edges. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const gproj_mesh *mesh) {
+    const gproj_subdivide_options *options = s->options;
+    double *sharpness = (double *)gproji_take(&s->heap, (size_t)mesh->edge_count, sizeof *sharpness);
+    int32_t k;
+    s->level.mesh = mesh, s->level.scheme = options->scheme, s->level.sharpness = sharpness;
+    s->level.corner_count = mesh->vertex_count;
+    s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
+    if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
+    for (k = 0; k < mesh->edge_count; ++k)
+        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
+    for (k = 0; k < options->crease_count; ++k) {
+        double *edge = sharpness + (options->creases ? options->creases[k] : k);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
+    }
+    for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
+    for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
+        if (gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2) s->corner[k] = true;
+    return GPROJ_OK;
+}
+
+/* Takes a level's stencil into that of all levels; it is given away. */
+GPROJI_INTERNAL gproj_code gproji_take_stencil(gproji_subdivision *s, gproj_stencil *step) {
+    gproj_stencil *both = step;
+    if (s->stencil) {
+        both = gproj_stencil_multiply(step, s->stencil, s->host, s->error);
+        gproj_stencil_destroy(step);
+        gproj_stencil_destroy(s->stencil);
+    }
+    s->stencil = both;
+    return both ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+}
+
+/* From a level to the next one. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
+    gproji_level *level = &s->level;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error);
+    gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
+    double *sharpness = NULL;
+    if (fine) {
+        sharpness = (double *)gproji_take(&s->heap, (size_t)fine->edge_count, sizeof *sharpness);
+        code = sharpness ? GPROJ_OK : gproji_fail_memory(s->error);
+    }
+    if (code) {
+        gproj_mesh_destroy(fine);
+        gproj_stencil_destroy(step);
+        return code;
+    }
+    gproji_level_creases(level, fine, sharpness);
+    gproji_give(&s->heap, level->sharpness, (size_t)level->mesh->edge_count, sizeof *level->sharpness);
+    gproj_mesh_destroy(s->own);
+    level->sharpness = sharpness;
+    level->mesh = s->own = fine;
+    if (keep_stencil) return gproji_take_stencil(s, step);
+    gproj_stencil_destroy(step);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
+    gproj_subdivide_options given;
+    gproji_subdivision s;
+    gproj_code code;
+    int32_t level;
+    gproji_error_clear(error);
+    if (stencil) *stencil = NULL;
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to subdivide is NULL");
+        return NULL;
+    }
+    memset(&given, 0, sizeof given);
+    if (options) given = *options;
+    if (given.levels == 0) given.levels = 1;
+    if (gproji_check_subdivision(mesh, &given, error)) return NULL;
+    memset(&s, 0, sizeof s);
+    s.heap = gproji_heap_of(host);
+    s.host = host, s.error = error, s.options = &given;
+    code = gproji_subdivision_begin(&s, mesh);
+    for (level = 0; !code && level < given.levels; ++level)
+        code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
+    gproji_give(&s.heap, s.corner, (size_t)mesh->vertex_count, sizeof *s.corner);
+    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof *s.level.sharpness);
+    if (code) {
+        gproj_mesh_destroy(s.own);
+        gproj_stencil_destroy(s.stencil);
+        return NULL;
+    }
+    if (stencil) *stencil = s.stencil;
+    return s.own;
+}
 
 /* ============================================================================================================
    >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory, vector.
