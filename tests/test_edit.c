@@ -288,22 +288,23 @@ static bool gprojt_random_edit(gproj_edit *e, int kind, uint64_t *state) {
     case GPROJT_COLLAPSE:
         for (k = 0; k < 2; ++k) more[2] -= e->face[2 * edge + k] >= 0 && e->face_degree[e->face[2 * edge + k]] == 3;
         more[0] = -1, more[1] = more[2] - 1;
-        compared = gprojt_below(state, 4) == 0;
+        compared = gprojt_below(state, 8) == 0;
         may = compared && gprojt_may_merge(e, 1, &edge);
         result = gproj_edit_collapse_edge(e, edge, t, &error);
         GPROJT_CHECK(!compared || (result >= 0) == may);
         break;
     case GPROJT_INSERT:
         gprojt_count_strip(e, edge, more);
-        if (gprojt_below(state, 2)) GPROJT_CHECK(gprojt_strip_comes_and_goes(e, edge, t));
+        if (gprojt_below(state, 4) == 0) GPROJT_CHECK(gprojt_strip_comes_and_goes(e, edge, t));
         result = gproj_edit_insert_strip(e, edge, t, &error);
         break;
     case GPROJT_REMOVE:
         rungs = gprojt_rungs(e, edge, rung);
-        may = gprojt_may_merge(e, rungs, rung);
+        compared = gprojt_below(state, 4) == 0;
+        may = compared && gprojt_may_merge(e, rungs, rung);
         result = gproj_edit_remove_strip(e, edge, t, &error);
         GPROJT_CHECK(result < 0 || result == rungs);
-        GPROJT_CHECK((result >= 0) == (may && rungs > 1));
+        GPROJT_CHECK(!compared || (result >= 0) == (may && rungs > 1));
         break;
     default:
         f = gprojt_below(state, 20) ? gprojt_some_face(e, state) : -1;
@@ -354,10 +355,10 @@ static bool gprojt_go_on_with_dual(gproj_edit **e) {
     return dual != NULL;
 }
 
-/* Which edit next: one that makes a large mesh smaller, or the one that was done least, or any. */
+/* Which edit next: sometimes one that makes a large mesh smaller, or the one that was done least, or any. */
 static int gprojt_choose(const gproj_mesh *mesh, const long *done, uint64_t *state) {
     int kind, least = 0;
-    if (mesh->face_count > 25 && gprojt_below(state, 2)) return GPROJT_COLLAPSE;
+    if (mesh->face_count > 20 && gprojt_below(state, 4) == 0) return GPROJT_COLLAPSE;
     for (kind = 1; kind < GPROJT_EDITS; ++kind)
         if (done[kind] < done[least]) least = kind;
     return gprojt_below(state, 2) ? least : gprojt_below(state, GPROJT_EDITS);
@@ -371,7 +372,7 @@ static void gprojt_random_edits(long wanted, uint64_t state) {
         gproj_edit *e = gprojt_edit_shape(shape, 2 + gprojt_below(&state, 2));
         gproj_mesh *mesh = gprojt_edit_mesh(e), *after;
         int step;
-        for (step = 0; step < 150 && mesh && mesh->face_count < 50 && !gprojt_failed_checks; ++step) {
+        for (step = 0; step < 150 && mesh && mesh->face_count < 40 && !gprojt_failed_checks; ++step) {
             kind = gprojt_choose(mesh, done, &state);
             tried[kind]++;
             if (!(kind == GPROJT_DUAL ? gprojt_go_on_with_dual(&e) : gprojt_random_edit(e, kind, &state))) continue;
