@@ -5807,20 +5807,23 @@ typedef struct gproji_row {
     int64_t term;
     int64_t local; /* compiled: its variables and its gradient */
     double constant;
-    double weight;           /* own * factor, times the group's; 0: the row is left out of everything */
-    double own;              /* what the row itself asks for */
-    double factor;           /* the weight of its element */
-    double phi;              /* the value at the last evaluation */
-    double multiplier, rise; /* nearest: y of what must hold, and what a step adds to it */
+    double weight; /* times the group's; 0: the row is left out of everything */
+    double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
 } gproji_row;
 
-/* Where a term's variables stand among the row's locals. */
-typedef struct gproji_term_local {
-    int32_t i, j;
-} gproji_term_local;
+/* What a row's weight is the product of, in a group whose elements have weights. */
+typedef struct gproji_share {
+    double own;    /* what the row itself asks for */
+    double factor; /* the weight of its element */
+} gproji_share;
+
+/* Nearest: y of a row that must hold, and what a step adds to it. */
+typedef struct gproji_multiplier {
+    double y, rise;
+} gproji_multiplier;
 
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
@@ -5837,13 +5840,15 @@ typedef struct gproji_group {
     int32_t row_count;
     gproji_row *row;
     gproj_term *term;
-    size_t row_capacity, term_capacity;
+    gproji_share *share; /* of each row; NULL: all factors are 1 */
+    size_t row_capacity, term_capacity, share_capacity;
 
-    gproji_term_local *term_local; /* one per term; as many as term_local_count */
-    int32_t *local_variable;       /* of every row, one row after the other */
-    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
-    double *local_gradient;        /* at the last evaluation */
-    size_t term_local_count, local_count;
+    bool placed;             /* i and j of its terms are not variables but places among the locals of their row */
+    int32_t *local_variable; /* of every row, one row after the other */
+    int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
+    double *local_gradient;  /* at the last evaluation */
+    size_t local_count;
+    gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
 
 typedef struct gproji_row_name {
@@ -5917,16 +5922,30 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
+/* Lets a group's terms name variables again. */
+GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
+    int32_t r;
+    int64_t t;
+    for (r = 0; r < g->row_count; ++r)
+        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+            const int32_t *variable = g->local_variable + g->row[r].local;
+            g->term[t].i = variable[g->term[t].i];
+            if (g->term[t].j >= 0) g->term[t].j = variable[g->term[t].j];
+        }
+    g->placed = false;
+}
+
 /* Gives back what compilation made of a group. */
 GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
-    gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
+    if (g->placed) gproji_unplace_terms(g);
     gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
     gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
-    g->term_local = NULL;
+    gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
+    g->multiplier = NULL;
 }
 
 /* Ends the compiled state and gives its memory back. */
@@ -5963,6 +5982,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
+        gproji_give(&s->own, s->group[i].share, s->group[i].share_capacity, sizeof *s->group[i].share);
         gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
     }
     gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
@@ -6001,9 +6021,19 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     return sum;
 }
 
+/* Makes room for so many more variables. */
+GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
+    size_t wanted = (size_t)s->variable_count + count;
+    void *x = s->x, *block = s->block;
+    bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
+    s->x = (double *)x;
+    enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
+    s->block = (int32_t *)block;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
-    size_t needed;
     if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -6022,17 +6052,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    needed = (size_t)first + (size_t)count;
-    {
-        void *x = s->x, *blocks = s->block;
-        bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, needed, sizeof *s->x);
-        s->x = (double *)x;
-        enough = enough && gproji_reserve(&s->own, &blocks, &s->block_capacity, needed, sizeof *s->block);
-        s->block = (int32_t *)blocks;
-        if (!enough) {
-            gproji_fail_memory(&s->error);
-            return -1;
-        }
+    if (!gproji_reserve_variables(s, (size_t)count)) {
+        gproji_fail_memory(&s->error);
+        return -1;
     }
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
@@ -6171,12 +6193,24 @@ GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group 
     return finite;
 }
 
+/* Makes room for so many more rows and terms. */
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms) {
+    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
+    void *row = g->row, *term = g->term, *share = g->share;
+    bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
+    g->row = (gproji_row *)row;
+    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, (size_t)g->row[g->row_count].term + terms,
+                                      sizeof *g->term);
+    g->term = (gproj_term *)term;
+    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->share_capacity, wanted, sizeof *g->share));
+    g->share = (gproji_share *)share;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     gproji_group *g;
     gproji_row *row;
-    void *rows, *all_terms;
-    bool enough;
     if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -6189,25 +6223,19 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, group, "group '%s' has too many rows", g->name);
         return -1;
     }
-    rows = g->row;
-    all_terms = g->term;
-    enough = gproji_reserve(&s->own, &rows, &g->row_capacity, (size_t)g->row_count + 2, sizeof *g->row);
-    g->row = (gproji_row *)rows;
-    enough = enough && gproji_reserve(&s->own, &all_terms, &g->term_capacity,
-                                      (size_t)g->row[g->row_count].term + (size_t)count, sizeof *g->term);
-    g->term = (gproj_term *)all_terms;
-    if (!enough) {
+    if (s->compiled) gproji_system_forget(s);
+    if (!gproji_reserve_rows(s, g, 1, (size_t)count)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
     row = &g->row[g->row_count];
     row->constant = constant;
-    row->weight = row->own = row->factor = 1;
+    row->weight = 1;
     row->element = element;
+    if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
     if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memset(row + 1, 0, sizeof row[1]);
     row[1].term = row->term + count;
-    if (s->compiled) gproji_system_forget(s);
     return g->row_count++;
 }
 
@@ -6239,33 +6267,56 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
 }
 
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group, int32_t row, double weight) {
+    gproji_group *g;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= 1e50))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
                            "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
                            weight, row, group);
-    s->group[group].row[row].own = weight;
-    s->group[group].row[row].weight = weight * s->group[group].row[row].factor;
+    g = &s->group[group];
+    g->row[row].weight = weight;
+    if (g->share) {
+        g->share[row].own = weight;
+        g->row[row].weight *= g->share[row].factor;
+    }
     s->changed = true;
     return GPROJ_OK;
 }
 
-/* phi at x without the compiled state; adds grad phi to `gradient` unless it is NULL. */
-GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t row, const double *x, double *gradient) {
-    double phi = g->row[row].constant;
+/* The weight of a row, without that of its element. */
+GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
+    return g->share ? g->share[row].own : g->row[row].weight;
+}
+
+/* Lets the group's elements have weights: all 1. */
+GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
+    int32_t r;
+    if (g->share) return true;
+    g->share = (gproji_share *)gproji_take(&s->own, g->row_capacity, sizeof *g->share);
+    if (!g->share) return false;
+    g->share_capacity = g->row_capacity;
+    for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
+    return true;
+}
+
+/* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
+GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
+    return g->placed && i >= 0 ? g->local_variable[row->local + i] : i;
+}
+
+/* phi at x, whether compiled or not; adds grad phi to `gradient` unless it is NULL. */
+GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x, double *gradient) {
+    const gproji_row *row = &g->row[r];
+    double phi = row->constant;
     int64_t t;
-    for (t = g->row[row].term; t < g->row[row + 1].term; ++t) {
-        const gproj_term *term = &g->term[t];
-        if (term->j < 0) {
-            phi += term->a * x[term->i];
-            if (gradient) gradient[term->i] += term->a;
-        } else {
-            phi += term->a * x[term->i] * x[term->j];
-            if (!gradient) continue;
-            gradient[term->i] += term->a * x[term->j];
-            gradient[term->j] += term->a * x[term->i];
-        }
+    for (t = row->term; t < row[1].term; ++t) {
+        double a = g->term[t].a;
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        phi += j < 0 ? a * x[i] : a * x[i] * x[j];
+        if (!gradient) continue;
+        gradient[i] += j < 0 ? a : a * x[j];
+        if (j >= 0) gradient[j] += a * x[i];
     }
     return phi;
 }
@@ -6278,88 +6329,73 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* A mark on a variable: the row that named it last, and its place among that row's locals. */
+/* Marks on a variable: the row that named it last; and, on the first of a block, the row that met the block last. */
 typedef struct gproji_named {
-    int32_t row, local;
+    int32_t row, block;
 } gproji_named;
 
-/* The place of a variable among the `count` locals of row r; a new one where the row has not named it before. */
-GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *count) {
-    gproji_named *mark = &named[variable];
-    if (mark->row != r) {
-        mark->row = r;
-        mark->local = (*count)++;
+/* Appends a variable to the `count` locals of row r, unless the row has named it already. */
+GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *local,
+                                        int32_t count) {
+    if (named[variable].row == r) return count;
+    named[variable].row = r;
+    local[count] = variable;
+    return count + 1;
+}
+
+/* The variables of a row, in the order in which its terms name them; returns how many they are. */
+GPROJI_INTERNAL int32_t gproji_name_locals(const gproji_group *g, int32_t r, gproji_named *named, int32_t *local) {
+    int32_t count = 0;
+    int64_t t;
+    for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+        count = gproji_name_local(named, r, g->term[t].i, local, count);
+        if (g->term[t].j >= 0) count = gproji_name_local(named, r, g->term[t].j, local, count);
     }
-    return mark->local;
+    return count;
 }
 
-/* Takes all marks off. */
-GPROJI_INTERNAL void gproji_unname(const gproj_system *s, gproji_named *named) {
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) named[v].row = -1;
+/* Notes the blocks of which a narrow row has more than one variable: coupled[first of block]. */
+GPROJI_INTERNAL void gproji_couple_blocks(const gproj_system *s, int32_t r, gproji_named *named, int32_t count,
+                                          const int32_t *local, int32_t *coupled) {
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        int32_t block = s->block[local[i]];
+        if (named[block].block == r) coupled[block] = 1;
+        named[block].block = r;
+    }
 }
 
-/* Step 1: where the terms' variables are among the variables of their rows, in the order in which they are named; how
-   many each row has; which rows are wide. */
-GPROJI_INTERNAL bool gproji_compile_terms(gproj_system *s, gproji_group *g, gproji_named *named) {
-    int64_t filled = 0, t;
-    int32_t r;
-    g->term_local_count = (size_t)g->row[g->row_count].term;
-    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
-    if (!g->term_local) return false;
-    gproji_unname(s, named);
+/* Step 1: the variables of all rows; which rows are wide; which blocks are coupled, for which `node` serves as marks. */
+GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gproji_named *named) {
+    size_t most = 2 * (size_t)g->row[g->row_count].term;
+    int64_t filled = 0;
+    int32_t r, v, count;
+    void *trimmed;
+    g->local_variable = (int32_t *)gproji_take(&s->own, most, sizeof *g->local_variable);
+    g->local_count = most;
+    if (!g->local_variable) return false;
+    for (v = 0; v < s->variable_count; ++v) named[v].row = named[v].block = -1;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t count = 0;
-        for (t = row->term; t < row[1].term; ++t) {
-            g->term_local[t].i = gproji_name_local(named, r, g->term[t].i, &count);
-            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_name_local(named, r, g->term[t].j, &count);
-        }
+        row->local = filled;
+        count = gproji_name_locals(g, r, named, g->local_variable + filled);
         row->wide = g->global || count > GPROJI_WIDE_ROW;
         s->wide_count += row->wide;
-        row->local = filled;
+        if (!row->wide) gproji_couple_blocks(s, r, named, count, g->local_variable + filled, s->node);
         filled += count;
     }
     g->row[g->row_count].local = filled;
+    trimmed = gproji_retake(&s->own, g->local_variable, most, (size_t)filled, sizeof *g->local_variable);
+    if (!trimmed) return false;
+    g->local_variable = (int32_t *)trimmed;
+    g->local_count = (size_t)filled;
     return true;
 }
 
-/* Step 2: the variables of all rows. */
-GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g) {
-    int64_t t;
-    int32_t r;
-    g->local_count = (size_t)g->row[g->row_count].local;
-    g->local_variable = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_variable);
-    g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
-    g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
-    if (!g->local_variable || !g->local_at || !g->local_gradient) return false;
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            const gproji_term_local *place = &g->term_local[t];
-            g->local_variable[g->row[r].local + place->i] = g->term[t].i;
-            if (place->j >= 0) g->local_variable[g->row[r].local + place->j] = g->term[t].j;
-        }
-    return true;
-}
-
-/* Step 3: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
-GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s, gproji_named *named) {
-    int32_t *coupled = s->node;
-    int32_t i, r, v;
-    int64_t l;
-    memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        gproji_unname(s, named);
-        for (r = 0; r < g->row_count; ++r) {
-            if (g->row[r].wide) continue;
-            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
-                int32_t block = s->block[g->local_variable[l]];
-                if (named[block].row == r) coupled[block] = 1;
-                named[block].row = r;
-            }
-        }
-    }
+/* Step 2: joins the variables of coupled blocks to nodes. `node` has the marks of step 1. */
+GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+    const int32_t *coupled = s->node;
+    int32_t i, v;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
         if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
@@ -6386,7 +6422,8 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
 }
 
-/* The nodes of each row, without rows that have the nodes of the row before. mark: node_count entries. */
+/* The nodes of each row, without rows that join nothing: those of one node, or with the nodes of the row before.
+   mark: node_count entries. */
 GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int32_t i, r, v;
     int64_t l, entries = 0, before = 0; /* where the nodes of the row before begin */
@@ -6402,8 +6439,9 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
                 mark[node] = begin;
                 in->row_node[entries++] = node;
             }
-            if (entries - begin == begin - before &&
-                memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) == 0) {
+            if (entries - begin < 2 ||
+                (entries - begin == begin - before && memcmp(in->row_node + begin, in->row_node + before,
+                                                             (size_t)(entries - begin) * sizeof(int32_t)) == 0)) {
                 for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
                 entries = begin;
                 continue;
@@ -6417,7 +6455,6 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int64_t r, e;
     int32_t v, i;
-    memset(in, 0, sizeof *in);
     in->node_count = s->node_count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
@@ -6440,94 +6477,77 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     return true;
 }
 
-/* Step 4: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
-GPROJI_INTERNAL gproj_code gproji_compile_graph(gproj_system *s) {
-    gproji_incidence in;
-    int64_t *start = NULL;
-    int64_t *mark = NULL;
-    int32_t *adjacent = NULL, *size = NULL;
-    size_t capacity = 0, nodes = (size_t)s->node_count;
+/* The graph of the nodes: two are adjacent when they meet in a narrow row. */
+typedef struct gproji_meetings {
+    int64_t *start;    /* node_count + 1 */
+    int32_t *adjacent; /* of all nodes */
+    int32_t *size;     /* variables of each node */
+    size_t room;       /* of `adjacent` */
+} gproji_meetings;
+
+/* The graph from the incidence. mark: node_count entries. */
+GPROJI_INTERNAL bool gproji_find_meetings(gproj_system *s, const gproji_incidence *in, int64_t *mark,
+                                          gproji_meetings *graph) {
     int64_t filled = 0, e, f;
     int32_t v;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    memset(&in, 0, sizeof in);
-    start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
-    size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size);
-    mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
-    if (!start || !size || !mark || !gproji_incidence_take(s, &in, mark)) goto done;
+    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
     for (v = 0; v < s->node_count; ++v) {
-        mark[v] = -1;
-        size[v] = s->node_first[v + 1] - s->node_first[v];
-    }
-    for (v = 0; v < s->node_count; ++v) {
-        start[v] = filled;
+        size_t most = (size_t)filled; /* with all of the node's rows, as if they had nothing in common */
+        void *room = graph->adjacent;
+        bool enough;
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            most += (size_t)(in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]]);
+        enough = gproji_reserve(&s->own, &room, &graph->room, most, sizeof *graph->adjacent);
+        graph->adjacent = (int32_t *)room;
+        if (!enough) return false;
+        graph->start[v] = filled;
+        graph->size[v] = s->node_first[v + 1] - s->node_first[v];
         mark[v] = v;
-        for (e = in.node_start[v]; e < in.node_start[v + 1]; ++e) {
-            int64_t row = in.node_row[e];
-            void *room = adjacent;
-            bool enough =
-                gproji_reserve(&s->own, &room, &capacity, (size_t)(filled + in.row_start[row + 1] - in.row_start[row]),
-                               sizeof *adjacent);
-            adjacent = (int32_t *)room;
-            if (!enough) goto done;
-            for (f = in.row_start[row]; f < in.row_start[row + 1]; ++f) {
-                int32_t other = in.row_node[f];
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
+                int32_t other = in->row_node[f];
                 if (mark[other] == v) continue;
                 mark[other] = v;
-                adjacent[filled++] = other;
+                graph->adjacent[filled++] = other;
             }
-        }
     }
-    start[s->node_count] = filled;
-    code = gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, size, start, adjacent, NULL);
-done:
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, start, nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, nodes, sizeof *size);
-    gproji_give(&s->own, mark, nodes, sizeof *mark);
-    gproji_give(&s->own, adjacent, capacity, sizeof *adjacent);
-    return code;
-}
-
-/* Step 5: all that the fronts need. */
-
-/* The front of a narrow row; -1 where it has no variables. */
-GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t first = INT32_MAX;
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l) first = gproji_min(first, sy->place[s->node[g->local_variable[l]]]);
-    return first == INT32_MAX ? -1 : sy->front_of[first];
-}
-
-/* Sorts the narrow rows by their fronts. */
-GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
-    int32_t i, r, f, pass;
-    s->front_count = (size_t)s->cholesky->symbolic.fronts;
-    s->front_row_room = 0;
-    for (i = 0; i < s->group_count; ++i) s->front_row_room += (size_t)s->group[i].row_count;
-    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
-    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
-    if (!s->front_start || !s->front_row) return false;
-    for (pass = 0; pass < 2; ++pass) { /* count, fill */
-        for (i = 0; i < s->group_count; ++i) {
-            const gproji_group *g = &s->group[i];
-            for (r = 0; r < g->row_count; ++r) {
-                f = g->row[r].wide ? -1 : gproji_front_of_row(s, g, &g->row[r]);
-                if (f >= 0 && pass == 0) s->front_start[f + 2]++;
-                if (f < 0 || pass == 0) continue;
-                s->front_row[s->front_start[f + 1]].group = i;
-                s->front_row[s->front_start[f + 1]++].row = r;
-            }
-        }
-        for (f = 0; pass == 0 && f < (int32_t)s->front_count; ++f) s->front_start[f + 2] += s->front_start[f + 1];
-    }
-    s->front_row_count = (size_t)s->front_start[s->front_count];
+    graph->start[s->node_count] = filled;
     return true;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th, with what their places are made
-   of, or with their gradients. */
+/* Step 3: the graph of the nodes. */
+GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
+    gproji_incidence in;
+    size_t nodes = (size_t)s->node_count;
+    int64_t *mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    bool done;
+    memset(&in, 0, sizeof in);
+    graph->start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *graph->start);
+    graph->size = (int32_t *)gproji_take(&s->own, nodes, sizeof *graph->size);
+    done = mark && graph->start && graph->size && gproji_incidence_take(s, &in, mark) &&
+           gproji_find_meetings(s, &in, mark, graph);
+    gproji_incidence_give(&s->own, &in);
+    gproji_give(&s->own, mark, nodes, sizeof *mark);
+    return done;
+}
+
+/* Step 4: its analysis for the factorisation. */
+GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproji_meetings graph;
+    size_t nodes = (size_t)s->node_count;
+    memset(&graph, 0, sizeof graph);
+    if (gproji_compile_graph(s, &graph))
+        code =
+            gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, graph.size, graph.start, graph.adjacent, NULL);
+    gproji_give(&s->own, graph.start, nodes + 1, sizeof *graph.start);
+    gproji_give(&s->own, graph.size, nodes, sizeof *graph.size);
+    gproji_give(&s->own, graph.adjacent, graph.room, sizeof *graph.adjacent);
+    return code;
+}
+
+/* A front's rows come from all over the memory: asks for those that follow the k-th, with their variables or with their
+   gradients. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
@@ -6538,62 +6558,156 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool pl
         GPROJI_PREFETCH(row + 1);
         GPROJI_PREFETCH(g->local_at + next->local);
         GPROJI_PREFETCH(placing ? (const void *)(g->local_variable + next->local) : g->local_gradient + next->local);
-        GPROJI_PREFETCH(placing ? (const void *)(g->term_local + next->term) : g->local_gradient + next->local + 8);
+        if (!placing) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
     }
 }
 
-/* The storage rows of a narrow row's locals, ascending, and its locals in their order. at: of the front's nodes;
-   moved: work, where each local goes. */
-GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row, const int32_t *at,
-                                      int32_t moved[GPROJI_WIDE_ROW]) {
-    int32_t *local = g->local_variable + row->local, *key = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), i, j, from[GPROJI_WIDE_ROW];
-    int64_t t;
+/* Step 5: all that the fronts need. */
+
+/* What the places of all rows are found with. */
+typedef struct gproji_placing {
+    int32_t *column; /* of each variable, its column of L */
+    int32_t
+        *where; /* of each variable of a row, its place among the locals; of each node, its storage row in a front */
+    int32_t *front; /* of all rows, group by group, the front; -1: none */
+    size_t rows;
+} gproji_placing;
+
+/* Sorts a narrow row's variables by their columns. By insertion: rows are short, and their terms name the variables of a
+   node in order. */
+GPROJI_INTERNAL void gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local) {
+    int32_t key[GPROJI_WIDE_ROW], i, j;
     for (i = 0; i < count; ++i) {
-        int32_t variable = local[i], node = s->node[variable];
-        int32_t own = at[node] + variable - s->node_first[node];
-        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1], from[j] = from[j - 1];
+        int32_t variable = local[i], own = column[variable];
+        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
         key[j] = own;
         local[j] = variable;
-        from[j] = i;
-    }
-    for (i = 0; i < count; ++i) moved[from[i]] = i;
-    for (t = row->term; t < row[1].term; ++t) {
-        gproji_term_local *place = &g->term_local[t];
-        place->i = moved[place->i];
-        if (place->j >= 0) place->j = moved[place->j];
     }
 }
 
-/* Gives all narrow rows their places in their fronts. */
-GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
-    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), f;
-    int32_t moved[GPROJI_WIDE_ROW];
-    int64_t k;
-    if (!at) return false;
+/* Lets the terms of a row name places among its locals. */
+GPROJI_INTERNAL void gproji_place_terms(gproji_group *g, const gproji_row *row, int32_t *where) {
+    const int32_t *local = g->local_variable + row->local;
+    int32_t count = (int32_t)(row[1].local - row->local), i;
+    int64_t t;
+    for (i = 0; i < count; ++i) where[local[i]] = i;
+    for (t = row->term; t < row[1].term; ++t) {
+        g->term[t].i = where[g->term[t].i];
+        if (g->term[t].j >= 0) g->term[t].j = where[g->term[t].j];
+    }
+}
+
+/* Gives the locals of a group's rows their order. front: of each row, the front of the variable that is eliminated
+   first; -1 where there is none. */
+GPROJI_INTERNAL void gproji_place_group(gproj_system *s, gproji_group *g, const gproji_placing *placing,
+                                        int32_t *front) {
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) {
+        const gproji_row *row = &g->row[r];
+        int32_t *local = g->local_variable + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        if (!row->wide) gproji_sort_locals(placing->column, count, local);
+        front[r] = row->wide || count == 0 ? -1 : sy->front_of[sy->place[s->node[local[0]]]];
+        gproji_place_terms(g, row, placing->where);
+    }
+    g->placed = true;
+}
+
+/* Sorts the narrow rows by their fronts: front_start has been cleared. */
+GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
+    int64_t *start = s->front_start, row = 0;
+    int32_t i, r, f;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row)
+            if (front[row] >= 0) start[front[row] + 2]++;
+    for (f = 0; f < (int32_t)s->front_count; ++f) start[f + 2] += start[f + 1];
+    for (row = 0, i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row) {
+            if (front[row] < 0) continue;
+            s->front_row[start[front[row] + 1]].group = i;
+            s->front_row[start[front[row] + 1]++].row = r;
+        }
+    s->front_row_count = (size_t)start[s->front_count];
+}
+
+/* The storage rows of all narrow rows' locals. at: work, of each node. */
+GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
+    int32_t f;
+    int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
         gproji_map_front(&s->cholesky->symbolic, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
+            const gproji_row *row = &g->row[s->front_row[k].row];
             gproji_expect_rows(s, k, true);
-            gproji_place_row(s, g, &g->row[s->front_row[k].row], at, moved);
+            for (l = row->local; l < row[1].local; ++l) {
+                int32_t variable = g->local_variable[l], node = s->node[variable];
+                g->local_at[l] = at[node] + variable - s->node_first[node];
+            }
         }
     }
-    gproji_give(&s->own, at, (size_t)s->node_count, sizeof *at);
-    return true;
 }
 
+GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
+    const int32_t *permutation = s->cholesky->permutation;
+    size_t n = (size_t)s->variable_count;
+    int32_t i;
+    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
+    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
+    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
+    if (!placing->column || !placing->where || !placing->front) return false;
+    gproji_invert(s->variable_count, permutation, placing->column);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
+        if (!g->local_at) return false;
+    }
+    s->front_count = (size_t)s->cholesky->symbolic.fronts;
+    s->front_row_room = placing->rows;
+    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
+    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
+    return s->front_start && s->front_row;
+}
+
+/* Places of all rows in their fronts. */
+GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
+    gproji_placing placing;
+    size_t n = (size_t)s->variable_count, row = 0;
+    int32_t i;
+    bool done;
+    memset(&placing, 0, sizeof placing);
+    for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
+    done = gproji_take_placing(s, &placing);
+    for (i = 0; done && i < s->group_count; ++i) {
+        gproji_place_group(s, &s->group[i], &placing, placing.front + row);
+        row += (size_t)s->group[i].row_count;
+    }
+    if (done) {
+        gproji_sort_rows(s, placing.front);
+        gproji_place_locals(s, placing.where);
+    }
+    gproji_give(&s->own, placing.column, n, sizeof *placing.column);
+    gproji_give(&s->own, placing.where, n, sizeof *placing.where);
+    gproji_give(&s->own, placing.front, placing.rows, sizeof *placing.front);
+    return done;
+}
+
+/* Step 6: what iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
-    s->compiled_variables = s->variable_count;
-    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
+        if (!g->local_gradient) return false;
+    }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
     s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
     s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
-    return s->node && s->node_first && s->gradient && s->step && s->saved && s->residual && s->correction;
+    return s->gradient && s->step && s->saved && s->residual && s->correction;
 }
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
@@ -6628,34 +6742,42 @@ GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
     return true;
 }
 
-/* All steps; `named`: work, one for each variable. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *named) {
-    gproj_code code;
+/* Steps 1 and 2. */
+GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
+    gproji_named *named = (gproji_named *)gproji_take(&s->own, n, sizeof *named);
+    bool done;
     int32_t i;
+    s->compiled_variables = s->variable_count;
     s->wide_count = 0;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_terms(s, &s->group[i], named)) return GPROJ_ERROR_MEMORY;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_trim_rows(s, &s->group[i]) || !gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
-    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
-        return GPROJ_ERROR_MEMORY;
-    gproji_compile_nodes(s, named);
-    code = gproji_compile_graph(s);
+    s->node = (int32_t *)gproji_take_zeroed(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    done = named && s->node && s->node_first;
+    for (i = 0; done && i < s->group_count; ++i)
+        done = gproji_trim_rows(s, &s->group[i]) && gproji_compile_locals(s, &s->group[i], named);
+    if (done) gproji_compile_nodes(s);
+    gproji_give(&s->own, named, n, sizeof *named);
+    return done;
+}
+
+/* All steps. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s) {
+    gproj_code code;
+    if (!gproji_compile_variables(s)) return GPROJ_ERROR_MEMORY;
+    code = gproji_compile_analysis(s);
     if (code) return code;
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-    if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
-    return gproji_compile_fronts(s) && gproji_compile_places(s) ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+    if (!gproji_compile_places(s) || !gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) ||
+        !gproji_take_hinges(s) || !gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_ERROR_MEMORY;
+    return GPROJ_OK;
 }
 
 /* Makes the rows ready for iterations; nothing to do when they are. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
-    size_t variables = (size_t)s->variable_count;
-    gproji_named *named;
-    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_code code;
     if (s->compiled) return GPROJ_OK;
-    named = (gproji_named *)gproji_take(&s->own, variables, sizeof *named);
-    if (named) code = gproji_compile_steps(s, named);
-    gproji_give(&s->own, named, variables, sizeof *named);
+    code = gproji_compile_steps(s);
     if (code == GPROJ_OK) {
         s->compiled = true;
         return code;
@@ -6680,19 +6802,20 @@ typedef struct gproji_evaluation {
 /* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
+    const int32_t *variable = g->local_variable + row->local;
     gproji_sum sum = {0, 0};
     int64_t t;
     sum.high = row->constant;
     for (t = row->term; t < row[1].term; ++t) {
         const gproj_term *term = &g->term[t];
         gproji_sum product = {0, 0};
-        gproji_sum_add_product(&product, term->a, x[term->i]);
+        gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
         if (term->j < 0) {
             gproji_sum_add(&sum, product.high);
             sum.low += product.low;
         } else {
-            gproji_sum_add_product(&sum, product.high, x[term->j]);
-            sum.low += product.low * x[term->j];
+            gproji_sum_add_product(&sum, product.high, x[variable[term->j]]);
+            sum.low += product.low * x[variable[term->j]];
         }
     }
     return gproji_sum_value(&sum);
@@ -6707,6 +6830,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
     for (; r < end; ++r) {
         gproji_row *row = &g->row[r];
+        const int32_t *variable = g->local_variable + row->local;
         double *gradient = g->local_gradient + row->local, phi = row->constant, size = fabs(row->constant);
         int64_t t;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
@@ -6715,19 +6839,18 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
         if (!(row->weight > 0)) continue;
         for (t = row->term; t < row[1].term; ++t) {
             const gproj_term *term = &g->term[t];
-            const gproji_term_local *place = &g->term_local[t];
+            double xi = e->x[variable[term->i]], xj, value;
             if (term->j < 0) {
-                double value = term->a * e->x[term->i];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a;
+                value = term->a * xi;
+                gradient[term->i] += term->a;
             } else {
-                double value = term->a * e->x[term->i] * e->x[term->j];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a * e->x[term->j];
-                gradient[place->j] += term->a * e->x[term->i];
+                xj = e->x[variable[term->j]];
+                value = term->a * xi * xj;
+                gradient[term->i] += term->a * xj;
+                gradient[term->j] += term->a * xi;
             }
+            phi += value;
+            size += fabs(value);
         }
         if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
         row->phi = phi;
@@ -6814,10 +6937,10 @@ GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row 
 /* w^2 y (Hessian of phi), lower triangle */
 GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
     const int32_t *at = g->local_at + row->local;
-    double w2y = gproji_weight2(g, row) * (g->kind == GPROJ_WISH ? row->phi : row->multiplier);
+    double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
     int64_t t;
     for (t = row->term; t < row[1].term; ++t) {
-        int32_t i = g->term_local[t].i, j = g->term_local[t].j;
+        int32_t i = g->term[t].i, j = g->term[t].j;
         if (j < 0) continue;
         gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
     }
@@ -7055,7 +7178,7 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, to change their coefficients in place. */
+/* The terms of a row, to change their coefficients in place; for what they name see gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
@@ -7156,7 +7279,7 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     double sum = 0;
     int64_t t;
     for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[g->term[t].i]);
+        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[gproji_variable_of(g, &g->row[row], g->term[t].i)]);
     return 16 * DBL_EPSILON * sum;
 }
 
@@ -7636,6 +7759,22 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     }
 }
 
+/* All multipliers are 0. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier) {
+            gproji_fail_memory(&s->error);
+            return false;
+        }
+        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return true;
+}
+
 /* Does the row have a multiplier now? */
 GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_row *row) {
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
@@ -7649,9 +7788,10 @@ GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
         gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            if (!gproji_is_multiplied(g, row)) row->multiplier = 0;
-            row->rise = row->active ? 0 : -row->multiplier;
-            row->phi += row->multiplier;
+            gproji_multiplier *multiplier = &g->multiplier[r];
+            if (!gproji_is_multiplied(g, row)) multiplier->y = 0;
+            multiplier->rise = row->active ? 0 : -multiplier->y;
+            row->phi += multiplier->y;
         }
     }
 }
@@ -7669,8 +7809,8 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
                 row->phi = 0;
                 continue;
             }
-            row->phi += gproji_row_times(g, row, s->step) - (first ? row->multiplier : 0);
-            row->rise += row->phi;
+            row->phi += gproji_row_times(g, row, s->step) - (first ? g->multiplier[r].y : 0);
+            g->multiplier[r].rise += row->phi;
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -7718,7 +7858,7 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
                 double phi = gproji_row_value(g, r, s->saved, NULL) + gproji_row_times(g, row, s->step);
-                active = row->active ? row->multiplier + row->rise < 0 : !g->guard && phi < -1e-12;
+                active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0 : !g->guard && phi < -1e-12;
             }
             changed = changed || active != row->active;
             row->active = active;
@@ -7734,7 +7874,7 @@ GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            row->active = gproji_is_multiplied(g, row) && row->phi + row->multiplier < 0;
+            row->active = gproji_is_multiplied(g, row) && row->phi + g->multiplier[r].y < 0;
         }
     }
 }
@@ -7744,8 +7884,8 @@ GPROJI_INTERNAL void gproji_limit_multipliers(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
-            gproji_row *row = &s->group[i].row[r];
-            row->rise = gproji_fmin(row->rise, -row->multiplier);
+            gproji_multiplier *multiplier = &s->group[i].multiplier[r];
+            multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
         }
 }
 
@@ -7783,7 +7923,7 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            double w2 = gproji_weight2(g, row), y = row->multiplier + row->rise, phi;
+            double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi;
             if (!(w2 > 0)) continue;
             phi = gproji_row_value(g, r, x, NULL);
             if (g->kind == GPROJ_BOUND && phi + y >= 0) {
@@ -7845,7 +7985,8 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
         if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
-            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier += t * s->group[i].row[r].rise;
+            for (r = 0; r < s->group[i].row_count; ++r)
+                s->group[i].multiplier[r].y += t * s->group[i].multiplier[r].rise;
         return true;
     }
     gproji_step_back(s);
@@ -7897,7 +8038,7 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             bool wish = g->kind == GPROJ_WISH;
-            double pull = gproji_weight2(g, row) * (wish ? row->phi : row->multiplier);
+            double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
             gproji_row_add(g, row, pull, s->gradient);
             rows += wish;
             for (l = row->local; wish && l < row[1].local; ++l)
@@ -7961,12 +8102,11 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop, int32_t iterations) {
     gproj_system *s = loop->system;
-    int32_t half = iterations / 2 + iterations % 2, i, r, n;
+    int32_t half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
     s->late = 0;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
+    if (!gproji_start_multipliers(s)) return GPROJ_FAILED;
     gproji_see_nearest(loop);
     gproji_start_bounds(s);
     for (n = 1; n <= iterations; ++n) {
@@ -8031,8 +8171,8 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
 }
 
 /* The v-th of the variables that a row names, two a term; -1 where a linear term has no second one. */
-GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
-    return v % 2 ? g->term[v / 2].j : g->term[v / 2].i;
+GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
+    return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
 }
 
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
@@ -8042,11 +8182,11 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
     double size = 1, worst = 0;
     gproji_row_value(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
     }
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         double x, h, up, down, difference;
         if (v < 0) continue;
         x = s->x[v];
@@ -8060,7 +8200,7 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
     for (k = first; k < end; ++k)
-        if (gproji_named_variable(g, k) >= 0) gradient[gproji_named_variable(g, k)] = 0;
+        if (gproji_named_variable(g, r, k) >= 0) gradient[gproji_named_variable(g, r, k)] = 0;
     return worst;
 }
 
@@ -11709,6 +11849,19 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     }
 }
 
+/* Room for the normals of all faces that have none yet. */
+GPROJI_INTERNAL void gproji_reserve_normals(gproj_form *form, int32_t group) {
+    gproj_system *s = form->system;
+    size_t faces = 0, corners = 0;
+    int32_t f;
+    for (f = 0; f < form->mesh->face_count; ++f)
+        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
+            ++faces, corners += (size_t)form->mesh->face_degree[f];
+    if (!gproji_reserve_variables(s, 3 * faces) ||
+        !gproji_reserve_rows(s, &s->group[group], faces + corners, 3 * faces + 6 * corners))
+        gproji_fail_memory(&s->error);
+}
+
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
     int32_t group, f;
@@ -11719,6 +11872,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     }
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
+    if (group >= 0) gproji_reserve_normals(form, group);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
@@ -11795,7 +11949,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
             part->segment[i] = gproji_walk(curve, part->segment[i], p);
-        } else if (system->group[group].row[3 * i + 2].own > 0) {
+        } else if (gproji_own_weight(&system->group[group], 3 * i + 2) > 0) {
             continue;
         }
         after = gproji_along(curve, part->segment[i], p, true) > 0;
@@ -12259,14 +12413,17 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
     g = &form->system->group[group];
     have = gproji_element_count(form->mesh, g->place);
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
-    if (!of) return gproji_fail_memory(&form->error);
+    if (!of || !gproji_share_weights(form->system, g)) {
+        gproji_give(&form->own, of, (size_t)have, sizeof *of);
+        return gproji_fail_memory(&form->error);
+    }
     for (k = 0; k < have; ++k) of[k] = -1;
     for (k = 0; k < count; ++k) of[elements ? elements[k] : k] = weights[k];
     for (k = 0; k < g->row_count; ++k) {
         gproji_row *row = &g->row[k];
         if (row->element < 0 || row->element >= have || of[row->element] < 0) continue;
-        row->factor = of[row->element];
-        row->weight = row->own * row->factor;
+        g->share[k].factor = of[row->element];
+        row->weight = g->share[k].own * g->share[k].factor;
     }
     gproji_give(&form->own, of, (size_t)have, sizeof *of);
     form->system->changed = true;
@@ -13649,11 +13806,13 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
-    int32_t count, edge = form->system->group[group].row[row].element;
+    const gproji_group *g = &form->system->group[group];
+    int32_t count, edge = g->row[row].element;
     const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
-    if (count != 1 || term->j >= 0 || term->i != form->statics->force[edge]) return -1;
-    if (form->system->group[group].row[row].constant != 0) return -1;
+    if (count != 1 || term->j >= 0) return -1;
+    if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
+    if (g->row[row].constant != 0) return -1;
     *sign = term->a;
     return edge;
 }
@@ -14473,13 +14632,15 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
 
 /* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
    them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
-    int32_t vertices = 3 * form->mesh->vertex_count, t;
+GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
+    int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
-    for (t = 0; t < count; ++t) {
-        if (term[t].i >= vertices) continue;
-        if (term[t].j >= 0 && term[t].j < vertices) return true;
-        if (term[t].j < 0) sum[term[t].i % 3] += term[t].a;
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        if (i >= vertices) continue;
+        if (j >= 0 && j < vertices) return true;
+        if (j < 0) sum[i % 3] += g->term[t].a;
     }
     return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
 }
@@ -14490,16 +14651,13 @@ GPROJI_INTERNAL bool gproji_bound_holds(const gproji_row *row) { return row->con
 
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t g, r, count;
-    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
-        gproj_group_info info = gproj_system_group_info(form->system, g);
-        if (form->system->group[g].guard) continue;
-        for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
-            const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
-            bool bound = info.kind == GPROJ_BOUND, volume = form->system->group[g].global;
-            if (!(form->system->group[g].row[r].weight > 0)) continue;
-            if (bound ? gproji_bound_holds(&form->system->group[g].row[r])
-                      : volume || gproji_row_holds(form, term, count))
+    int32_t i, r;
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            if (g->kind == GPROJ_BOUND ? gproji_bound_holds(row) : g->global || gproji_row_holds(form, g, row))
                 return true;
         }
     }
