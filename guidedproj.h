@@ -11637,6 +11637,14 @@ GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, dou
     term->a = a;
 }
 
+/* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
+GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms) {
+    gproj_system *s = form->system;
+    if (group >= 0 &&
+        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms)))
+        gproji_fail_memory(&s->error);
+}
+
 /* Refuses vertex numbers out of range. */
 GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
                                                const int32_t *vertices) {
@@ -11734,6 +11742,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, c
     int32_t i, k, group;
     if (!part) return -1;
     group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
@@ -11850,16 +11859,13 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
 }
 
 /* Room for the normals of all faces that have none yet. */
-GPROJI_INTERNAL void gproji_reserve_normals(gproj_form *form, int32_t group) {
-    gproj_system *s = form->system;
+GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
     size_t faces = 0, corners = 0;
     int32_t f;
     for (f = 0; f < form->mesh->face_count; ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
             ++faces, corners += (size_t)form->mesh->face_degree[f];
-    if (!gproji_reserve_variables(s, 3 * faces) ||
-        !gproji_reserve_rows(s, &s->group[group], faces + corners, 3 * faces + 6 * corners))
-        gproji_fail_memory(&s->error);
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 3 * faces + 6 * corners);
 }
 
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
@@ -11872,7 +11878,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     }
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
-    if (group >= 0) gproji_reserve_normals(form, group);
+    gproji_expect_normals(form, group);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
@@ -12211,8 +12217,11 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     gproj_term *term;
     int32_t group, v;
+    size_t vertices;
     if (!gproji_form_ready(form)) return -1;
+    vertices = (size_t)form->mesh->vertex_count;
     group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 6 * vertices, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -13596,6 +13605,8 @@ GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
     gproj_term *term;
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
+    gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
+                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v]);
     count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
     if (!term) {
