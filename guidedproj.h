@@ -5895,11 +5895,12 @@ struct gproj_system {
     gproji_row_name *front_row; /* all narrow rows */
     size_t front_count, front_row_count, front_row_room;
     double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;          /* dx */
+    double *step;          /* dx: the first column of wide_response */
     double *saved;         /* x before the step */
-    double *residual;      /* work of refinement and of the low-rank update; nearest: the sum of steps */
-    double *correction;    /* the same */
-    double *wide_response; /* wide_count columns A^-1 (w g), and one for the right-hand side */
+    double *sum;           /* nearest: of the steps of a slide; NULL before */
+    double *residual;      /* with wide rows: work of refinement */
+    double *balance;       /* the same */
+    double *wide_response; /* 1 + wide_count columns: right-hand sides, A^-1 of them; then the step, and A^-1 (w g) */
     double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
     double *wide_vector;   /* wide_count */
     size_t wide_taken;     /* wide_count when the three were taken */
@@ -5958,10 +5959,10 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
     gproji_give(&s->own, s->front_row, s->front_row_room, sizeof *s->front_row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
-    gproji_give(&s->own, s->step, n, sizeof *s->step);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
+    gproji_give(&s->own, s->sum, n, sizeof *s->sum);
     gproji_give(&s->own, s->residual, n, sizeof *s->residual);
-    gproji_give(&s->own, s->correction, n, sizeof *s->correction);
+    gproji_give(&s->own, s->balance, n, sizeof *s->balance);
     gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
@@ -5969,7 +5970,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     s->node = s->node_first = NULL;
     s->front_start = NULL;
     s->front_row = NULL;
-    s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
+    s->gradient = s->step = s->saved = s->sum = s->residual = s->balance = NULL;
     s->wide_response = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
@@ -6305,26 +6306,44 @@ GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row
     return g->placed && i >= 0 ? g->local_variable[row->local + i] : i;
 }
 
-/* phi at x, whether compiled or not; adds grad phi to `gradient` unless it is NULL. */
-GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x, double *gradient) {
-    const gproji_row *row = &g->row[r];
+/* phi at x. variable: the variables that the terms' i and j stand for; NULL: i and j themselves. */
+GPROJI_INLINED double gproji_terms_value(const gproji_group *g, const gproji_row *row, const double *x,
+                                         const int32_t *variable) {
+    const gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
     double phi = row->constant;
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        double a = g->term[t].a;
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
-        phi += j < 0 ? a * x[i] : a * x[i] * x[j];
-        if (!gradient) continue;
-        gradient[i] += j < 0 ? a : a * x[j];
-        if (j >= 0) gradient[j] += a * x[i];
+    for (; term < end; ++term) {
+        double value = term->a * x[variable ? variable[term->i] : term->i];
+        phi += term->j < 0 ? value : value * x[variable ? variable[term->j] : term->j];
     }
     return phi;
 }
 
+/* phi at x, whether compiled or not. */
+GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
+    const gproji_row *row = &g->row[r];
+    return g->placed ? gproji_terms_value(g, row, x, g->local_variable + row->local)
+                     : gproji_terms_value(g, row, x, NULL);
+}
+
+/* gradient += grad phi at x, whether compiled or not. */
+GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
+    const gproji_row *row = &g->row[r];
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        double a = g->term[t].a;
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        gradient[i] += j < 0 ? a : a * x[j];
+        if (j >= 0) gradient[j] += a * x[i];
+    }
+}
+
 GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, int32_t row, double *gradient) {
     if (!gproji_system_has_row(s, group, row)) return 0;
-    if (gradient) memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
-    return gproji_row_value(&s->group[group], row, s->x, gradient);
+    if (gradient) {
+        memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
+        gproji_row_gradient(&s->group[group], row, s->x, gradient);
+    }
+    return gproji_row_value(&s->group[group], row, s->x);
 }
 
 /* -- compilation -- */
@@ -6703,21 +6722,22 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
         if (!g->local_gradient) return false;
     }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
-    s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
-    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
-    s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
-    return s->gradient && s->step && s->saved && s->residual && s->correction;
+    return s->gradient && s->saved;
 }
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
     if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
     s->wide_taken = k;
-    s->wide_response = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
+    s->wide_response = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
     s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
-    return s->wide_response && s->wide_matrix && s->wide_vector;
+    if (!s->wide_response || !s->wide_matrix || !s->wide_vector) return false;
+    if (k == 0) return true;
+    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
+    s->balance = (double *)gproji_take(&s->own, n, sizeof *s->balance);
+    return s->residual && s->balance;
 }
 
 GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
@@ -6821,6 +6841,30 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
     return gproji_sum_value(&sum);
 }
 
+/* phi of a row at x; `size` becomes the sum of its terms' absolute values, and grad phi is added to `gradient`. */
+GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
+                                          double *gradient, double *size) {
+    const int32_t *variable = g->local_variable + row->local;
+    double phi = row->constant, sum = fabs(row->constant);
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        const gproj_term *term = &g->term[t];
+        double value = term->a * x[variable[term->i]], other;
+        if (term->j < 0) {
+            gradient[term->i] += term->a;
+        } else {
+            other = x[variable[term->j]];
+            gradient[term->i] += term->a * other;
+            gradient[term->j] += value;
+            value *= other;
+        }
+        phi += value;
+        sum += fabs(value);
+    }
+    *size = sum;
+    return phi;
+}
+
 /* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
    violated, or where they did in the last step (gproji_switch_bounds lets them go again). */
 GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
@@ -6830,28 +6874,12 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
     for (; r < end; ++r) {
         gproji_row *row = &g->row[r];
-        const int32_t *variable = g->local_variable + row->local;
-        double *gradient = g->local_gradient + row->local, phi = row->constant, size = fabs(row->constant);
-        int64_t t;
+        double *gradient = g->local_gradient + row->local, phi, size;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
         if (!(row->weight > 0)) row->active = false;
         if (!(row->weight > 0)) continue;
-        for (t = row->term; t < row[1].term; ++t) {
-            const gproj_term *term = &g->term[t];
-            double xi = e->x[variable[term->i]], xj, value;
-            if (term->j < 0) {
-                value = term->a * xi;
-                gradient[term->i] += term->a;
-            } else {
-                xj = e->x[variable[term->j]];
-                value = term->a * xi * xj;
-                gradient[term->i] += term->a * xj;
-                gradient[term->j] += term->a * xi;
-            }
-            phi += value;
-            size += fabs(value);
-        }
+        phi = gproji_linearise_row(g, row, e->x, gradient, &size);
         if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
         row->phi = phi;
         row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -6990,8 +7018,11 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
 /* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
    (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
-   an approximation dx, with r = -gradient - A dx and c = A^-1 r, the correction is
-       c - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
+   an approximation dx, at first 0, with r = -gradient - A dx and c = A^-1 r, a better one is
+       (dx + c) - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
+
+/* The parts of a step that may cancel to it without a check: see gproji_refine_step. */
+static const double gproji_parts_most = 1e3;
 
 /* Calls `visit` for the wide rows that act in a fixed order; returns how many there are. */
 typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
@@ -7007,9 +7038,14 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     return index;
 }
 
+/* A^-1 of column `index` of U, or that column. */
+GPROJI_INLINE double *gproji_wide_response(const gproj_system *s, int32_t index) {
+    return s->wide_response + (int64_t)s->variable_count * (index + 1);
+}
+
 /* Column `index` of U. */
 GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double *column = s->wide_response + (int64_t)s->variable_count * index;
+    double *column = gproji_wide_response(s, index);
     memset(column, 0, (size_t)s->variable_count * sizeof *column);
     gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
@@ -7019,13 +7055,11 @@ GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, const gproji_group *g
                                           int32_t index) {
     double *out = s->wide_matrix + (int64_t)index * s->wide_count, weight = sqrt(gproji_weight2(g, row));
     int32_t k;
-    for (k = 0; k <= index; ++k)
-        out[k] = weight * gproji_row_times(g, row, s->wide_response + (int64_t)s->variable_count * k) + (k == index);
+    for (k = 0; k <= index; ++k) out[k] = weight * gproji_row_times(g, row, gproji_wide_response(s, k)) + (k == index);
 }
 
 GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double ahead = gproji_row_times(g, row, s->step) + gproji_row_times(g, row, s->correction);
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + ahead);
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
 }
 
 /* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix, so no pivot is less
@@ -7055,35 +7089,46 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* correction = c - A^-1 U m from correction = c: see above. `wide`: columns of U. */
-GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide) {
+/* The sum of squares; four sums, so that none has to wait for the one before. */
+GPROJI_INTERNAL double gproji_square_norm(int64_t count, const double *v) {
+    double sum[4] = {0, 0, 0, 0};
+    int64_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += v[i + k] * v[i + k];
+    for (; i < count; ++i) sum[0] += v[i] * v[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* dx becomes dx - A^-1 U m with the m that belongs to it: see above. `wide`: columns of U. Returns |dx| + sum |A^-1 U_k
+   m_k| over the |dx| that comes out, or more. */
+GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide) {
     int64_t n = s->variable_count, i;
+    double parts = sqrt(gproji_square_norm(n, s->step));
     int32_t k;
-    if (wide == 0) return;
     gproji_for_wide_rows(s, gproji_wide_project);
     gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
-    for (k = 0; k < wide; ++k)
-        for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
+    for (k = 0; k < wide; ++k) {
+        const double *response = gproji_wide_response(s, k);
+        double m = s->wide_vector[k];
+        for (i = 0; i < n; ++i) s->step[i] -= m * response[i];
+        parts += fabs(m) * sqrt(gproji_square_norm(n, response));
+    }
+    return parts / gproji_fmax(sqrt(gproji_square_norm(n, s->step)), DBL_MIN);
 }
 
-/* The right-hand sides of a step: the columns of U, and -gradient. Returns the number of wide rows. */
+/* The right-hand sides of a step: -gradient, and the columns of U. Returns the number of wide rows. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
-    size_t n = (size_t)s->variable_count, v;
-    int32_t wide = gproji_for_wide_rows(s, gproji_wide_column);
-    double *last = s->wide_response + n * (size_t)wide;
-    for (v = 0; v < n; ++v) last[v] = -s->gradient[v];
-    return wide;
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
+    return gproji_for_wide_rows(s, gproji_wide_column);
 }
 
-/* The step from what A^-1 makes of its right-hand sides. */
-GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide) {
-    size_t n = (size_t)s->variable_count;
+/* The step from what A^-1 makes of its right-hand sides. Returns how much larger its parts are. */
+GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide) {
+    if (wide == 0) return 1;
     gproji_for_wide_rows(s, gproji_wide_products);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
-    memset(s->step, 0, n * sizeof *s->step);
-    memcpy(s->correction, s->wide_response + n * (size_t)wide, n * sizeof *s->step);
-    gproji_wide_correct(s, wide);
-    memcpy(s->step, s->correction, n * sizeof *s->step);
+    return gproji_wide_correct(s, wide);
 }
 
 /* The step with the factor of A. */
@@ -7093,10 +7138,10 @@ GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) {
     gproji_finish_step(s, wide);
 }
 
-/* correction += U m at this step. */
+/* balance += U m at this step. */
 GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
     (void)index;
-    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->correction);
+    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->balance);
 }
 
 /* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
@@ -7104,23 +7149,29 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
     double left = 0, size = 0;
     int32_t v;
     gproji_matrix_times(s, epsilon, s->step, s->residual);
-    memset(s->correction, 0, (size_t)s->variable_count * sizeof *s->correction);
+    memset(s->balance, 0, (size_t)s->variable_count * sizeof *s->balance);
     gproji_for_wide_rows(s, gproji_wide_pull);
     for (v = 0; v < s->variable_count; ++v) {
         s->residual[v] = -s->gradient[v] - s->residual[v];
-        left = gproji_fmax(left, fabs(s->residual[v] - s->correction[v]));
-        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->correction[v]));
+        left = gproji_fmax(left, fabs(s->residual[v] - s->balance[v]));
+        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->balance[v]));
     }
     return left <= 1e-9 * size;
 }
 
-/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. */
-GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, int32_t rounds) {
+/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
+   costs a product with all rows, and is left out where the answer is known: `parts` is what the parts of dx, c and the
+   A^-1 U_k m_k, are to dx. The solves that they come from are backward stable, and so is that for m, whose matrix is
+   made of the same A^-1 U: each part misses its equation by some roundings of |A + U U'| times its size, so dx misses
+   the whole by `parts` times what a solve without wide rows would, which is not looked at either. It is the cancellation
+   of large parts that must be: where wide rows say what narrow ones say already. */
+GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     int32_t v;
-    while (wide > 0 && rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
-        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
+    if (wide == 0 || parts <= gproji_parts_most) return;
+    while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->residual);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->residual[v];
         gproji_wide_correct(s, wide);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
     }
 }
 
@@ -7324,8 +7375,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
         gproji_cholesky_finish(s->cholesky, s->wide_response);
     else
         gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-    gproji_refine_step(s, wide, epsilon, GPROJI_REFINEMENTS);
+    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -7379,7 +7429,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_value(g, r, s->x, NULL) - along.phi - along.h;
+            along.q = gproji_row_value(g, r, s->x) - along.phi - along.h;
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
@@ -7469,9 +7519,9 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     const gproji_row *row = &g->row[r];
     double ahead;
     if (!(row->weight > 0)) return false;
-    if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
+    if (g->guard) return row->active || gproji_row_value(g, r, s->x) < -g->slack;
     ahead = row->phi + gproji_row_times(g, row, s->step);
-    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x, NULL) < -slack;
+    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
 }
 
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
@@ -7762,14 +7812,13 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
 /* All multipliers are 0. */
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
     int32_t i;
+    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
+    if (!s->sum) return false;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
         if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
-        if (!g->multiplier) {
-            gproji_fail_memory(&s->error);
-            return false;
-        }
+        if (!g->multiplier) return false;
         memset(g->multiplier, 0, rows * sizeof *g->multiplier);
     }
     return true;
@@ -7821,7 +7870,7 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
    definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
-    double *sum = s->residual, first = 0, left = HUGE_VAL;
+    double *sum = s->sum, first = 0, left = HUGE_VAL;
     int32_t round, v;
     bool factored;
     double follows = gproji_epsilon_max;
@@ -7857,7 +7906,7 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             gproji_row *row = &g->row[r];
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
-                double phi = gproji_row_value(g, r, s->saved, NULL) + gproji_row_times(g, row, s->step);
+                double phi = gproji_row_value(g, r, s->saved) + gproji_row_times(g, row, s->step);
                 active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0 : !g->guard && phi < -1e-12;
             }
             changed = changed || active != row->active;
@@ -7894,7 +7943,7 @@ GPROJI_INTERNAL void gproji_evaluate_slide(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x, NULL);
+            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
 }
 
 /* Finds a slide, again where it meets bounds. */
@@ -7925,7 +7974,7 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
             const gproji_row *row = &g->row[r];
             double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi;
             if (!(w2 > 0)) continue;
-            phi = gproji_row_value(g, r, x, NULL);
+            phi = gproji_row_value(g, r, x);
             if (g->kind == GPROJ_BOUND && phi + y >= 0) {
                 value -= w2 * y * y;
                 continue;
@@ -7946,8 +7995,7 @@ GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             row->phi = 0;
-            if (row->active && gproji_is_multiplied(g, row))
-                row->phi = gproji_counted(g, gproji_row_value(g, r, s->x, NULL));
+            if (row->active && gproji_is_multiplied(g, row)) row->phi = gproji_counted(g, gproji_row_value(g, r, s->x));
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -7966,7 +8014,7 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
         now = gproji_evaluate_constraints(s);
         for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->step[v];
     }
-    memcpy(s->step, s->residual, (size_t)s->variable_count * sizeof *s->step);
+    memcpy(s->step, s->sum, (size_t)s->variable_count * sizeof *s->step);
 }
 
 /* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
@@ -8106,7 +8154,10 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop, int32_t iter
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
     s->late = 0;
-    if (!gproji_start_multipliers(s)) return GPROJ_FAILED;
+    if (!gproji_start_multipliers(s)) {
+        gproji_fail_memory(&s->error);
+        return GPROJ_FAILED;
+    }
     gproji_see_nearest(loop);
     gproji_start_bounds(s);
     for (n = 1; n <= iterations; ++n) {
@@ -8180,7 +8231,7 @@ GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, in
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
     int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
     double size = 1, worst = 0;
-    gproji_row_value(g, r, s->x, gradient);
+    gproji_row_gradient(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
         int32_t v = gproji_named_variable(g, r, k);
         if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
@@ -8192,9 +8243,9 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
         x = s->x[v];
         h = 1e-5 * gproji_fmax(1, fabs(x));
         s->x[v] = x + h;
-        up = gproji_row_value(g, r, s->x, NULL);
+        up = gproji_row_value(g, r, s->x);
         s->x[v] = x - h;
-        down = gproji_row_value(g, r, s->x, NULL);
+        down = gproji_row_value(g, r, s->x);
         s->x[v] = x;
         difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
