@@ -4250,15 +4250,6 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     return done;
 }
 
-/* The storage rows of a front's nodes in its panel: at[node] is that of the node's first variable. */
-GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int32_t *at) {
-    const gproji_front *front = &sy->front[f];
-    int32_t shift = gproji_panel_shift(front->width), k;
-    int64_t r;
-    for (k = front->first_place; k < front->end_place; ++k) at[sy->order[k]] = sy->column[k] - front->first + shift;
-    for (r = front->rows; r < front->rows + front->row_nodes; ++r) at[sy->order[sy->row_node[r]]] = sy->row_at[r];
-}
-
 /* ============================================================================================================
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
@@ -5980,6 +5971,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
     int32_t i;
     if (!s) return;
+    for (i = 0; i < s->group_count; ++i) s->group[i].placed = false; /* nobody reads its terms any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
@@ -6650,20 +6642,30 @@ GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
     s->front_row_count = (size_t)start[s->front_count];
 }
 
-/* The storage rows of all narrow rows' locals. at: work, of each node. */
+/* The storage rows of a front's variables in its panel. at: of each variable. */
+GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
+    int64_t r;
+    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+        const int32_t *column = sy->column + sy->row_node[r];
+        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
+    }
+}
+
+/* The storage rows of all narrow rows' locals, front by front. at: work, of each variable. */
 GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     int32_t f;
     int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
-        gproji_map_front(&s->cholesky->symbolic, f, at);
+        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
             const gproji_row *row = &g->row[s->front_row[k].row];
             gproji_expect_rows(s, k, true);
-            for (l = row->local; l < row[1].local; ++l) {
-                int32_t variable = g->local_variable[l], node = s->node[variable];
-                g->local_at[l] = at[node] + variable - s->node_first[node];
-            }
+            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_variable[l]];
         }
     }
 }
