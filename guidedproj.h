@@ -4404,6 +4404,19 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
     return true;
 }
 
+/* The storage rows of a front in its panel: at[variable] for the variables that have one. */
+GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
+    int64_t r;
+    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+        const int32_t *column = sy->column + sy->row_node[r];
+        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
+    }
+}
+
 /* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
    their graph (see gproji_graph). The options' permutation is one of the nodes. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
@@ -6640,19 +6653,6 @@ GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
             s->front_row[start[front[row] + 1]++].row = r;
         }
     s->front_row_count = (size_t)start[s->front_count];
-}
-
-/* The storage rows of a front's variables in its panel. at: of each variable. */
-GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
-    const gproji_symbolic *sy = &c->symbolic;
-    const gproji_front *front = &sy->front[f];
-    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
-    int64_t r;
-    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
-    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
-        const int32_t *column = sy->column + sy->row_node[r];
-        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
-    }
 }
 
 /* The storage rows of all narrow rows' locals, front by front. at: work, of each variable. */
