@@ -7492,16 +7492,19 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
-GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const gproji_course *m) {
-    double none = gproji_merit_at(m, 0), full = gproji_merit_at(m, 1), t;
-    if (!(full <= DBL_MAX)) return 0;
+GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop) {
+    gproji_course merit;
+    double none, full, t;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
+    gproji_merit_along(loop->system, &merit);
+    none = gproji_merit_at(&merit, 0), full = gproji_merit_at(&merit, 1);
+    if (!(full <= DBL_MAX)) return 0;
     if (full > none) {
-        t = gproji_minimise_merit(m, 0.05, 1);
-        return gproji_merit_at(m, t) < none ? t : 0;
+        t = gproji_minimise_merit(&merit, 0.05, 1);
+        return gproji_merit_at(&merit, t) < none ? t : 0;
     }
     if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_merit(m, 0.1, 2);
+    t = gproji_minimise_merit(&merit, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
 
@@ -7559,15 +7562,13 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    gproji_course merit;
     loop->iteration.epsilon = epsilon;
     if (!gproji_find_bounded_step(loop, epsilon)) {
         gproji_step_back(s);
         return false;
     }
-    gproji_merit_along(s, &merit);
-    loop->iteration.length = gproji_step_length(loop, &merit);
-    loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+    loop->iteration.length = gproji_step_length(loop);
+    if (loop->iteration.length != 1) loop->iteration.step = gproji_take_step(s, loop->iteration.length);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
 }
@@ -7588,12 +7589,17 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
-        if (gproji_try_step(loop, epsilon)) {
-            double before = loop->standing.residual;
-            gproji_linearise(loop);
+        double before = loop->standing.residual;
+        bool stepped = gproji_try_step(loop, epsilon);
+        if (stepped) gproji_linearise(loop);
+        if (stepped && loop->standing.merit <= DBL_MAX) {
             if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
                 loop->epsilon_least = gproji_fmax(0.1 * loop->epsilon_least, gproji_epsilon_least);
             return true;
+        }
+        if (stepped) { /* beyond all numbers */
+            gproji_step_back(s);
+            gproji_linearise(loop);
         }
         gproji_start_bounds(s);
     }
