@@ -4915,11 +4915,34 @@ GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
         for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
-/* Solves for up to c->batch right-hand sides. */
-GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+/* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
+GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
     gproji_cholesky_take_sides(c, count, b);
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
     gproji_forward_group(c, c->symbolic.tasks);
+}
+
+/* Solves for up to c->batch right-hand sides. */
+GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+    gproji_cholesky_start(c, count, b);
+    gproji_cholesky_finish(c, x);
+}
+
+/* L y = b for any number of right-hand sides, y in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, const double *b, double *y) {
+    size_t n = (size_t)c->symbolic.columns;
+    int32_t r, sides;
+    for (r = 0; r < count; r += sides) {
+        sides = gproji_min(count - r, c->batch);
+        gproji_cholesky_start(c, sides, b + (size_t)r * n);
+        memcpy(y + (size_t)r * n, c->solution, (size_t)sides * n * sizeof *y);
+    }
+}
+
+/* L' x = y for one right-hand side in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
+    memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
+    c->sides = 1;
     gproji_cholesky_finish(c, x);
 }
 
@@ -5898,18 +5921,18 @@ struct gproj_system {
     int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
     gproji_row_name *front_row; /* all narrow rows */
     size_t front_count, front_row_count, front_row_room;
-    double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;          /* dx: the first column of wide_response */
-    double *saved;         /* x before the step */
-    double *sum;           /* nearest: of the steps of a slide; NULL before */
-    double *residual;      /* with wide rows: work of refinement */
-    double *balance;       /* the same */
-    double *wide_response; /* 1 + wide_count columns: right-hand sides, A^-1 of them; then the step, and A^-1 (w g) */
-    double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
-    double *wide_vector;   /* wide_count */
-    size_t wide_taken;     /* wide_count when the three were taken */
-    gproji_hinge *hinge;   /* the bounds' rows that a step may violate */
-    size_t hinge_taken;    /* as many as all bounds have rows */
+    double *gradient;    /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;        /* dx: the first column of `sides` */
+    double *saved;       /* x before the step */
+    double *sum;         /* nearest: of the steps of a slide; NULL before */
+    double *residual;    /* with wide rows: work of refinement */
+    double *balance;     /* the same */
+    double *sides;       /* 1 + wide_count columns: the right-hand sides -gradient and U of a step, then it and Y */
+    double *wide_matrix; /* wide_count x wide_count: I + Y'Y and its Cholesky factor */
+    double *wide_vector; /* wide_count */
+    size_t wide_taken;   /* wide_count when the three were taken */
+    gproji_hinge *hinge; /* the bounds' rows that a step may violate */
+    size_t hinge_taken;  /* as many as all bounds have rows */
 };
 
 /* -- life and building -- */
@@ -5967,7 +5990,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->sum, n, sizeof *s->sum);
     gproji_give(&s->own, s->residual, n, sizeof *s->residual);
     gproji_give(&s->own, s->balance, n, sizeof *s->balance);
-    gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
+    gproji_give(&s->own, s->sides, (s->wide_taken + 1) * n, sizeof *s->sides);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
     gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
@@ -5975,7 +5998,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     s->front_start = NULL;
     s->front_row = NULL;
     s->gradient = s->step = s->saved = s->sum = s->residual = s->balance = NULL;
-    s->wide_response = s->wide_matrix = s->wide_vector = NULL;
+    s->sides = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
     s->compiled = false;
@@ -6732,10 +6755,10 @@ GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
     if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
     s->wide_taken = k;
-    s->wide_response = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
+    s->sides = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->sides);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
     s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
-    if (!s->wide_response || !s->wide_matrix || !s->wide_vector) return false;
+    if (!s->sides || !s->wide_matrix || !s->wide_vector) return false;
     if (k == 0) return true;
     s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
     s->balance = (double *)gproji_take(&s->own, n, sizeof *s->balance);
@@ -7020,8 +7043,9 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
 /* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
    (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
-   an approximation dx, at first 0, with r = -gradient - A dx and c = A^-1 r, a better one is
-       (dx + c) - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
+   an approximation dx, at first 0, with A = L L', Y = L^-1 U and z = L^-1 (-gradient - A dx), a better one is
+       dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
+   so that U costs half a solution. */
 
 /* The parts of a step that may cancel to it without a check: see gproji_refine_step. */
 static const double gproji_parts_most = 1e3;
@@ -7040,27 +7064,24 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     return index;
 }
 
-/* A^-1 of column `index` of U, or that column. */
-GPROJI_INLINE double *gproji_wide_response(const gproj_system *s, int32_t index) {
-    return s->wide_response + (int64_t)s->variable_count * (index + 1);
+/* Column `index` of U, or of Y. */
+GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
+    return s->sides + (int64_t)s->variable_count * (index + 1);
 }
 
-/* Column `index` of U. */
 GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double *column = gproji_wide_response(s, index);
+    double *column = gproji_wide_side(s, index);
     memset(column, 0, (size_t)s->variable_count * sizeof *column);
     gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
 
-/* Row `index` of I + U'A^-1 U, up to the diagonal. */
-GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          int32_t index) {
-    double *out = s->wide_matrix + (int64_t)index * s->wide_count, weight = sqrt(gproji_weight2(g, row));
-    int32_t k;
-    for (k = 0; k <= index; ++k) out[k] = weight * gproji_row_times(g, row, gproji_wide_response(s, k)) + (k == index);
+/* w phi */
+GPROJI_INTERNAL void gproji_wide_value(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * row->phi;
 }
 
-GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+/* w phi + U'dx */
+GPROJI_INTERNAL void gproji_wide_ahead(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
     s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
 }
 
@@ -7091,54 +7112,73 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* The sum of squares; four sums, so that none has to wait for the one before. */
-GPROJI_INTERNAL double gproji_square_norm(int64_t count, const double *v) {
+/* a'b; four sums, so that none has to wait for the one before. */
+GPROJI_INTERNAL double gproji_wide_dot(int64_t count, const double *a, const double *b) {
     double sum[4] = {0, 0, 0, 0};
     int64_t i, k;
     for (i = 0; i + 4 <= count; i += 4)
-        for (k = 0; k < 4; ++k) sum[k] += v[i + k] * v[i + k];
-    for (; i < count; ++i) sum[0] += v[i] * v[i];
+        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; ++i) sum[0] += a[i] * b[i];
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* dx becomes dx - A^-1 U m with the m that belongs to it: see above. `wide`: columns of U. Returns |dx| + sum |A^-1 U_k
-   m_k| over the |dx| that comes out, or more. */
-GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide) {
-    int64_t n = s->variable_count, i;
-    double parts = sqrt(gproji_square_norm(n, s->step));
-    int32_t k;
-    gproji_for_wide_rows(s, gproji_wide_project);
-    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
-    for (k = 0; k < wide; ++k) {
-        const double *response = gproji_wide_response(s, k);
-        double m = s->wide_vector[k];
-        for (i = 0; i < n; ++i) s->step[i] -= m * response[i];
-        parts += fabs(m) * sqrt(gproji_square_norm(n, response));
-    }
-    return parts / gproji_fmax(sqrt(gproji_square_norm(n, s->step)), DBL_MIN);
+/* I + Y'Y, factored. `wide`: columns of Y. */
+GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
+    int32_t i, k;
+    for (i = 0; i < wide; ++i)
+        for (k = 0; k <= i; ++k)
+            s->wide_matrix[(int64_t)i * s->wide_count + k] =
+                gproji_wide_dot(s->variable_count, gproji_wide_side(s, i), gproji_wide_side(s, k)) + (k == i);
+    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
 }
 
-/* The right-hand sides of a step: -gradient, and the columns of U. Returns the number of wide rows. */
+/* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
+GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
+    int64_t n = s->variable_count, i;
+    double parts = sqrt(gproji_wide_dot(n, z, z));
+    int32_t k;
+    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_wide_dot(n, gproji_wide_side(s, k), z);
+    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < wide; ++k) {
+        const double *side = gproji_wide_side(s, k);
+        double m = s->wide_vector[k];
+        for (i = 0; i < n; ++i) z[i] -= m * side[i];
+        parts += fabs(m) * sqrt(gproji_wide_dot(n, side, side));
+    }
+    return parts / gproji_fmax(sqrt(gproji_wide_dot(n, z, z)), DBL_MIN);
+}
+
+/* The right-hand sides of a step: -gradient, and U. Returns the number of wide rows. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     int32_t v;
     for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
     return gproji_for_wide_rows(s, gproji_wide_column);
 }
 
-/* The step from what A^-1 makes of its right-hand sides. Returns how much larger its parts are. */
-GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide) {
-    if (wide == 0) return 1;
-    gproji_for_wide_rows(s, gproji_wide_products);
-    gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
-    return gproji_wide_correct(s, wide);
+/* The step from its right-hand sides, of which the factorisation has made z and Y already if it has taken them along.
+   Returns how large the parts of L'dx are to it. */
+GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
+    gproj_cholesky *c = s->cholesky;
+    double parts = 1;
+    if (taken && wide == 0) {
+        gproji_cholesky_finish(c, s->step);
+        return parts;
+    }
+    if (taken)
+        memcpy(s->sides, c->solution, ((size_t)wide + 1) * (size_t)s->variable_count * sizeof *s->sides);
+    else
+        gproji_cholesky_forward(c, wide + 1, s->sides, s->sides);
+    if (wide > 0) {
+        gproji_wide_products(s, wide);
+        gproji_for_wide_rows(s, gproji_wide_value);
+        parts = gproji_wide_correct(s, wide, s->step);
+    }
+    gproji_cholesky_backward(c, s->step, s->step);
+    return parts;
 }
 
 /* The step with the factor of A. */
-GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) {
-    int32_t wide = gproji_step_sides(s);
-    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-}
+GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
 /* balance += U m at this step. */
 GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
@@ -7162,18 +7202,21 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
 }
 
 /* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
-   costs a product with all rows, and is left out where the answer is known: `parts` is what the parts of dx, c and the
-   A^-1 U_k m_k, are to dx. The solves that they come from are backward stable, and so is that for m, whose matrix is
-   made of the same A^-1 U: each part misses its equation by some roundings of |A + U U'| times its size, so dx misses
-   the whole by `parts` times what a solve without wide rows would, which is not looked at either. It is the cancellation
-   of large parts that must be: where wide rows say what narrow ones say already. */
+   costs a product with all rows, and is left out where the answer is known. `parts`: what z and the Y_k m_k are to their
+   sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
+   as many of |L||Y_k|; and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
+   misses -gradient by some roundings of |L| times all parts, `parts` times what one without wide rows would, by some
+   roundings of |L||L'dx|; and that is not looked at either. What must be looked at are large parts that cancel: wide
+   rows that say what narrow ones say already. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     int32_t v;
     if (wide == 0 || parts <= gproji_parts_most) return;
     while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
-        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->residual);
+        gproji_for_wide_rows(s, gproji_wide_ahead);
+        gproji_cholesky_forward(s->cholesky, 1, s->residual, s->residual);
+        gproji_wide_correct(s, wide, s->residual);
+        gproji_cholesky_backward(s->cholesky, s->residual, s->residual);
         for (v = 0; v < s->variable_count; ++v) s->step[v] += s->residual[v];
-        gproji_wide_correct(s, wide);
     }
 }
 
@@ -7369,15 +7412,11 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     wide = gproji_step_sides(s);
     fused = wide < s->cholesky->batch;
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->wide_response);
+    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
-    if (fused)
-        gproji_cholesky_finish(s->cholesky, s->wide_response);
-    else
-        gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide), GPROJI_REFINEMENTS);
+    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
