@@ -7204,10 +7204,10 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
 /* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
    costs a product with all rows, and is left out where the answer is known. `parts`: what z and the Y_k m_k are to their
    sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
-   as many of |L||Y_k|; and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
-   misses -gradient by some roundings of |L| times all parts, `parts` times what one without wide rows would, by some
-   roundings of |L||L'dx|; and that is not looked at either. What must be looked at are large parts that cancel: wide
-   rows that say what narrow ones say already. */
+   as many of |L||Y_k|, and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
+   misses its equations by `parts` times what one without wide rows would, by some roundings of |L||L'dx|, which is not
+   looked at either; besides that by roundings of |U U'||dx|, as U'dx has them, however exact dx is. What must be looked
+   at are large parts that cancel: wide rows that say what narrow ones say already, or other wide ones. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     int32_t v;
     if (wide == 0 || parts <= gproji_parts_most) return;
