@@ -62,6 +62,7 @@
        >>api-least-squares  linear least squares with bounds, usable by itself
        >>api-system     quadratic equations and guided projection, without meshes
        >>api-mesh       half-edge meshes, OBJ and OFF
+       >>api-subdivide  subdivision, and how fine meshes follow their cages
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-offset     parallel meshes at constant distance, supports
@@ -76,7 +77,8 @@
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
        >>dense          panels and update matrices
-       >>ordering       minimum degree, nested dissection
+       >>ordering       condensation, minimum degree
+       >>dissection     nested dissection
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
        >>least-squares  linear least squares with bounds
@@ -84,6 +86,7 @@
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
        >>text           OBJ and OFF
+       >>subdivide      subdivision by stencils
        >>hierarchy      bounding boxes
        >>curve          polylines
        >>surface        reference surfaces
@@ -276,8 +279,9 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_DISSECTION, /* nested dissection of the compressed graph, approximate minimum degree within its parts */
-    GPROJ_ORDERING_AMD,        /* approximate minimum degree alone */
+    GPROJ_ORDERING_BEST,       /* the better of the next two, if dissection is likely to pay in four factorisations */
+    GPROJ_ORDERING_AMD,        /* approximate minimum degree */
+    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the middle */
     GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
     GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
@@ -671,6 +675,87 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
    complete. The format follows the ending: .obj or .off. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
+
+   The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
+   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count +
+   edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face f,
+   at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
+       Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
+       Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
+   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its polylines
+   are refined in it, the rest of the polyline is kept.
+
+   Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
+       face            mean of its corners
+       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+                       Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
+       vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
+                       Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
+       vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
+       vertex, S > 2   v, as for corners
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and vertices
+   are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that become smooth
+   there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the boundary. */
+typedef enum gproj_scheme {
+    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
+    GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
+    GPROJ_SCHEME_FORCE_INT = 0x7fffffff
+} gproj_scheme;
+
+typedef struct gproj_subdivide_options {
+    gproj_scheme scheme;
+    int32_t levels;        /* 1 to 14; 0 means 1 */
+    int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
+       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    int32_t crease_count;
+    const int32_t *creases;
+    const double *sharpness;
+    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+       well, unless round_corners. */
+    int32_t corner_count;
+    const int32_t *corners;
+    bool round_corners;
+} gproj_subdivide_options;
+
+/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
+   the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
+   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
+   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
+   are owned by the stencil. */
+typedef struct gproj_stencil {
+    int32_t row_count;
+    int32_t column_count;
+    const int64_t *start; /* row_count + 1 */
+    const int32_t *column;
+    const double *weight;
+} gproj_stencil;
+
+/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil` may
+   be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Of
+   one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels take
+   the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level.
+   Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme
+   GPROJ_ERROR_ARGUMENT where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners;
+   GPROJ_ERROR_SIZE, before memory is taken, where a level would have more than a mesh can. */
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil);
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil);
+/* fine = stencil * coarse, for any data with `size` numbers a vertex: 3 for positions. coarse: size * column_count
+   numbers, fine: size * row_count others. */
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine);
+/* The stencil that leads through both: fine * coarse, where the columns of `fine` are the rows of `coarse`. */
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error);
+/* The transposed matrix: row j is what coarse vertex j moves. When that moves by d, fine vertex column[k] moves by
+   weight[k] * d. Its rows do not sum to 1. */
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
@@ -2657,11 +2742,10 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
 }
 
 /* ============================================================================================================
-   >>ordering   The order of elimination: minimum degree, nested dissection. Uses platform, memory.
+   >>ordering   The order of elimination: graphs of nodes, condensation, minimum degree. Uses platform, memory.
 
    A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
-   variables. First go nodes of small degree; what remains is cut by nested dissection, and the parts are ordered by
-   minimum degree. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
+   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
    ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
    mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
    are broken by the order in which nodes reach a degree list. */
@@ -2718,6 +2802,11 @@ typedef struct gproji_graph {
     const int32_t *weight;
 } gproji_graph;
 
+/* sum over the columns of a front, or of a node, of (column count)^2 */
+GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
+    return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
+}
+
 /* The state of the elimination. Each of the graph's nodes is, at any time, one of
      variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; its list in `space` has first
                               `elements[i]` elements, then variables, `length[i]` altogether
@@ -2736,34 +2825,27 @@ typedef struct gproji_amd {
     int32_t nodes;
     int32_t total;  /* weight of all nodes that are not dense */
     int32_t left;   /* of it, not yet eliminated */
-    int32_t lowest; /* no variable in the lists has a smaller degree */
-    int32_t now;    /* the stage */
-    int32_t turn;   /* weight of the variables of this stage that are not yet eliminated */
-    int64_t free;   /* space[free..size-1] is unused */
+    int32_t lowest; /* no variable has a smaller degree */
+    double flops; /* of what is eliminated: sum of (column count)^2; the dense nodes are taken for neighbours of all */
+    int64_t free; /* space[free..size-1] is unused */
     int64_t size;
-    int64_t stamp;        /* marks below it are old */
-    int32_t *space;       /* size: all lists */
-    int64_t *list;        /* nodes: where the list begins */
-    int32_t *length;      /* nodes */
-    int32_t *elements;    /* nodes: of a variable, the elements at the head of its list */
-    int32_t *weight;      /* nodes */
-    int32_t *degree;      /* nodes: variable: bound of the external degree; element: weight of its list */
-    unsigned char *kind;  /* nodes */
-    int64_t *mark;        /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
-    int32_t *head;        /* buckets: first variable of a degree, or -1; used for hash values while comparing */
-    int32_t buckets;      /* total + 1 */
-    int32_t *next;        /* nodes: in a degree list, in a hash list */
-    int32_t *previous;    /* nodes: in a degree list; while comparing, the hash value */
-    int32_t *hash_head;   /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;        /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;       /* nodes: next node of that chain, or -1 */
-    const int32_t *stage; /* nodes: when it is its turn; NULL: all at once */
+    int64_t stamp;       /* marks below it are old */
+    int32_t *space;      /* size: all lists */
+    int64_t *list;       /* nodes: where the list begins */
+    int32_t *length;     /* nodes */
+    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
+    int32_t *weight;     /* nodes */
+    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
+    unsigned char *kind; /* nodes */
+    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t buckets;     /* total + 1 */
+    int32_t *next;       /* nodes: in a degree list, in a hash list */
+    int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
+    int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
+    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
+    int32_t *chain;      /* nodes: next node of that chain, or -1 */
 } gproji_amd;
-
-/* Is it the turn of variable i? Only then it is in a degree list. */
-GPROJI_INTERNAL bool gproji_amd_in_turn(const gproji_amd *amd, int32_t i) {
-    return !amd->stage || amd->stage[i] == amd->now;
-}
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
     int32_t d = amd->degree[i], first = amd->head[d];
@@ -2825,7 +2907,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
         amd->weight[i] = -weight;
         amd->degree[pivot] += weight;
         amd->space[amd->free++] = i;
-        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_remove(amd, i);
+        gproji_amd_list_remove(amd, i);
     }
 }
 
@@ -2872,7 +2954,7 @@ GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
 
 /* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
    not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
-   -1 when the variable can be eliminated with the pivot: it is its turn, and it has nothing outside the new element. */
+   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -2899,7 +2981,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
         hash += (uint32_t)j;
         list[to++] = j;
     }
-    if (degree == 0 && gproji_amd_in_turn(amd, i)) return -1;
+    if (degree == 0) return -1;
     /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
     GPROJ_ASSERT(to < own);
     moved = list[heads];
@@ -2918,7 +3000,6 @@ GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j
     const int32_t *list = amd->space + amd->list[j];
     int32_t k;
     if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
-    if (amd->stage && amd->stage[i] != amd->stage[j]) return false;
     for (k = 1; k < amd->length[j]; ++k)
         if (amd->mark[list[k]] != amd->stamp) return false;
     return true;
@@ -2946,7 +3027,6 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t k, to = 0, *element;
     amd->left -= amd->weight[pivot];
-    amd->turn -= amd->weight[pivot];
     gproji_amd_form_element(amd, pivot);
     element = amd->space + amd->list[pivot];
     gproji_amd_scan(amd, pivot);
@@ -2955,7 +3035,6 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         if (hash < 0) { /* mass elimination */
             int32_t weight = -amd->weight[i];
             amd->left -= weight;
-            amd->turn -= weight;
             amd->degree[pivot] -= weight;
             amd->weight[pivot] += weight;
             gproji_amd_absorb(amd, pivot, i);
@@ -2981,12 +3060,13 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         degree = (int64_t)amd->degree[i] + amd->degree[pivot] - weight;
         if (degree > amd->left - weight) degree = amd->left - weight;
         amd->degree[i] = (int32_t)degree;
-        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_add(amd, i);
+        gproji_amd_list_add(amd, i);
         element[to++] = i;
     }
     if (amd->list[pivot] + amd->length[pivot] == amd->free) amd->free = amd->list[pivot] + to;
     amd->length[pivot] = to;
     if (to == 0) amd->kind[pivot] = GPROJI_AMD_GONE;
+    amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
 }
 
 GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph) {
@@ -3017,10 +3097,11 @@ GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t n
     return degree;
 }
 
-/* Dense nodes, more than 10 sqrt(n) variables next to them, are put last without looking at them: they would make every
-   degree meaningless and the search slow. */
+/* Dense nodes have more than 10 sqrt(n) variables next to them. They are put last without looking at them: they would
+   make every degree and distance meaningless and the search slow. */
 GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
 
+/* Fills the lists with all nodes that are not dense. */
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
     double dense = gproji_dense_degree(amd->buckets - 1);
     int32_t i;
@@ -3051,27 +3132,16 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->degree[i] = degree;
     }
     amd->left = amd->total;
-}
-
-/* The turn of the next stage, whose nodes are order[from..]: puts them into the degree lists. */
-GPROJI_INTERNAL void gproji_amd_next_stage(gproji_amd *amd, const int32_t *order, int32_t from) {
-    int32_t k, end = from;
-    if (amd->stage) amd->now = amd->stage[order[from]];
-    while (end < amd->nodes && gproji_amd_in_turn(amd, order[end])) ++end;
-    for (k = end - 1; k >= from; --k) {
-        int32_t i = order[k];
-        if (amd->kind[i] != GPROJI_AMD_VARIABLE) continue;
-        gproji_amd_list_add(amd, i);
-        amd->turn += amd->weight[i];
-    }
+    for (i = amd->nodes - 1; i >= 0; --i)
+        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
     amd->lowest = 0;
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes. With stages, all
-   nodes of a stage are eliminated before those of a later one; on entry they stand by ascending stages in `order`, with
-   dense nodes behind them. Without (NULL), on entry any permutation stands there. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, const int32_t *stage,
-                                      int32_t *order) {
+/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, how many flops a factorisation
+   takes at most: exactly so many without dense nodes. `total` is the weight of all nodes. False when there is no
+   memory. */
+GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
+                                      double *flops) {
     gproji_pool pool;
     gproji_amd amd;
     int32_t i, count = 0;
@@ -3079,7 +3149,6 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     memset(&amd, 0, sizeof amd);
     amd.nodes = graph->nodes;
     amd.buckets = total + 1;
-    amd.stage = stage;
     if (!gproji_amd_take(&amd, &pool, graph)) {
         gproji_pool_give_all(&pool);
         return false;
@@ -3087,7 +3156,6 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     gproji_amd_start(&amd, graph);
     while (amd.left > 0) {
         int32_t pivot, member;
-        if (amd.turn == 0) gproji_amd_next_stage(&amd, order, count);
         while (amd.head[amd.lowest] < 0) amd.lowest++;
         pivot = amd.head[amd.lowest];
         gproji_amd_list_remove(&amd, pivot);
@@ -3097,6 +3165,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     for (i = 0; i < graph->nodes; ++i)
         if (amd.kind[i] == GPROJI_AMD_DENSE) order[count++] = i;
     GPROJ_ASSERT(count == graph->nodes);
+    if (flops) *flops = amd.flops + gproji_front_flops((double)total - amd.total, 0);
     gproji_pool_give_all(&pool);
     return true;
 }
@@ -3171,7 +3240,7 @@ GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x
 
 /* The graph without a first set of nodes, whose elimination is taken into account: the neighbours of each of them have
    become adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). What remains is half the size
-   where normals have gone, and shows the mesh to a dissection. False when there is no memory. */
+   where normals have gone, and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
     int64_t *start, room = 0, e;
@@ -3200,382 +3269,1008 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
     return true;
 }
 
-/* -- dissection -- */
+/* ============================================================================================================
+   >>dissection   The order of elimination by nested dissection. Uses platform, memory, ordering.
 
-/* Nested dissection (George 1973) of a graph by its distances. From two nodes a, b far from each other, and two others
-   c, d far from both, u = d_a - d_b and v = d_c - d_d are coordinates of the nodes: on a grid whose nodes have 8
-   neighbours exactly its diagonals, and u + v, u - v its axes. A part is cut where one of these four passes a threshold
-   near its middle; the separator is the smallest set of nodes that meets all edges across. Parts that are small enough
-   are left to the minimum degree ordering, which takes the separators into account and orders them, too. */
+   A separator is a set of nodes without which the rest falls into two sides that are not adjacent. It is eliminated
+   after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
+     coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
+                  c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
+                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
+     cut          The best of some thresholds of the four. A side's cost is estimated from its weight and that of its
+                  halo, the separators next to it, which become rows of all its fronts.
+     separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
+                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
+                  in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
+                  the two rims and the one next to the threshold are compared.
+   Small parts are ordered by exact minimum degree, halo included, with sets of bits.
+
+   Two kinds of nodes are not dissected. Dense ones (see gproji_dense_degree) come last. Light ones come right before the
+   first of their hosts, where they cause no fill: the forces in edges. A host is a heavier neighbour that has all their
+   neighbours. */
+
 enum {
-    GPROJI_PART_WEIGHT = 1500,  /* parts up to this weight are not cut */
-    GPROJI_WORTH_CUTTING = 2500 /* fewer nodes than that are left to minimum degree altogether */
+    GPROJI_ND_LEAF = 64,   /* nodes of a part that is not cut any more: bits of a word */
+    GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
+    GPROJI_ND_WORDS = 4,   /* for both */
+    GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
+    GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
 };
 
-typedef struct gproji_region {
-    int32_t first, count; /* its nodes are list[first .. first + count - 1] */
-    int32_t depth;        /* cuts above it */
-} gproji_region;
+/* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
+typedef struct gproji_nd_part {
+    int32_t first;
+    int32_t nodes;
+    int32_t place; /* its first place in the order */
+    int32_t copy;
+} gproji_nd_part;
 
-typedef struct gproji_separation {
+/* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
+   places: so no part is in the way of another one. */
+typedef struct gproji_nd_nodes {
+    int32_t *name;     /* the node in the graph that is dissected */
+    int32_t *weight;   /* its weight */
+    int64_t *from;     /* its neighbours begin at adjacent[from]: */
+    int32_t *inner;    /* so many in the same part, by their numbers in it, */
+    int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
+    int32_t *adjacent; /* not by node: as many as in the graph */
+} gproji_nd_nodes;
+
+/* A cut of a part: nodes with position < at, and the others. */
+typedef struct gproji_nd_cut {
     double cost;
-    int32_t a, b;      /* x = a u + b v */
-    int32_t threshold; /* x < threshold is the low side */
-    bool low;          /* the low side's boundary is lighter than the high side's, */
-    double weight;     /* and this is the lighter one's weight */
-} gproji_separation;
+    int32_t axis;
+    int32_t at;
+    int32_t range;  /* positions are 0..range-1 */
+    double below;   /* weight of the nodes with position < at */
+    int32_t weight; /* of a separator, not yet the smallest */
+} gproji_nd_cut;
 
-typedef struct gproji_dissection {
-    gproji_pool pool;
+/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1; what
+   passes between them is at most its weight. Arcs lead from the exit to the entries of its neighbours, without limit. */
+typedef struct gproji_band {
+    int32_t nodes;
+    int32_t *id;         /* nodes: number in the part */
+    int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
+    int32_t *weight;     /* nodes */
+    int32_t *through;    /* nodes: flow from entry to exit */
+    int32_t *turn;       /* states: the next step to try; see gproji_band_step */
+    int32_t *queue;      /* states; also the path that is looked for */
+    int32_t *to;         /* arcs: the neighbour */
+    int32_t *mate;       /* arcs: the same arc the other way */
+    int32_t *flow;       /* arcs */
+    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
+    unsigned char *mark; /* states: GPROJI_BAND_... */
+    void *block;         /* all of these arrays */
+    size_t block_size;
+} gproji_band;
+
+enum {
+    GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
+    GPROJI_BAND_SINK = 2,   /* reaches the sink */
+    GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
+};
+
+typedef struct gproji_nd {
     const gproji_graph *graph;
-    int32_t *list;  /* nodes, by parts */
-    int32_t *other; /* work: nodes */
-    int32_t *part;  /* nodes: where the part begins that they are in; -1: in a separator, dense */
-    int32_t *u, *v;
-    int32_t *distance[3]; /* nodes; of nodes of the part at work; -1: not reached. Later marks, see gproji_augment */
-    int32_t *x;           /* nodes: the coordinate at work */
-    int32_t *sum, *low, *high; /* 4 nodes + 8 each: sums over a coordinate */
-    gproji_region *stack;      /* nodes + 1 */
-    int32_t top;
-    int32_t *stage; /* out */
-    int32_t deepest;
-    double widest; /* the largest separator, in square roots of the nodes of its part */
-} gproji_dissection;
+    gproji_heap *heap;
+    bool failed;         /* there was no memory */
+    double unit;         /* sqrt(mean weight of a node): a separator of n nodes of a mesh has about sqrt(n) */
+    unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
+    int32_t light;       /* how many are light */
+    int32_t kept;        /* nodes that are dissected */
+    int32_t *order;      /* kept: the result */
+    gproji_nd_nodes copy[2];
+    gproji_nd_part stack[GPROJI_ND_STACK];
+    int32_t parts;
+    /* the part at work; arrays have room for all nodes */
+    gproji_nd_nodes here; /* its nodes alone */
+    int32_t nodes;
+    double weight, halo_weight;
+    int32_t rims, *rim;              /* its nodes with neighbours in the halo */
+    int32_t halos, *halo;            /* names */
+    int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
+    int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
+    int32_t *distance[4], *queue;    /* coordinates: x takes the place of the first, y of the third */
+    int32_t *number;                 /* in the band or in a side */
+    int32_t *position, *best_position;
+    unsigned char *side; /* 0, 1; 2: separator */
+    /* by position; how much more there is than at the position before */
+    int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
+    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
+    int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
+    unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    gproji_band band;
+} gproji_nd;
 
-GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes) {
-    int32_t **each[8], i;
-    each[0] = &d->list, each[1] = &d->other, each[2] = &d->part, each[3] = &d->u, each[4] = &d->v;
-    each[5] = &d->x, each[6] = &d->distance[0], each[7] = &d->distance[1];
-    for (i = 0; i < 8; ++i) {
-        *each[i] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
-        if (!*each[i]) return false;
+enum {
+    GPROJI_ND_KEPT,
+    GPROJI_ND_LIGHT,
+    GPROJI_ND_DENSE,
+    GPROJI_ND_PLACED
+};
+
+/* Arrays with an entry for each node, or position, and one more for the end of the positions. */
+GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
+    int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
+    int32_t **all[26], i, k = 0;
+    for (i = 0; i < 2; ++i) {
+        gproji_nd_nodes *c = &nd->copy[i];
+        all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
+        c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
+        if (!c->from || !c->adjacent) return false;
     }
-    d->distance[2] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
-    d->sum = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->low = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->high = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->stack = (gproji_region *)gproji_pool_take(&d->pool, (int64_t)nodes + 1, sizeof(gproji_region));
-    return d->distance[2] && d->sum && d->low && d->high && d->stack;
+    for (i = 0; i < 4; ++i) all[k++] = &nd->distance[i];
+    all[k++] = &nd->queue, all[k++] = &nd->number, all[k++] = &nd->order, all[k++] = &nd->rim;
+    all[k++] = &nd->halo_least, all[k++] = &nd->halo_most;
+    all[k++] = &nd->position, all[k++] = &nd->best_position, all[k++] = &nd->sum, all[k++] = &nd->best_sum;
+    all[k++] = &nd->low, all[k++] = &nd->high, all[k++] = &nd->halo_low, all[k++] = &nd->halo_high;
+    GPROJ_ASSERT(k == (int32_t)(sizeof all / sizeof all[0]));
+    for (i = 0; i < k; ++i) {
+        *all[i] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
+        if (!*all[i]) return false;
+    }
+    nd->halo = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    nd->halo_of = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
+    nd->near = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
+    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near;
 }
 
-/* Distances from `root` to what is connected with it in its part and has distance -1, by breadth-first search. `other`
-   gets these nodes from other[head] on, in the order in which they are reached. Returns where they end. */
-GPROJI_INTERNAL int32_t gproji_spread(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t *distance,
-                                      int32_t head) {
-    const gproji_graph *graph = d->graph;
-    int32_t *queue = d->other, tail = head + 1;
+/* -- nodes that are not dissected -- */
+
+/* Has b all neighbours of a, and a itself? mark: b where its neighbours, and itself, are. */
+GPROJI_INTERNAL bool gproji_nd_hosts(const gproji_graph *graph, const int32_t *mark, int32_t b, int32_t a) {
+    int64_t e;
+    for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
+        if (mark[graph->adjacent[e]] != b) return false;
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_t *mark, int32_t b) {
+    int64_t e;
+    if (mark[b] == b) return;
+    mark[b] = b;
+    for (e = graph->start[b]; e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
+}
+
+/* Finds the nodes that are not dissected. A light node's heaviest host is kept: hosts of hosts are hosts. */
+GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
+    const gproji_graph *graph = nd->graph;
+    double dense = gproji_dense_degree(total);
+    int32_t a, b, *mark = nd->number;
+    int64_t e;
+    for (a = 0; a < graph->nodes; ++a) {
+        mark[a] = -1;
+        if ((double)gproji_graph_degree(graph, a) > dense) nd->kind[a] = GPROJI_ND_DENSE;
+    }
+    for (b = 0; b < graph->nodes; ++b) {
+        if (nd->kind[b] == GPROJI_ND_DENSE) continue;
+        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
+            gproji_nd_mark_neighbours(graph, mark, b);
+            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_LIGHT;
+            nd->light++;
+        }
+    }
+}
+
+/* The order of all nodes from that of the kept ones. A light node is taken with its first host. */
+GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
+    const gproji_graph *graph = nd->graph;
+    int32_t a, b, k, count = 0, *mark = nd->number;
+    int64_t e;
+    for (b = 0; b < graph->nodes; ++b) mark[b] = -1;
+    for (k = 0; k < nd->kept; ++k) {
+        b = nd->order[k];
+        for (e = graph->start[b]; nd->light > 0 && e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_LIGHT) continue;
+            gproji_nd_mark_neighbours(graph, mark, b);
+            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_PLACED;
+            order[count++] = a;
+        }
+        order[count++] = b;
+    }
+    for (b = 0; b < graph->nodes; ++b)
+        if (nd->kind[b] == GPROJI_ND_DENSE) order[count++] = b;
+    GPROJ_ASSERT(count == graph->nodes);
+}
+
+/* -- parts -- */
+
+/* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
+   memory. */
+GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
+    const gproji_graph *graph = nd->graph;
+    gproji_nd_nodes *c = &nd->copy[0];
+    int32_t root, i, head = 0, tail = 0, *number = nd->number;
+    int64_t e, to = 0;
+    double weight = 0;
+    for (i = 0; i < graph->nodes; ++i) number[i] = -1;
+    for (root = 0; root < graph->nodes; ++root) {
+        if (nd->kind[root] != GPROJI_ND_KEPT || number[root] >= 0) continue;
+        number[root] = tail, c->name[tail++] = root;
+        while (head < tail) {
+            int32_t at = c->name[head++];
+            for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
+                i = graph->adjacent[e];
+                if (nd->kind[i] == GPROJI_ND_KEPT && number[i] < 0) number[i] = tail, c->name[tail++] = i;
+            }
+        }
+    }
+    for (i = 0; i < tail; ++i) {
+        int32_t at = c->name[i];
+        weight += c->weight[i] = graph->weight[at];
+        c->from[i] = to;
+        for (e = graph->start[at]; e < graph->start[at + 1]; ++e)
+            if (nd->kind[graph->adjacent[e]] == GPROJI_ND_KEPT) c->adjacent[to++] = number[graph->adjacent[e]];
+        c->inner[i] = (int32_t)(to - c->from[i]);
+        c->outer[i] = 0;
+    }
+    nd->kept = tail;
+    nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
+    memset(&nd->stack[0], 0, sizeof nd->stack[0]);
+    nd->stack[0].nodes = tail;
+    nd->parts = tail > 0;
+}
+
+/* Makes a part the one at work: its nodes, their weight and its halo. */
+GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
+    const gproji_nd_nodes *c = &nd->copy[part->copy];
+    gproji_nd_nodes *here = &nd->here;
+    int32_t i, k;
+    here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
+    here->inner = c->inner + part->first, here->outer = c->outer + part->first;
+    here->adjacent = c->adjacent;
+    nd->nodes = part->nodes;
+    nd->rims = nd->halos = 0;
+    nd->weight = nd->halo_weight = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
+        nd->weight += here->weight[i];
+        if (here->outer[i] > 0) nd->rim[nd->rims++] = i;
+        for (k = 0; k < here->outer[i]; ++k) {
+            int32_t name = list[k], at = nd->halo_of[name];
+            if (at >= nd->halos || nd->halo[at] != name) {
+                at = nd->halo_of[name] = nd->halos++;
+                nd->halo[at] = name;
+                nd->halo_weight += nd->graph->weight[name];
+            }
+            list[k] = at;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy) {
+    gproji_nd_part *part = &nd->stack[nd->parts++];
+    GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
+    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy;
+}
+
+/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
+   end. */
+GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
+    const gproji_nd_nodes *a = &nd->here;
+    int32_t i;
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list, *end;
+        int32_t all, *in, *out;
+        if (nd->side[i] != side) continue;
+        list = a->adjacent + a->from[i], end = list + a->inner[i];
+        all = a->inner[i] + a->outer[i];
+        in = b->adjacent + e, out = in + all;
+        b->name[to] = a->name[i], b->weight[to] = a->weight[i];
+        b->from[to] = e;
+        for (; list < end; ++list) {
+            if (nd->side[*list] == 2)
+                *--out = a->name[*list];
+            else
+                *in++ = nd->number[*list];
+        }
+        b->inner[to] = (int32_t)(in - (b->adjacent + e));
+        b->outer[to] = all - b->inner[to];
+        for (end += a->outer[i]; list < end; ++list) *in++ = nd->halo[*list];
+        e += all;
+        to++;
+    }
+    return e;
+}
+
+/* Divides the part by `side`: the separator gets its last places, the sides become parts. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part) {
+    gproji_nd_nodes *other = &nd->copy[!part->copy];
+    int32_t i, count[3] = {0, 0, 0}, at, small;
+    int64_t e;
+    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
+    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i)
+        if (nd->side[i] == 2) nd->order[at++] = nd->here.name[i];
+    e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
+    gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
+    small = count[1] < count[0];
+    for (i = 0; i < 2; ++i) {
+        int32_t side = i ? small : !small, skip = side ? count[0] : 0;
+        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy);
+    }
+}
+
+/* -- coordinates -- */
+
+/* Breadth-first search from a root over nodes without distance (-1). The queue has `tail` nodes before; returns how many
+   afterwards. */
+GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
+    const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
+    const int64_t *from = nd->here.from;
+    int32_t *queue = nd->queue, head = tail;
     distance[root] = 0;
-    queue[head] = root;
+    queue[tail++] = root;
     while (head < tail) {
         int32_t at = queue[head++], next = distance[at] + 1;
-        int64_t e;
-        for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] != p->first || distance[to] >= 0) continue;
-            distance[to] = next;
-            queue[tail++] = to;
+        const int32_t *list = adjacent + from[at], *end = list + inner[at];
+        for (; list < end; ++list) {
+            if (distance[*list] >= 0) continue;
+            distance[*list] = next;
+            queue[tail++] = *list;
         }
     }
     return tail;
 }
 
-GPROJI_INTERNAL void gproji_forget_distances(const gproji_dissection *d, const gproji_region *p, int32_t *distance) {
-    int32_t k;
-    for (k = p->first; k < p->first + p->count; ++k) distance[d->list[k]] = -1;
+/* The distances of all nodes from one of them. Returns how many it reaches. */
+GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance) {
+    int32_t i;
+    for (i = 0; i < nd->nodes; ++i) distance[i] = -1;
+    return gproji_nd_spread(nd, root, distance, 0);
 }
 
-/* Distances from `root` in its part. Returns how many nodes are reached. */
-GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji_region *p, int32_t root,
-                                              int32_t *distance) {
-    gproji_forget_distances(d, p, distance);
-    return gproji_spread(d, p, root, distance, 0);
+/* The node with the largest value; among equals one with few neighbours. */
+GPROJI_INTERNAL int32_t gproji_nd_most(const gproji_nd *nd, const int32_t *value) {
+    const int32_t *inner = nd->here.inner;
+    int32_t i, best = 0;
+    for (i = 1; i < nd->nodes; ++i)
+        if (value[i] > value[best] || (value[i] == value[best] && inner[i] < inner[best])) best = i;
+    return best;
 }
 
-/* Makes each connected component of a part a part. */
-GPROJI_INTERNAL void gproji_split_components(gproji_dissection *d, const gproji_region *p) {
-    int32_t *list = d->list + p->first, *distance = d->distance[0], begin = 0, top = d->top, k;
-    gproji_forget_distances(d, p, distance);
-    for (k = 0; k < p->count; ++k) {
-        gproji_region *piece = &d->stack[d->top];
-        int32_t end;
-        if (distance[list[k]] >= 0) continue;
-        end = gproji_spread(d, p, list[k], distance, begin);
-        piece->first = p->first + begin, piece->count = end - begin, piece->depth = p->depth;
-        d->top++;
-        begin = end;
+/* The node that a search has reached last, or another one as far that has fewer neighbours, which is a corner. */
+GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *distance) {
+    const int32_t *inner = nd->here.inner;
+    int32_t k = nd->nodes - 1, best = nd->queue[k];
+    for (; k >= 0 && distance[nd->queue[k]] == distance[best]; --k)
+        if (inner[nd->queue[k]] < inner[best]) best = nd->queue[k];
+    return best;
+}
+
+/* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
+   nodes a search reaches; when these are not all, there are none. */
+GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
+    int32_t *const *d = nd->distance, *value = nd->position;
+    int32_t i, reached = gproji_nd_search(nd, start, d[0]);
+    if (reached < nd->nodes) return reached;
+    if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
+    gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
+    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i];
+    gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
+    for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
+    gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
+    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[2][i] -= d[3][i];
+    return reached;
+}
+
+/* Sides of a part that is not connected, after a search that has reached `end` nodes: the components one after the other
+   up to half of the nodes, the last one only if it does not end the part. */
+GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
+    int32_t k, root = 0, before = end;
+    while (end < nd->nodes - end) {
+        while (nd->distance[0][root] >= 0) ++root;
+        before = end;
+        end = gproji_nd_spread(nd, root, nd->distance[0], end);
     }
-    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
-    for (; top < d->top; ++top)
-        for (k = 0; k < d->stack[top].count; ++k) d->part[d->list[d->stack[top].first + k]] = d->stack[top].first;
+    if (end == nd->nodes) end = before;
+    for (k = 0; k < nd->nodes; ++k) nd->side[k] = 1;
+    for (k = 0; k < end; ++k) nd->side[nd->queue[k]] = 0;
 }
 
-/* The coordinates of a part's nodes; a is where u, of the part that this one was cut from, is largest. False when it is
-   not connected. */
-GPROJI_INTERNAL bool gproji_find_coordinates(gproji_dissection *d, const gproji_region *p) {
-    const int32_t *list = d->list + p->first;
-    int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one = list[0];
-    for (k = 1; k < p->count; ++k)
-        if (d->u[list[k]] > d->u[far_one]) far_one = list[k];
-    if (gproji_find_distances(d, p, far_one, a) < p->count) return false;
-    if (p->depth == 0) gproji_find_distances(d, p, d->other[p->count - 1], a);
-    gproji_find_distances(d, p, d->other[p->count - 1], b);
-    for (k = 1, far_one = list[0]; k < p->count; ++k)
-        if (a[list[k]] + b[list[k]] > a[far_one] + b[far_one]) far_one = list[k];
-    for (k = 0; k < p->count; ++k) d->u[list[k]] = a[list[k]] - b[list[k]];
-    gproji_find_distances(d, p, far_one, c);
-    for (k = 1, far_one = list[0]; k < p->count; ++k)
-        if (a[list[k]] + b[list[k]] + 2 * c[list[k]] > a[far_one] + b[far_one] + 2 * c[far_one]) far_one = list[k];
-    gproji_find_distances(d, p, far_one, a);
-    for (k = 0; k < p->count; ++k) d->v[list[k]] = c[list[k]] - a[list[k]];
-    return true;
+/* -- cuts -- */
+
+/* What the elimination of a part is thought to cost in flops: the solution of
+     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
+   which is its separator's front, with the halo's rows, and twice a half. */
+GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
+    double c = nd->unit, r = sqrt(n);
+    return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* x = a u + b v of a part's nodes, from 1; returns one more than the largest. */
-GPROJI_INTERNAL int32_t gproji_set_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b) {
-    const int32_t *list = d->list + p->first;
-    int32_t least = INT32_MAX, most = INT32_MIN, k;
-    for (k = 0; k < p->count; ++k) {
-        int32_t x = a * d->u[list[k]] + b * d->v[list[k]];
-        d->x[list[k]] = x;
-        least = gproji_min(least, x);
-        most = gproji_max(most, x);
+/* The same for a part with these weights of its sides and its separator, and of the sides' halos without it. */
+GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
+    double s = weight[2], h = nd->halo_weight;
+    if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
+    return s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
+           gproji_nd_rest(nd, weight[1], halo[1] + s);
+}
+
+/* In a direction, 0 to 3: neighbours differ by at most that much. */
+GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
+
+/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many. */
+GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position) {
+    static const signed char factor[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    int32_t fx = factor[axis][0], fy = factor[axis][1], i, least = INT32_MAX, most = INT32_MIN, shift = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[2][i];
+        position[i] = p;
+        if (p < least) least = p;
+        if (p > most) most = p;
     }
-    for (k = 0; k < p->count; ++k) d->x[list[k]] -= least - 1;
-    return most - least + 2;
+    while ((most - least) >> shift >= nd->nodes) ++shift;
+    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> shift;
+    return ((most - least) >> shift) + 1;
 }
 
-/* Weights of the boundaries of both sides for all thresholds from `first` to `last`: sums of differences in low and
-   high. */
-GPROJI_INTERNAL void gproji_weigh_boundaries(gproji_dissection *d, const gproji_region *p, int32_t range, int32_t first,
-                                             int32_t last) {
-    const gproji_graph *graph = d->graph;
-    const int32_t *x = d->x;
-    int32_t k, jump = 4; /* distances differ by 1 along an edge, x by 4 at most */
-    memset(d->low, 0, ((size_t)range + 2) * sizeof(int32_t));
-    memset(d->high, 0, ((size_t)range + 2) * sizeof(int32_t));
-    for (k = p->first; k < p->first + p->count; ++k) {
-        int32_t i = d->list[k], own = x[i], least = own, most = own, weight = graph->weight[i];
-        int64_t e;
-        if (own < first - jump || own > last + jump) continue;
-        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] != p->first) continue;
-            least = gproji_min(least, x[to]);
-            most = gproji_max(most, x[to]);
+/* Chooses thresholds that leave 0.3 to 0.7 of the weight below, some tenth apart, and marks the positions near them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t range, int32_t jump) {
+    double below = 0, next = 0.3 * nd->weight;
+    int32_t t, r;
+    memset(nd->near, 0, (size_t)range + 1);
+    for (t = 1; t < range; ++t) {
+        below += nd->sum[t - 1];
+        if (below < next || below > 0.7 * nd->weight) continue;
+        next = below + 0.1 * nd->weight;
+        for (r = t > jump ? t - jump : 0; r < t + jump && r < range; ++r) nd->near[r] |= 1;
+        nd->near[t] = 3;
+    }
+}
+
+/* For all thresholds at once, what has neighbours across: in the part, ... */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->low, *high = nd->high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list = adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        if (!nd->near[p]) continue;
+        for (; list < end; ++list) {
+            int32_t q = position[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
         }
-        d->low[own + 1] += weight, d->low[most + 1] -= weight;    /* own < threshold <= most */
-        d->high[least + 1] += weight, d->high[own + 1] -= weight; /* least < threshold <= own */
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
     }
 }
 
-/* The best threshold of the coordinate a u + b v, if it is better than the best cut so far. */
-GPROJI_INTERNAL void gproji_try_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b,
-                                           gproji_separation *best) {
-    int32_t range = gproji_set_coordinate(d, p, a, b), k, t, first = range, last = 0;
-    double all = 0, below = 0, low = 0, high = 0;
-    memset(d->sum, 0, ((size_t)range + 1) * sizeof(int32_t));
-    for (k = p->first; k < p->first + p->count; ++k) d->sum[d->x[d->list[k]]] += d->graph->weight[d->list[k]];
-    for (t = 0; t < range; ++t) all += d->sum[t];
-    for (t = 2; t < range; ++t) { /* thresholds near the middle; the median where none is */
-        below += d->sum[t - 1];
-        if (below < 0.36 * all && below + d->sum[t] < 0.5 * all) continue;
-        if (below > 0.64 * all && first < range) break;
-        first = gproji_min(first, t);
-        last = t;
+/* ... and in the halo. */
+GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
+    int32_t k, *least = nd->halo_least, *most = nd->halo_most;
+    for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
+    for (k = 0; k < nd->rims; ++k) {
+        int32_t i = nd->rim[k], p = position[i];
+        const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
+        for (; list < end; ++list) {
+            if (p < least[*list]) least[*list] = p;
+            if (p > most[*list]) most[*list] = p;
+        }
     }
-    if (first == range) return;
-    gproji_weigh_boundaries(d, p, range, first, last);
-    for (t = 1, below = 0; t <= last; ++t) {
-        double separator, cost, above;
-        below += d->sum[t - 1];
-        low += d->low[t];
-        high += d->high[t];
-        above = all - below;
-        if (t < first || below < 0.1 * all || above < 0.1 * all) continue; /* so cuts are few: log(nodes) deep */
-        separator = gproji_fmin(low, high);
-        cost = separator * separator * all * all / (below * above);
+    for (k = 0; k < nd->halos; ++k) {
+        int32_t w = nd->graph->weight[nd->halo[k]];
+        nd->halo_low[least[k] + 1] += w;
+        nd->halo_high[most[k] + 1] += w;
+    }
+}
+
+/* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
+GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
+    int32_t *position = nd->position, *sum = nd->sum, range = gproji_nd_project(nd, axis, position), i, t;
+    double below = 0, low = 0, high = 0, halo[2];
+    size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
+    bool better = false;
+    memset(sum, 0, bytes);
+    memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
+    memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
+    for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
+    gproji_nd_choose_thresholds(nd, range, gproji_nd_jump(axis));
+    gproji_nd_count_inner(nd, position);
+    gproji_nd_count_halo(nd, position);
+    halo[0] = 0, halo[1] = nd->halo_weight;
+    for (t = 1; t < range; ++t) {
+        double weight[3], cost;
+        below += sum[t - 1];
+        low += nd->low[t], high += nd->high[t];
+        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
+        if (nd->near[t] != 3) continue;
+        weight[0] = below, weight[1] = nd->weight - below, weight[2] = low < high ? low : high;
+        weight[low < high ? 0 : 1] -= weight[2];
+        cost = gproji_nd_cost(nd, weight, halo);
         if (cost >= best->cost) continue;
-        best->cost = cost, best->a = a, best->b = b, best->threshold = t, best->low = low <= high;
-        best->weight = separator;
+        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
+        best->weight = (int32_t)weight[2];
+        better = true;
     }
+    if (!better) return;
+    nd->position = nd->best_position, nd->best_position = position;
+    nd->sum = nd->best_sum, nd->best_sum = sum;
 }
 
-/* Cuts a part: its nodes are those with mark 0, those with mark 1, and those of the separator, mark 2. */
-GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p, const int32_t *mark) {
-    int32_t *list = d->list + p->first, k, side, at = 0;
-    for (side = 0; side < 3; ++side) {
-        int32_t begin = at;
-        for (k = 0; k < p->count; ++k)
-            if (mark[list[k]] == side) d->other[at++] = list[k];
-        if (side == 2) {
-            for (k = begin; k < at; ++k) {
-                d->part[d->other[k]] = -1;
-                d->stage[d->other[k]] = p->depth + 1; /* see gproji_dissect */
-            }
-            d->deepest = at > begin ? gproji_max(d->deepest, p->depth + 1) : d->deepest;
-            d->widest = gproji_fmax(d->widest, (at - begin) / sqrt((double)p->count));
-        } else if (at > begin) {
-            gproji_region *piece = &d->stack[d->top++];
-            for (k = begin; k < at; ++k) d->part[d->other[k]] = p->first + begin;
-            piece->first = p->first + begin, piece->count = at - begin;
-            piece->depth = p->depth + 1;
-        }
+/* -- the smallest separator in a band -- */
+
+/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than a quarter of
+   the part's; and each rim keeps about a quarter of the weight behind it. */
+GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
+    const int32_t *sum = nd->best_sum;
+    int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
+    double most = gproji_fmin(12.0 * cut->weight, 0.25 * nd->weight), band = 0, below = 0, above;
+    for (i = 0; i < low; ++i) below += sum[i];
+    for (; i < high; ++i) band += sum[i];
+    above = nd->weight - below - band;
+    for (;;) {
+        bool down = below > above;
+        int32_t more;
+        if (down ? low <= 1 : high >= cut->range - 1) break;
+        more = sum[down ? low - 1 : high];
+        if (band + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
+        band += more;
+        if (down)
+            below -= more, --low;
+        else
+            above -= more, ++high;
     }
-    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
+    from[0] = low, from[1] = high;
 }
 
-/* Where a cut's edges are a bipartite graph, the fewest nodes that meet all of them are as many as a largest matching has
-   edges (Koenig 1931). mark: 0 and 1 are the sides; mate: partners, or -1; seen: by whose search, or -1. Looks for a path
-   of edges out of and in the matching, in turn, from a low node without a partner to a high one, and flips it. A search
-   for nobody (root -2, from all of queue[0..tail)) only marks what it reaches. */
-GPROJI_INTERNAL bool gproji_augment(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t tail) {
-    const gproji_graph *graph = d->graph;
-    const int32_t *mark = d->distance[0];
-    int32_t *mate = d->distance[1], *seen = d->distance[2], *before = d->x, *queue = d->other, head = 0;
-    while (head < tail) {
-        int32_t low = queue[head++];
-        int64_t e;
-        for (e = graph->start[low]; e < graph->start[low + 1]; ++e) {
-            int32_t high = graph->adjacent[e];
-            if (d->part[high] != p->first || mark[high] != 1 || seen[high] == root) continue;
-            seen[high] = root;
-            before[high] = low;
-            if (mate[high] >= 0) {
-                queue[tail++] = mate[high];
-                if (root < 0) seen[mate[high]] = root;
-                continue;
-            }
-            for (; root >= 0;) {
-                int32_t next = mate[before[high]];
-                mate[high] = before[high];
-                mate[before[high]] = high;
-                if (before[high] == root) return true;
-                high = next;
-            }
-        }
-    }
+/* Is node i in the band? So are nodes below it with neighbours above it. */
+GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                       int32_t i) {
+    const int32_t *position = nd->best_position, *list = nd->here.adjacent + nd->here.from[i];
+    const int32_t *end = list + nd->here.inner[i];
+    if (position[i] >= from[0]) return position[i] < from[1];
+    if (position[i] < from[0] - gproji_nd_jump(cut->axis)) return false;
+    for (; list < end; ++list)
+        if (position[*list] >= from[1]) return true;
     return false;
 }
 
-/* The separator of the sides marked in distance[0] with the fewest nodes, as mark 2. Returns its weight. */
-GPROJI_INTERNAL double gproji_mark_cover(gproji_dissection *d, const gproji_region *p) {
-    int32_t *mark = d->distance[0], *mate = d->distance[1], *seen = d->distance[2], k, tail = 0;
-    const int32_t *list = d->list + p->first;
-    double weight = 0;
-    for (k = 0; k < p->count; ++k) mate[list[k]] = seen[list[k]] = -1;
-    for (k = 0; k < p->count; ++k) {
-        if (mark[list[k]] != 0) continue;
-        d->other[0] = list[k];
-        gproji_augment(d, p, list[k], 1);
-    }
-    for (k = 0; k < p->count; ++k) {
-        if (mark[list[k]] != 0 || mate[list[k]] >= 0) continue;
-        d->other[tail++] = list[k];
-        seen[list[k]] = -2;
-    }
-    gproji_augment(d, p, -2, tail);
-    for (k = 0; k < p->count; ++k) {
-        int32_t i = list[k];
-        if (mark[i] == 0 ? mate[i] < 0 || seen[i] == -2 : seen[i] != -2) continue;
-        mark[i] = 2;
-        weight += d->graph->weight[i];
-    }
-    return weight;
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs) {
+    size_t ints = (size_t)nodes * 8 + 1 + (size_t)arcs * 3;
+    int32_t *at;
+    if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
+        return false;
+    at = (int32_t *)band->block;
+    band->id = at, at += nodes;
+    band->start = at, at += nodes + 1;
+    band->weight = at, at += nodes;
+    band->through = at, at += nodes;
+    band->turn = at, at += 2 * nodes;
+    band->queue = at, at += 2 * nodes;
+    band->to = at, at += arcs;
+    band->mate = at, at += arcs;
+    band->flow = at, at += arcs;
+    band->ends = (unsigned char *)at;
+    band->mark = band->ends + nodes;
+    return true;
 }
 
-/* The sides of a cut as marks 0 and 1 in distance[0]; boundary: and of the lighter boundary as mark 2. */
-GPROJI_INTERNAL void gproji_mark_sides(gproji_dissection *d, const gproji_region *p, const gproji_separation *cut,
-                                       bool boundary) {
-    const gproji_graph *graph = d->graph;
-    int32_t *mark = d->distance[0], k;
-    gproji_set_coordinate(d, p, cut->a, cut->b);
-    for (k = p->first; k < p->first + p->count; ++k) {
-        int32_t i = d->list[k], side = d->x[i] >= cut->threshold;
-        int64_t e;
-        mark[i] = side;
-        if (!boundary || (side == 0) != cut->low) continue;
-        for (e = graph->start[i]; e < graph->start[i + 1] && mark[i] != 2; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] == p->first && (d->x[to] >= cut->threshold) != side) mark[i] = 2;
+/* The arcs of band node i from number e on, those that lead upwards first: a search then goes ahead first. Returns where
+   they end. */
+GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
+    gproji_band *band = &nd->band;
+    const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
+    const int32_t *end = list + nd->here.inner[v];
+    int32_t stop = e + nd->here.inner[v], back = stop, k;
+    band->start[i] = e;
+    for (; list < end; ++list) {
+        int32_t u = nd->number[*list];
+        if (u < 0)
+            band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
+        else if (position[*list] > position[v])
+            band->to[e++] = u;
+        else
+            band->to[--back] = u;
+    }
+    while (back < stop) band->to[e++] = band->to[back++];
+    for (k = band->start[i]; k < e; ++k) {
+        int32_t u = band->to[k], mate = u < i ? band->start[u] : k;
+        band->flow[k] = 0;
+        if (u >= i) continue;
+        while (band->to[mate] != i) ++mate;
+        band->mate[k] = mate, band->mate[mate] = k;
+    }
+    return e;
+}
+
+/* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
+GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
+    gproji_band *band = &nd->band;
+    int32_t i, nodes = 0, e = 0;
+    int64_t arcs = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        nd->number[i] = -1;
+        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
+        nd->number[i] = nodes;
+        nd->queue[nodes++] = i;
+        arcs += nd->here.inner[i];
+    }
+    if (arcs > INT32_MAX) return false;
+    if (!gproji_band_take(nd->heap, band, nodes, arcs)) {
+        nd->failed = true;
+        return false;
+    }
+    band->nodes = nodes;
+    memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
+    memset(band->ends, 0, (size_t)nodes);
+    for (i = 0; i < nodes; ++i) {
+        band->weight[i] = nd->here.weight[band->id[i]];
+        band->through[i] = 0;
+        e = gproji_nd_band_arcs(nd, from, i, e);
+    }
+    band->start[nodes] = e;
+    return true;
+}
+
+/* How much more can flow from state s by its step c, and where to: along an arc, or backwards against the flow of one;
+   or to the node's other state, which is the step before its arcs and the one behind them. `back`: how much can come from
+   there. */
+GPROJI_INTERNAL int32_t gproji_band_step(const gproji_band *band, int32_t s, int32_t c, bool back, int32_t *to) {
+    int32_t v = s >> 1;
+    bool leaves = ((s & 1) != 0) != back; /* at an exit ahead, or at an entry back */
+    if (c < band->start[v] || c == band->start[v + 1]) {
+        *to = s ^ 1;
+        return leaves ? band->through[v] : band->weight[v] - band->through[v];
+    }
+    *to = 2 * band->to[c] + !(s & 1);
+    if (leaves) return INT32_MAX;
+    return band->flow[back ? c : band->mate[c]];
+}
+
+/* The end of a state's steps. Along arcs nothing can go back from an entry, or come back to an exit, without flow. */
+GPROJI_INTERNAL int32_t gproji_band_end(const gproji_band *band, int32_t s, bool back) {
+    int32_t v = s >> 1;
+    if (((s & 1) != 0) == back && band->through[v] == 0) return band->start[v];
+    return band->start[v + 1];
+}
+
+/* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
+GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
+    int32_t *path = band->queue, *turn = band->turn, depth = 0;
+    path[0] = source;
+    band->mark[source] = GPROJI_BAND_SOURCE;
+    while (depth >= 0) {
+        int32_t s = path[depth], end = gproji_band_end(band, s, false) + (s & 1), next = -1;
+        if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
+        for (; turn[s] < end; ++turn[s])
+            if (gproji_band_step(band, s, turn[s], false, &next) > 0 && !band->mark[next]) break;
+        if (turn[s] < end) {
+            band->mark[next] = GPROJI_BAND_SOURCE;
+            path[++depth] = next;
+        } else {
+            --depth;
+        }
+    }
+    return -1;
+}
+
+/* Sends as much as possible along the path; its states may be seen again. */
+GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
+    const int32_t *path = band->queue;
+    int32_t k, amount = INT32_MAX, to;
+    for (k = 0; k < depth; ++k) {
+        int32_t room = gproji_band_step(band, path[k], band->turn[path[k]], false, &to);
+        if (room < amount) amount = room;
+    }
+    for (k = 0; k < depth; ++k) {
+        int32_t s = path[k], c = band->turn[s];
+        if ((path[k + 1] ^ s) == 1)
+            band->through[s >> 1] += s & 1 ? -amount : amount;
+        else if (s & 1)
+            band->flow[c] += amount;
+        else
+            band->flow[band->mate[c]] -= amount;
+        band->mark[s] = 0;
+    }
+    band->mark[path[depth]] = 0;
+}
+
+/* A round: paths from all sources, none through states from which the sink was not reached before. False when there was
+   none; then all that is reached from the source is marked. */
+GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
+    int32_t i, depth;
+    bool found = false;
+    memset(band->mark, 0, 2 * (size_t)band->nodes);
+    for (i = 0; i < band->nodes; ++i) {
+        band->turn[2 * i] = band->start[i] - 1; /* at an entry the own exit first, at an exit the own entry last */
+        band->turn[2 * i + 1] = band->start[i];
+    }
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
+        while (!band->mark[2 * i] && (depth = gproji_band_find_path(band, 2 * i)) >= 0) {
+            gproji_band_push(band, depth);
+            found = true;
+        }
+    }
+    return found;
+}
+
+/* Marks what the states in the queue reach, or what reaches them. */
+GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark, bool back) {
+    int32_t head = 0, c, to;
+    while (head < tail) {
+        int32_t s = band->queue[head++], end = gproji_band_end(band, s, back);
+        for (c = band->start[s >> 1] - 1; c < end; ++c) {
+            if (gproji_band_step(band, s, c, back, &to) <= 0 || (band->mark[to] & mark)) continue;
+            band->mark[to] |= mark;
+            band->queue[tail++] = to;
         }
     }
 }
 
-/* Cuts a part, or leaves it whole. */
-GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region part) {
-    static const int32_t direction[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    gproji_separation best = {HUGE_VAL, 0, 0, 0, false, 0};
-    int64_t weight = 0;
-    double lines;
-    int32_t k;
-    for (k = part.first; k < part.first + part.count; ++k) weight += d->graph->weight[d->list[k]];
-    if (weight <= GPROJI_PART_WEIGHT) return;
-    if (!gproji_find_coordinates(d, &part)) {
-        gproji_split_components(d, &part);
+/* Marks for the cuts next to the sink and next to the threshold. Returns how many cuts there are: 1 when all are one. */
+GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *cut) {
+    gproji_band *band = &nd->band;
+    int32_t i, tail = 0, states = 2 * band->nodes, open = 0;
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SINK)) continue;
+        band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
+        band->queue[tail++] = 2 * i + 1;
+    }
+    gproji_band_spread(band, tail, GPROJI_BAND_SINK, true);
+    for (i = tail = 0; i < states; ++i) {
+        bool below = nd->best_position[band->id[i >> 1]] < cut->at;
+        if (!band->mark[i]) ++open;
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (below && !band->mark[i])) {
+            band->mark[i] |= GPROJI_BAND_MIDDLE;
+            band->queue[tail++] = i;
+        }
+    }
+    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE, false);
+    return open > 0 ? 3 : 1;
+}
+
+/* The side of a band node by one of the cuts: above when the lower side does not reach its entry, separator when it does
+   not reach its exit. */
+GPROJI_INTERNAL int32_t gproji_band_side(const gproji_band *band, int32_t i, unsigned char mark) {
+    bool in = (band->mark[2 * i] & mark) != 0, out = (band->mark[2 * i + 1] & mark) != 0;
+    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
+    return out ? 0 : in ? 2 : 1;
+}
+
+/* The side of any node of the part. */
+GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const int32_t from[2], int32_t i, unsigned char mark) {
+    if (nd->number[i] >= 0) return gproji_band_side(&nd->band, nd->number[i], mark);
+    return nd->best_position[i] >= from[1];
+}
+
+/* What the part costs when cut there. */
+GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                         unsigned char mark) {
+    double weight[3] = {0, 0, 0}, halo[2] = {0, 0};
+    const gproji_band *band = &nd->band;
+    int32_t i, k;
+    for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
+    for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
+    for (i = 0; i < band->nodes; ++i) {
+        weight[gproji_band_side(band, i, mark)] += band->weight[i];
+        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= band->weight[i]; /* counted among those below */
+    }
+    for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
+    for (k = 0; k < nd->rims; ++k) {
+        int32_t v = nd->rim[k], side = gproji_nd_side(nd, from, v, mark);
+        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
+        if (side == 2) continue;
+        for (; list < end; ++list) nd->halo_least[*list] |= 1 << side;
+    }
+    for (k = 0; k < nd->halos; ++k) {
+        if (nd->halo_least[k] & 1) halo[0] += nd->graph->weight[nd->halo[k]];
+        if (nd->halo_least[k] & 2) halo[1] += nd->graph->weight[nd->halo[k]];
+    }
+    return gproji_nd_cost(nd, weight, halo);
+}
+
+/* Finds the separator of a cut: `side`. False where there is none, or no memory. */
+GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
+    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
+    int32_t from[2], i, cuts, rounds = 0, use = 0;
+    double best;
+    gproji_nd_band_limits(nd, cut, from);
+    if (!gproji_nd_build_band(nd, cut, from)) return false;
+    while (gproji_band_round(&nd->band))
+        if (++rounds == GPROJI_ND_ROUNDS) return false;
+    cuts = gproji_nd_mark_cuts(nd, cut);
+    best = gproji_nd_measure(nd, cut, from, marks[0]);
+    for (i = 1; i < cuts; ++i) {
+        double cost = gproji_nd_measure(nd, cut, from, marks[i]);
+        if (cost < best) best = cost, use = i;
+    }
+    for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
+    return best < HUGE_VAL;
+}
+
+/* -- parts that are not cut any more -- */
+
+/* A small part: sets of neighbours as bits; first those of its own nodes, then of its halo's. `plane` p has the nodes
+   whose weights contain unit[p]. */
+typedef struct gproji_nd_leaf {
+    int32_t words, planes;
+    uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
+    uint64_t plane[32][GPROJI_ND_WORDS];
+    int32_t unit[32];
+    int32_t degree[GPROJI_ND_LEAF];
+} gproji_nd_leaf;
+
+/* How many bits are set. */
+GPROJI_INTERNAL int32_t gproji_bits(uint64_t x) {
+    x -= (x >> 1) & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + ((x >> 2) & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (int32_t)((x * 0x0101010101010101u) >> 56);
+}
+
+/* The number of the lowest bit of x > 0. */
+GPROJI_INTERNAL int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
+
+GPROJI_INTERNAL int32_t gproji_nd_leaf_degree(const gproji_nd_leaf *leaf, const uint64_t *set) {
+    int32_t degree = 0, p, k;
+    for (p = 0; p < leaf->planes; ++p) {
+        int32_t count = 0;
+        for (k = 0; k < leaf->words; ++k) count += gproji_bits(set[k] & leaf->plane[p][k]);
+        degree += count * leaf->unit[p];
+    }
+    return degree;
+}
+
+/* The planes of the weights; equal ones are one. */
+GPROJI_INTERNAL void gproji_nd_leaf_weigh(const gproji_nd *nd, gproji_nd_leaf *leaf, int32_t halos) {
+    int32_t bit, i, all = 0, p = 0;
+    for (i = 0; i < nd->nodes; ++i) all |= nd->here.weight[i];
+    for (i = 0; i < halos; ++i) all |= nd->graph->weight[nd->halo[i]];
+    for (bit = 0; bit < 31; ++bit) {
+        uint64_t *plane = leaf->plane[p];
+        if (!(all >> bit & 1)) continue;
+        memset(plane, 0, sizeof leaf->plane[0]);
+        for (i = 0; i < nd->nodes; ++i) plane[0] |= (uint64_t)(nd->here.weight[i] >> bit & 1) << i;
+        for (i = 0; i < halos; ++i)
+            plane[1 + i / 64] |= (uint64_t)(nd->graph->weight[nd->halo[i]] >> bit & 1) << i % 64;
+        if (p > 0 && memcmp(plane, leaf->plane[p - 1], sizeof leaf->plane[0]) == 0)
+            leaf->unit[p - 1] += (int32_t)1 << bit;
+        else
+            leaf->unit[p++] = (int32_t)1 << bit;
+    }
+    leaf->planes = p;
+}
+
+GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *leaf) {
+    int32_t i, halos = gproji_min(nd->halos, GPROJI_ND_HALO);
+    leaf->words = 1 + (halos + 63) / 64;
+    gproji_nd_leaf_weigh(nd, leaf, halos);
+    memset(leaf->set, 0, (size_t)nd->nodes * sizeof leaf->set[0]);
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        uint64_t *set = leaf->set[i];
+        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
+        for (end += nd->here.outer[i]; list < end; ++list)
+            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
+        leaf->degree[i] = gproji_nd_leaf_degree(leaf, set);
+    }
+}
+
+/* Orders a small part by minimum degree. */
+GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
+    gproji_nd_leaf leaf;
+    uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
+    int32_t i, k;
+    gproji_nd_leaf_start(nd, &leaf);
+    while (alive) {
+        int32_t pivot = 0;
+        for (i = 1; i < nd->nodes; ++i)
+            if (leaf.degree[i] < leaf.degree[pivot]) pivot = i;
+        nd->order[place++] = nd->here.name[pivot];
+        leaf.degree[pivot] = INT32_MAX;
+        alive &= ~((uint64_t)1 << pivot);
+        for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
+            uint64_t *set;
+            i = gproji_lowest_bit(todo);
+            set = leaf.set[i];
+            for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
+            set[0] &= alive & ~((uint64_t)1 << i);
+            leaf.degree[i] = gproji_nd_leaf_degree(&leaf, set);
+        }
+    }
+}
+
+/* Orders a part without a good separator by approximate minimum degree. */
+GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
+    const gproji_nd_nodes *here = &nd->here;
+    int64_t *start, to = 0;
+    int32_t *adjacent, *order, i, k;
+    gproji_graph graph;
+    gproji_pool pool;
+    gproji_pool_start(&pool, nd->heap);
+    for (i = 0; i < nd->nodes; ++i) to += here->inner[i];
+    start = (int64_t *)gproji_pool_take(&pool, (int64_t)nd->nodes + 1, sizeof(int64_t));
+    adjacent = (int32_t *)gproji_pool_take(&pool, to, sizeof(int32_t));
+    order = (int32_t *)gproji_pool_take(&pool, nd->nodes, sizeof(int32_t));
+    if (start && adjacent && order) {
+        for (i = 0, to = 0; i < nd->nodes; ++i) {
+            start[i] = to;
+            for (k = 0; k < here->inner[i]; ++k) adjacent[to++] = here->adjacent[here->from[i] + k];
+        }
+        start[nd->nodes] = to;
+        graph.nodes = nd->nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = here->weight;
+        if (!gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL)) nd->failed = true;
+        for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[place + i] = here->name[order[i]];
+    } else {
+        nd->failed = true;
+    }
+    gproji_pool_give_all(&pool);
+}
+
+/* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
+   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   nodes are connected; when these are not all, there is no cut. */
+GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
+    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    memset(best, 0, sizeof *best);
+    best->cost = HUGE_VAL;
+    for (k = 0; k < starts; ++k) {
+        reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
+        if (reached < nd->nodes) break;
+        for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+    }
+    return reached;
+}
+
+/* Orders the part on top of the stack or cuts it. */
+GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
+    gproji_nd_part part = nd->stack[--nd->parts];
+    gproji_nd_cut best;
+    int32_t reached;
+    gproji_nd_enter(nd, &part);
+    if (part.nodes <= GPROJI_ND_LEAF) {
+        gproji_nd_order_leaf(nd, part.place);
         return;
     }
-    for (k = 0; k < 4; ++k) gproji_try_coordinate(d, &part, direction[k][0], direction[k][1], &best);
-    if (!(best.cost < HUGE_VAL)) return;
-    gproji_mark_sides(d, &part, &best, false);
-    /* (boundaries of many lines, which no mesh has, would take long to match) */
-    lines = best.weight * sqrt((double)part.count) / (double)weight;
-    if (lines > 8 || gproji_mark_cover(d, &part) > best.weight) gproji_mark_sides(d, &part, &best, true);
-    gproji_divide(d, &part, d->distance[0]);
-}
-
-/* stage[i] = 0 for nodes in parts, and a number for each node of a separator that is larger than those of the parts and
-   separators it separates. False when nothing was cut. */
-GPROJI_INTERNAL bool gproji_dissect(gproji_dissection *d, double dense) {
-    int32_t i, count = 0;
-    for (i = 0; i < d->graph->nodes; ++i) {
-        bool apart = (double)gproji_graph_degree(d->graph, i) > dense;
-        d->part[i] = apart ? -1 : 0;
-        d->stage[i] = d->u[i] = 0;
-        if (!apart) d->list[count++] = i;
+    reached = gproji_nd_find_cut(nd, &best);
+    if (reached < part.nodes) {
+        gproji_nd_split_components(nd, reached);
+        gproji_nd_divide(nd, &part);
+        return;
     }
-    d->stack[0].first = 0, d->stack[0].count = count, d->stack[0].depth = 0;
-    d->top = count > 0;
-    while (d->top > 0) gproji_dissect_part(d, d->stack[--d->top]);
-    for (i = 0; i < d->graph->nodes; ++i)
-        if (d->stage[i] > 0) d->stage[i] = d->deepest + 1 - d->stage[i];
-    return d->deepest > 0;
-}
-
-/* The nodes by ascending stages, dense ones last: what gproji_amd_order begins with. */
-GPROJI_INTERNAL void gproji_sort_stages(const gproji_dissection *d, double dense, int32_t *order) {
-    int32_t *count = d->sum, n = d->graph->nodes, i, s; /* at most nodes + 1 stages */
-    memset(count, 0, ((size_t)d->deepest + 3) * sizeof(int32_t));
-    for (i = 0; i < n; ++i) d->x[i] = (double)gproji_graph_degree(d->graph, i) > dense ? d->deepest + 1 : d->stage[i];
-    for (i = 0; i < n; ++i) count[d->x[i] + 1]++;
-    for (s = 0; s <= d->deepest; ++s) count[s + 1] += count[s];
-    for (i = 0; i < n; ++i) order[count[d->x[i]]++] = i;
-}
-
-/* An order by dissection above and minimum degree below. `total`: the weight of all nodes. *quality: 0 when nothing was
-   cut and there is no order; 2 when the graph looks like that of a mesh, with separators of a line or two of nodes and
-   no less than 5 neighbours on average; else 1. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
-                                            int32_t *quality) {
-    gproji_dissection d;
-    double dense = gproji_dense_degree(total);
-    bool done;
-    memset(&d, 0, sizeof d);
-    d.graph = graph;
-    gproji_pool_start(&d.pool, heap);
-    d.stage = (int32_t *)gproji_pool_take(&d.pool, graph->nodes, sizeof(int32_t));
-    done = d.stage && gproji_dissection_take(&d, graph->nodes);
-    *quality = 0;
-    if (done && gproji_dissect(&d, dense)) {
-        *quality = d.widest <= 4 && graph->start[graph->nodes] > 5 * (int64_t)graph->nodes ? 2 : 1;
-        gproji_sort_stages(&d, dense, order);
-        done = gproji_amd_order(heap, graph, total, d.stage, order);
+    if (best.cost < HUGE_VAL && gproji_nd_separate(nd, &best)) {
+        gproji_nd_divide(nd, &part);
+    } else {
+        gproji_nd_order_whole(nd, part.place);
     }
-    gproji_pool_give_all(&d.pool);
-    return done;
+}
+
+/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
+   than 2^29. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+    gproji_pool pool;
+    gproji_nd nd;
+    gproji_pool_start(&pool, heap);
+    memset(&nd, 0, sizeof nd);
+    nd.heap = heap;
+    nd.graph = graph;
+    nd.failed = !gproji_nd_take(&nd, &pool);
+    if (!nd.failed) {
+        gproji_nd_sort_out(&nd, total);
+        gproji_nd_begin(&nd);
+    }
+    while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
+    if (!nd.failed) gproji_nd_put_back(&nd, order);
+    gproji_give(heap, nd.band.block, nd.band.block_size, 1);
+    gproji_pool_give_all(&pool);
+    return !nd.failed;
 }
 
 /* ============================================================================================================
-   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering.
+   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering,
+   dissection.
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
@@ -3991,11 +4686,6 @@ GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
     }
 }
 
-/* sum over the columns of a front, or of a node, of (column count)^2 */
-GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
-    return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
-}
-
 /* Strides, offsets and children of the fronts; sums. */
 GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
     int32_t f;
@@ -4123,6 +4813,8 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
 GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t k;
+    out->exact_entries = 0;
+    out->flops = 0;
     for (k = 0; k < out->nodes; ++k) {
         int64_t w = an->graph->weight[out->order[k]], below = an->count[k] - w;
         out->exact_entries += w * (w + 1) / 2 + w * below;
@@ -4145,71 +4837,61 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
     gproji_sum_counts(an);
 }
 
-/* What a factorisation in this order costs. The order becomes a postorder of its elimination tree. */
-GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *graph, int32_t *order, double *flops) {
-    gproji_symbolic out;
-    gproji_analysis an;
-    bool done;
-    memset(&an, 0, sizeof an);
-    memset(&out, 0, sizeof out);
-    an.graph = graph, an.out = &out;
-    gproji_pool_start(&an.pool, heap);
-    out.nodes = graph->nodes, out.order = order;
-    out.place = (int32_t *)gproji_pool_take(&an.pool, graph->nodes, sizeof(int32_t));
-    done = out.place && gproji_analysis_take(&an);
-    if (done) {
-        gproji_count_factor(&an, false);
-        *flops = out.flops;
-    }
-    gproji_pool_give_all(&an.pool);
-    return done;
-}
+enum {
+    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
+    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
+};
 
-/* Dissection where the graph is one of a mesh, minimum degree where it is small; else the better one of both. total: the
-   weight of all nodes; other: work, nodes entries. */
-GPROJI_INTERNAL bool gproji_better_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
-                                         int32_t *other) {
-    double flops = 0, least = 0;
-    int32_t quality = 0, k;
-    if (graph->nodes >= GPROJI_WORTH_CUTTING && !gproji_dissected_order(heap, graph, total, order, &quality))
-        return false;
-    if (quality == 2) return true;
-    for (k = 0; k < graph->nodes; ++k) other[k] = k;
-    if (!gproji_amd_order(heap, graph, total, NULL, other)) return false;
-    if (quality == 1) {
-        if (!gproji_order_flops(heap, graph, order, &flops) || !gproji_order_flops(heap, graph, other, &least))
-            return false;
-        if (flops <= least) return true;
-    }
-    if (graph->nodes > 0) memcpy(order, other, (size_t)graph->nodes * sizeof(int32_t));
-    return true;
-}
-
-/* An order that keeps the factor small: condensed nodes, then the rest. */
-GPROJI_INTERNAL bool gproji_find_order(gproji_analysis *an) {
-    int32_t *order = an->out->order, *rest, *other, k, total = an->out->columns;
+/* Condensed nodes, then the others by dissection. */
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
+    gproji_heap *heap = an->keep->heap;
     gproji_condensation condensed;
-    bool done = gproji_condense(&condensed, an->keep->heap, an->graph);
+    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
+    bool done = gproji_condense(&condensed, heap, an->graph);
     for (k = 0; done && k < condensed.count; ++k) {
         order[k] = condensed.first[k];
         total -= an->graph->weight[order[k]];
     }
     rest = order + condensed.count;
-    other = (int32_t *)gproji_pool_take(&condensed.pool, an->graph->nodes, sizeof(int32_t));
-    done = done && other && gproji_better_order(an->keep->heap, &condensed.rest, total, rest, other);
+    done = done && gproji_dissect(heap, &condensed.rest, total, rest);
     for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
     gproji_pool_give_all(&condensed.pool);
     return done;
 }
 
-/* The order of elimination asked for. permutation: of nodes. */
-GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
+/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
+   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
+GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
     gproji_symbolic *out = an->out;
+    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    double flops;
+    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
+    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_dissected_order(an)) return false;
+        gproji_count_factor(an, keep_order);
+        if (out->flops < flops) return true;
+    }
+    if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
+    gproji_count_factor(an, keep_order);
+    return true;
+}
+
+/* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
+GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_cholesky_options *options,
+                                         const int32_t *permutation) {
+    gproji_symbolic *out = an->out;
+    gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_DISSECTION) return gproji_find_order(an);
-    for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
-    if (ordering == GPROJ_ORDERING_AMD)
-        return gproji_amd_order(an->keep->heap, an->graph, out->columns, NULL, out->order);
+    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
+    if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
+    if (ordering == GPROJ_ORDERING_DISSECTION) {
+        if (!gproji_dissected_order(an)) return false;
+    } else if (ordering == GPROJ_ORDERING_AMD) {
+        if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
+    } else {
+        for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    }
+    gproji_count_factor(an, options->disable_postorder);
     return true;
 }
 
@@ -4221,8 +4903,7 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     out->column = (int32_t *)gproji_pool_take(an->keep, (int64_t)out->nodes + 1, sizeof(int32_t));
     out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
     if (!out->order || !out->place || !out->column || !out->front_of) return false;
-    if (!gproji_choose_order(an, options->ordering, permutation) || !gproji_analysis_take(an)) return false;
-    gproji_count_factor(an, options->disable_postorder);
+    if (!gproji_analysis_take(an) || !gproji_choose_order(an, options, permutation)) return false;
     gproji_find_supernodes(an);
     if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
     if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
@@ -9762,6 +10443,699 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 }
 
 #endif /* GPROJ_NO_STDIO */
+
+/* ============================================================================================================
+   >>subdivide   Subdivision by stencils. Uses platform, memory, error, mesh.
+
+   Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
+   subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
+   for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Products and transposition of
+   matrices are Gustavson's (1978).
+
+   A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
+   coarse ones, and the faces go to the mesh builder as any others do.
+   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+
+enum {
+    GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
+    GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
+};
+
+/* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
+typedef struct gproji_stencil_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_stencil stencil;
+    int64_t *start;
+    int32_t *column;
+    double *weight;
+    size_t column_capacity, weight_capacity;
+} gproji_stencil_object;
+
+GPROJI_INLINE gproji_stencil_object *gproji_stencil_owner(gproj_stencil *stencil) {
+    return (gproji_stencil_object *)(void *)((char *)stencil - offsetof(gproji_stencil_object, stencil));
+}
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
+    gproji_stencil_object *object;
+    if (!stencil) return;
+    object = gproji_stencil_owner(stencil);
+    gproji_give(&object->heap, object->start, (size_t)stencil->row_count + 1, sizeof *object->start);
+    gproji_give(&object->heap, object->column, object->column_capacity, sizeof *object->column);
+    gproji_give(&object->heap, object->weight, object->weight_capacity, sizeof *object->weight);
+    gproji_destroy_object(object, sizeof *object);
+}
+
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!stencil) return none;
+    return ((const gproji_stencil_object *)(const void *)((const char *)stencil -
+                                                          offsetof(gproji_stencil_object, stencil)))
+        ->heap.account;
+}
+
+/* Makes room for `entries` entries; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
+    void *column = object->column, *weight = object->weight;
+    bool enough = gproji_reserve(&object->heap, &column, &object->column_capacity, entries, sizeof(int32_t)) &&
+                  gproji_reserve(&object->heap, &weight, &object->weight_capacity, entries, sizeof(double));
+    object->stencil.column = object->column = (int32_t *)column;
+    object->stencil.weight = object->weight = (double *)weight;
+    return enough;
+}
+
+/* A stencil of zeros with room for `entries` entries; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
+                                                    const gproj_host *host) {
+    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
+    gproj_stencil *stencil;
+    if (!object) return NULL;
+    stencil = &object->stencil;
+    stencil->row_count = rows, stencil->column_count = columns;
+    stencil->start = object->start = (int64_t *)gproji_take_zeroed(&object->heap, (size_t)rows + 1, sizeof(int64_t));
+    if (object->start && gproji_stencil_reserve(object, entries)) return stencil;
+    gproj_stencil_destroy(stencil);
+    return NULL;
+}
+
+/* The transposed matrix, with its columns in ascending order; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
+    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, count;
+    gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
+    gproji_stencil_object *object;
+    int32_t i;
+    if (!out) return NULL;
+    object = gproji_stencil_owner(out);
+    /* start[j] counts, then is where row j begins, then, as row j fills, where it ends; which is start[j + 1] */
+    for (k = 0; k < entries; ++k) object->start[stencil->column[k]]++;
+    for (i = 0; i <= out->row_count; ++i) {
+        count = object->start[i];
+        object->start[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < stencil->row_count; ++i) {
+        for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k) {
+            int64_t to = object->start[stencil->column[k]]++;
+            object->column[to] = i;
+            object->weight[to] = stencil->weight[k];
+        }
+    }
+    memmove(object->start + 1, object->start, (size_t)out->row_count * sizeof *object->start);
+    object->start[0] = 0;
+    return out;
+}
+
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine) {
+    int32_t i, d;
+    int64_t k;
+    for (i = 0; stencil && i < stencil->row_count; ++i) {
+        for (d = 0; d < size; ++d) {
+            double sum = 0;
+            for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k)
+                sum += stencil->weight[k] * coarse[(size_t)size * (size_t)stencil->column[k] + (size_t)d];
+            *fine++ = sum;
+        }
+    }
+}
+
+/* -- rows -- */
+
+/* A stencil that is made row by row. Memory that is missing is noticed at the end. */
+typedef struct gproji_rows {
+    gproji_heap *heap; /* of `place` */
+    const gproj_host *host;
+    gproj_stencil *stencil; /* NULL: no memory */
+    int32_t column_count;
+    int32_t row;    /* the one that is being made */
+    int64_t count;  /* of all entries so far */
+    int64_t *place; /* of each column, its entry in this row; one of an earlier row, or -1: it has none */
+} gproji_rows;
+
+GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
+    gproj_stencil_destroy(rows->stencil);
+    rows->stencil = NULL;
+}
+
+GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
+                                       const gproj_host *host) {
+    int32_t j;
+    rows->heap = heap, rows->host = host;
+    rows->column_count = column_count, rows->row = 0, rows->count = 0;
+    rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
+    rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
+    if (!rows->place) gproji_rows_drop(rows);
+    for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
+}
+
+/* Adds a weight to an entry of the row. */
+GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
+    gproji_stencil_object *object;
+    if (!rows->stencil) return;
+    object = gproji_stencil_owner(rows->stencil);
+    if (rows->place[column] < object->start[rows->row]) {
+        if (!gproji_stencil_reserve(object, (size_t)rows->count + 1)) {
+            gproji_rows_drop(rows);
+            return;
+        }
+        object->column[rows->count] = column;
+        object->weight[rows->count] = 0;
+        rows->place[column] = rows->count++;
+    }
+    object->weight[rows->place[column]] += weight;
+}
+
+GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
+    rows->row++;
+    if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+}
+
+/* The finished stencil with its columns in ascending order: the transposed of the transposed. NULL without memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
+    gproj_stencil *turned = NULL, *sorted = NULL;
+    gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
+    gproji_rows_drop(rows);
+    if (turned) sorted = gproji_transposed(turned, rows->host);
+    gproj_stencil_destroy(turned);
+    if (!sorted) gproji_fail_memory(error);
+    return sorted;
+}
+
+/* -- the rules -- */
+
+/* The mesh of a level and what the rules need besides it. */
+typedef struct gproji_level {
+    const gproj_mesh *mesh;
+    gproj_scheme scheme;
+    double *sharpness;  /* of each edge, > 1 at the boundary */
+    const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
+    int32_t corner_count;
+} gproji_level;
+
+/* The mean of a face's corners. */
+GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
+    int32_t h = mesh->face_halfedge[face], k;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
+}
+
+/* An edge: the smooth rule and the sharp one, blended by its sharpness. */
+GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    bool loop = level->scheme == GPROJ_LOOP;
+    double sharp = gproji_fmin(level->sharpness[edge], 1), smooth = 1 - sharp;
+    double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
+    int32_t h;
+    for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
+    for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
+        if (loop)
+            gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
+        else
+            gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, rows);
+    }
+}
+
+/* A vertex without a corner or crease, inside. */
+GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t vertex, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    double n = gproj_mesh_valence(mesh, vertex), ring;
+    if (level->scheme == GPROJ_LOOP) {
+        double c = 0.375 + 0.25 * cos(6.283185307179586 / n);
+        ring = share * (0.625 - c * c) / n;
+        gproji_rows_add(rows, vertex, share - n * ring);
+    } else {
+        ring = share / (n * n);
+        gproji_rows_add(rows, vertex, share * (n - 2) / n);
+    }
+    do {
+        gproji_rows_add(rows, mesh->origin[h ^ 1], ring);
+        if (level->scheme != GPROJ_LOOP) gproji_add_face_rule(mesh, mesh->face[h], ring, rows);
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+}
+
+/* A vertex whose edges of more than this sharpness are sharp: smooth, on a crease, or a corner. */
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
+    do {
+        if (level->sharpness[h / 2] > least) {
+            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
+            ++sharp;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    if (sharp < 2) {
+        gproji_add_smooth_rule(level, vertex, share, rows);
+    } else if (sharp == 2) {
+        gproji_rows_add(rows, end[0], 0.125 * share);
+        gproji_rows_add(rows, vertex, 0.75 * share);
+        gproji_rows_add(rows, end[1], 0.125 * share);
+    } else {
+        gproji_rows_add(rows, vertex, share);
+    }
+}
+
+/* The mean sharpness of the edges at a vertex that are sharp on this level and smooth on the next; 1 without any. */
+GPROJI_INTERNAL double gproji_ending_sharpness(const gproji_level *level, int32_t vertex) {
+    int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double sum = 0;
+    do {
+        double s = level->sharpness[h / 2];
+        if (s > 0 && s <= 1) sum += s, ++count;
+        h = gproji_rotate(level->mesh, h);
+    } while (h != start);
+    return count ? sum / count : 1;
+}
+
+GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
+    double now;
+    if (level->mesh->vertex_halfedge[vertex] < 0 || (vertex < level->corner_count && level->corner[vertex])) {
+        gproji_rows_add(rows, vertex, 1);
+        return;
+    }
+    now = gproji_ending_sharpness(level, vertex);
+    gproji_add_vertex_rule(level, vertex, 0, now, rows);
+    if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
+}
+
+/* -- one level -- */
+
+/* How large a level is. */
+typedef struct gproji_counts {
+    int64_t vertices, edges, faces, corners;
+    int64_t polyline_vertices; /* at most: if all polylines run along edges */
+} gproji_counts;
+
+GPROJI_INTERNAL gproji_counts gproji_count(const gproj_mesh *mesh) {
+    gproji_counts counts = {0, 0, 0, 0, 0};
+    int32_t f;
+    counts.vertices = mesh->vertex_count;
+    counts.edges = mesh->edge_count;
+    counts.faces = mesh->face_count;
+    for (f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    counts.polyline_vertices = mesh->polyline_start[mesh->polyline_count];
+    return counts;
+}
+
+GPROJI_INTERNAL gproji_counts gproji_count_next(gproji_counts counts, gproj_scheme scheme) {
+    gproji_counts next;
+    next.vertices = counts.vertices + counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
+    next.edges = 2 * counts.edges + counts.corners;
+    next.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
+    next.corners = 4 * counts.corners;
+    next.polyline_vertices = 2 * counts.polyline_vertices;
+    return next;
+}
+
+GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
+                                                    const gproj_host *host, gproj_error *error) {
+    const gproj_mesh *mesh = level->mesh;
+    gproji_rows rows;
+    int32_t i;
+    gproji_counts next = gproji_count_next(gproji_count(mesh), level->scheme);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
+    for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
+        gproji_add_vertex_row(level, i, &rows);
+    for (i = 0; rows.stencil && i < mesh->edge_count; ++i, gproji_rows_next(&rows))
+        gproji_add_edge_rule(level, i, &rows);
+    for (i = 0; rows.stencil && level->scheme != GPROJ_LOOP && i < mesh->face_count; ++i, gproji_rows_next(&rows))
+        gproji_add_face_rule(mesh, i, 1, &rows);
+    return gproji_rows_end(&rows, error);
+}
+
+/* The faces of the next level: their degrees and corners, one after the other. */
+GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degree, int32_t *corner) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    bool loop = level->scheme == GPROJ_LOOP;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            *corner++ = mesh->origin[h];
+            *corner++ = edges + h / 2;
+            if (!loop) *corner++ = faces + f;
+            *corner++ = edges + mesh->prev[h] / 2;
+            *degree++ = loop ? 3 : 4;
+        }
+        if (!loop) continue;
+        for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
+        *degree++ = 3;
+    }
+}
+
+/* The half-edge from vertex a to vertex b; -1: they have no edge. */
+GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
+    int32_t start = mesh->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (mesh->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return -1;
+}
+
+/* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
+   number of their vertices. */
+GPROJI_INTERNAL int32_t gproji_level_polylines(const gproj_mesh *mesh, int32_t *start, int32_t *vertex) {
+    int32_t p, i, h, count = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        start[p] = count;
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            int32_t v = mesh->polyline_vertex[i];
+            bool last = i + 1 == mesh->polyline_start[p + 1];
+            if (vertex) vertex[count] = v;
+            ++count;
+            h = last ? -1 : gproji_halfedge_between(mesh, v, mesh->polyline_vertex[i + 1]);
+            if (h < 0) continue;
+            if (vertex) vertex[count] = mesh->vertex_count + h / 2;
+            ++count;
+        }
+    }
+    start[p] = count;
+    return count;
+}
+
+GPROJI_INTERNAL gproj_code gproji_set_level_polylines(gproji_mesh_object *object, const gproj_mesh *mesh,
+                                                      gproji_heap *heap, gproj_error *error) {
+    size_t starts = (size_t)mesh->polyline_count + 1, vertices = 0;
+    int32_t *start = (int32_t *)gproji_take(heap, starts, sizeof *start), *vertex = NULL;
+    gproj_code code;
+    if (start) {
+        vertices = (size_t)gproji_level_polylines(mesh, start, NULL);
+        vertex = (int32_t *)gproji_take(heap, vertices, sizeof *vertex);
+    }
+    if (vertex) {
+        gproji_level_polylines(mesh, start, vertex);
+        code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    } else {
+        code = gproji_fail_memory(error);
+    }
+    gproji_give(heap, vertex, vertices, sizeof *vertex);
+    gproji_give(heap, start, starts, sizeof *start);
+    return code;
+}
+
+/* The mesh of the next level. */
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
+                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
+    gproji_counts next = gproji_count_next(gproji_count(level->mesh), level->scheme);
+    size_t vertices = (size_t)next.vertices, faces = (size_t)next.faces, corners = (size_t)next.corners;
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    double *position = (double *)gproji_take(heap, vertices, 3 * sizeof *position);
+    int32_t *degree = (int32_t *)gproji_take(heap, faces, sizeof *degree);
+    int32_t *corner = (int32_t *)gproji_take(heap, corners, sizeof *corner);
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (object && position && degree && corner) {
+        gproji_soup soup;
+        gproj_stencil_apply(stencil, 3, level->mesh->position, position);
+        gproji_level_faces(level, degree, corner);
+        soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
+        soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
+        code = gproji_mesh_build(object, &soup, error);
+        if (!code) code = gproji_set_level_polylines(object, level->mesh, heap, error);
+    } else {
+        gproji_fail_memory(error);
+    }
+    gproji_give(heap, position, vertices, 3 * sizeof *position);
+    gproji_give(heap, degree, faces, sizeof *degree);
+    gproji_give(heap, corner, corners, sizeof *corner);
+    return object ? gproji_mesh_done(object, code) : NULL;
+}
+
+/* What is left of the sharpness on the next level: of each half of an edge one less, of new edges nothing. Each coarse
+   corner's face there begins with the halves of two edges, the last one and the first one of its corner. */
+GPROJI_INTERNAL void gproji_level_creases(const gproji_level *level, const gproj_mesh *fine, double *sharpness) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, e, at = 0;
+    for (e = 0; e < fine->edge_count; ++e) sharpness[e] = 0;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
+            int32_t half = fine->face_halfedge[at];
+            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+        }
+        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+    }
+}
+
+/* -- the stencil's functions -- */
+
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error) {
+    gproj_stencil *transposed;
+    gproji_error_clear(error);
+    if (!stencil) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the stencil to transpose is NULL");
+        return NULL;
+    }
+    transposed = gproji_transposed(stencil, host);
+    if (!transposed) gproji_fail_memory(error);
+    return transposed;
+}
+
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproji_rows rows;
+    int64_t k, l;
+    int32_t i;
+    gproji_error_clear(error);
+    if (!fine || !coarse) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a stencil to multiply is NULL");
+        return NULL;
+    }
+    if (fine->column_count != coarse->row_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
+                    fine->column_count, coarse->row_count);
+        return NULL;
+    }
+    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
+    for (i = 0; rows.stencil && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+        for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
+            int32_t middle = fine->column[k];
+            for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
+                gproji_rows_add(&rows, coarse->column[l], fine->weight[k] * coarse->weight[l]);
+        }
+    }
+    return gproji_rows_end(&rows, error);
+}
+
+/* -- all levels -- */
+
+/* The state between two levels. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* of the work arrays */
+    const gproj_host *host;
+    gproj_error *error;
+    const gproj_subdivide_options *options;
+    gproji_level level;
+    bool *corner;           /* of each vertex of the first mesh */
+    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
+
+GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                     gproj_error *error) {
+    gproji_counts counts = gproji_count(mesh);
+    int32_t level;
+    for (level = 1; level <= options->levels; ++level) {
+        counts = gproji_count_next(counts, options->scheme);
+        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
+            counts.polyline_vertices > INT32_MAX) {
+            return gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* Loop's scheme takes triangles, no two of them with the same corners: those of the next level would share edges. */
+GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_error *error) {
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3) {
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        }
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
+    double x = GPROJI_SHARP;
+    uint64_t bits;
+    if (options->sharpness) x = options->sharpness[crease];
+    memcpy(&bits, &x, sizeof bits);
+    if (bits == UINT64_C(0x7ff0000000000000)) return GPROJI_SHARP; /* infinite */
+    return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                gproj_error *error) {
+    int32_t k;
+    if (options->crease_count < 0 || options->corner_count < 0) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: %d creases and %d corners",
+                           options->crease_count, options->corner_count);
+    }
+    for (k = 0; k < options->crease_count; ++k) {
+        int32_t e = options->creases ? options->creases[k] : k;
+        if (e < 0 || e >= mesh->edge_count) {
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
+                               "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
+                               mesh->edge_count);
+        }
+        if (gproji_crease_sharpness(options, k) < 0) {
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
+                               options->sharpness[k]);
+        }
+    }
+    for (k = 0; k < options->corner_count; ++k) {
+        int32_t v = options->corners ? options->corners[k] : k;
+        if (v >= 0 && v < mesh->vertex_count) continue;
+        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
+                           "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
+                           mesh->vertex_count);
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                    gproj_error *error) {
+    gproj_code code;
+    if (options->scheme != GPROJ_CATMULL_CLARK && options->scheme != GPROJ_LOOP) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
+                           (int32_t)options->scheme);
+    }
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                           (int32_t)GPROJI_LEVELS_MAX);
+    }
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: a stencil from level %d to level %d; take 0 to %d", options->stencil_level,
+                           options->levels, options->levels - 1);
+    }
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (!code && options->scheme == GPROJ_LOOP) code = gproji_check_triangles(mesh, error);
+    if (!code) code = gproji_check_creases(mesh, options, error);
+    return code ? code : gproji_check_level_counts(mesh, options, error);
+}
+
+/* The first level: corners, and the sharpness of the edges. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const gproj_mesh *mesh) {
+    const gproj_subdivide_options *options = s->options;
+    double *sharpness = (double *)gproji_take(&s->heap, (size_t)mesh->edge_count, sizeof *sharpness);
+    int32_t k;
+    s->level.mesh = mesh, s->level.scheme = options->scheme, s->level.sharpness = sharpness;
+    s->level.corner_count = mesh->vertex_count;
+    s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
+    if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
+    for (k = 0; k < mesh->edge_count; ++k)
+        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
+    for (k = 0; k < options->crease_count; ++k) {
+        double *edge = sharpness + (options->creases ? options->creases[k] : k);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
+    }
+    for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
+    for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
+        if (gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2) s->corner[k] = true;
+    return GPROJ_OK;
+}
+
+/* Takes a level's stencil into that of all levels; it is given away. */
+GPROJI_INTERNAL gproj_code gproji_take_stencil(gproji_subdivision *s, gproj_stencil *step) {
+    gproj_stencil *both = step;
+    if (s->stencil) {
+        both = gproj_stencil_multiply(step, s->stencil, s->host, s->error);
+        gproj_stencil_destroy(step);
+        gproj_stencil_destroy(s->stencil);
+    }
+    s->stencil = both;
+    return both ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+}
+
+/* From a level to the next one. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
+    gproji_level *level = &s->level;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error);
+    gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
+    double *sharpness = NULL;
+    if (fine) {
+        sharpness = (double *)gproji_take(&s->heap, (size_t)fine->edge_count, sizeof *sharpness);
+        code = sharpness ? GPROJ_OK : gproji_fail_memory(s->error);
+    }
+    if (code) {
+        gproj_mesh_destroy(fine);
+        gproj_stencil_destroy(step);
+        return code;
+    }
+    gproji_level_creases(level, fine, sharpness);
+    gproji_give(&s->heap, level->sharpness, (size_t)level->mesh->edge_count, sizeof *level->sharpness);
+    gproj_mesh_destroy(s->own);
+    level->sharpness = sharpness;
+    level->mesh = s->own = fine;
+    if (keep_stencil) return gproji_take_stencil(s, step);
+    gproj_stencil_destroy(step);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
+    gproj_subdivide_options given;
+    gproji_subdivision s;
+    gproj_code code;
+    int32_t level;
+    gproji_error_clear(error);
+    if (stencil) *stencil = NULL;
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to subdivide is NULL");
+        return NULL;
+    }
+    memset(&given, 0, sizeof given);
+    if (options) given = *options;
+    if (given.levels == 0) given.levels = 1;
+    if (gproji_check_subdivision(mesh, &given, error)) return NULL;
+    memset(&s, 0, sizeof s);
+    s.heap = gproji_heap_of(host);
+    s.host = host, s.error = error, s.options = &given;
+    code = gproji_subdivision_begin(&s, mesh);
+    for (level = 0; !code && level < given.levels; ++level)
+        code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
+    gproji_give(&s.heap, s.corner, (size_t)mesh->vertex_count, sizeof *s.corner);
+    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof *s.level.sharpness);
+    if (code) {
+        gproj_mesh_destroy(s.own);
+        gproj_stencil_destroy(s.stencil);
+        return NULL;
+    }
+    if (stencil) *stencil = s.stencil;
+    return s.own;
+}
 
 /* ============================================================================================================
    >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory, vector.
