@@ -448,7 +448,7 @@ typedef struct gproj_group {
     const char *name; /* for reports, e.g. "planarity"; copied, cut to GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
-       which costs one more solve per row. */
+       which costs half a solve more per row. */
     bool global;
     gproj_place place; /* what the element numbers of its rows count */
     gproj_schedule schedule;
