@@ -452,7 +452,7 @@ typedef struct gproj_group {
     const char *name; /* for reports, e.g. "planarity"; copied, cut to GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
-       which costs one more solve per row. */
+       which costs half a solve more per row. */
     bool global;
     gproj_place place; /* what the element numbers of its rows count */
     gproj_schedule schedule;
@@ -5054,15 +5054,6 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     return done;
 }
 
-/* The storage rows of a front's nodes in its panel: at[node] is that of the node's first variable. */
-GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int32_t *at) {
-    const gproji_front *front = &sy->front[f];
-    int32_t shift = gproji_panel_shift(front->width), k;
-    int64_t r;
-    for (k = front->first_place; k < front->end_place; ++k) at[sy->order[k]] = sy->column[k] - front->first + shift;
-    for (r = front->rows; r < front->rows + front->row_nodes; ++r) at[sy->order[sy->row_node[r]]] = sy->row_at[r];
-}
-
 /* ============================================================================================================
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
@@ -5215,6 +5206,19 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
     return true;
+}
+
+/* The storage rows of a front in its panel: at[variable] for the variables that have one. */
+GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
+    int64_t r;
+    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+        const int32_t *column = sy->column + sy->row_node[r];
+        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
+    }
 }
 
 /* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
@@ -5715,11 +5719,34 @@ GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
         for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
-/* Solves for up to c->batch right-hand sides. */
-GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+/* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
+GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
     gproji_cholesky_take_sides(c, count, b);
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
     gproji_forward_group(c, c->symbolic.tasks);
+}
+
+/* Solves for up to c->batch right-hand sides. */
+GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+    gproji_cholesky_start(c, count, b);
+    gproji_cholesky_finish(c, x);
+}
+
+/* L y = b for any number of right-hand sides, y in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, const double *b, double *y) {
+    size_t n = (size_t)c->symbolic.columns;
+    int32_t r, sides;
+    for (r = 0; r < count; r += sides) {
+        sides = gproji_min(count - r, c->batch);
+        gproji_cholesky_start(c, sides, b + (size_t)r * n);
+        memcpy(y + (size_t)r * n, c->solution, (size_t)sides * n * sizeof *y);
+    }
+}
+
+/* L' x = y for one right-hand side in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
+    memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
+    c->sides = 1;
     gproji_cholesky_finish(c, x);
 }
 
@@ -6611,20 +6638,23 @@ typedef struct gproji_row {
     int64_t term;
     int64_t local; /* compiled: its variables and its gradient */
     double constant;
-    double weight;           /* own * factor, times the group's; 0: the row is left out of everything */
-    double own;              /* what the row itself asks for */
-    double factor;           /* the weight of its element */
-    double phi;              /* the value at the last evaluation */
-    double multiplier, rise; /* nearest: y of what must hold, and what a step adds to it */
+    double weight; /* times the group's; 0: the row is left out of everything */
+    double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
 } gproji_row;
 
-/* Where a term's variables stand among the row's locals. */
-typedef struct gproji_term_local {
-    int32_t i, j;
-} gproji_term_local;
+/* What a row's weight is the product of, in a group whose elements have weights. */
+typedef struct gproji_share {
+    double own;    /* what the row itself asks for */
+    double factor; /* the weight of its element */
+} gproji_share;
+
+/* Nearest: y of a row that must hold, and what a step adds to it. */
+typedef struct gproji_multiplier {
+    double y, rise;
+} gproji_multiplier;
 
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
@@ -6641,13 +6671,15 @@ typedef struct gproji_group {
     int32_t row_count;
     gproji_row *row;
     gproj_term *term;
-    size_t row_capacity, term_capacity;
+    gproji_share *share; /* of each row; NULL: all factors are 1 */
+    size_t row_capacity, term_capacity, share_capacity;
 
-    gproji_term_local *term_local; /* one per term; as many as term_local_count */
-    int32_t *local_variable;       /* of every row, one row after the other */
-    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
-    double *local_gradient;        /* at the last evaluation */
-    size_t term_local_count, local_count;
+    bool placed;             /* i and j of its terms are not variables but places among the locals of their row */
+    int32_t *local_variable; /* of every row, one row after the other */
+    int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
+    double *local_gradient;  /* at the last evaluation */
+    size_t local_count;
+    gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
 
 typedef struct gproji_row_name {
@@ -6693,17 +6725,18 @@ struct gproj_system {
     int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
     gproji_row_name *front_row; /* all narrow rows */
     size_t front_count, front_row_count, front_row_room;
-    double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;          /* dx */
-    double *saved;         /* x before the step */
-    double *residual;      /* work of refinement and of the low-rank update; nearest: the sum of steps */
-    double *correction;    /* the same */
-    double *wide_response; /* wide_count columns A^-1 (w g), and one for the right-hand side */
-    double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
-    double *wide_vector;   /* wide_count */
-    size_t wide_taken;     /* wide_count when the three were taken */
-    gproji_hinge *hinge;   /* the bounds' rows that a step may violate */
-    size_t hinge_taken;    /* as many as all bounds have rows */
+    double *gradient;    /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;        /* dx: the first column of `sides` */
+    double *saved;       /* x before the step */
+    double *sum;         /* nearest: of the steps of a slide; NULL before */
+    double *residual;    /* with wide rows: work of refinement */
+    double *balance;     /* the same */
+    double *sides;       /* 1 + wide_count columns: the right-hand sides -gradient and U of a step, then it and Y */
+    double *wide_matrix; /* wide_count x wide_count: I + Y'Y and its Cholesky factor */
+    double *wide_vector; /* wide_count */
+    size_t wide_taken;   /* wide_count when the three were taken */
+    gproji_hinge *hinge; /* the bounds' rows that a step may violate */
+    size_t hinge_taken;  /* as many as all bounds have rows */
 };
 
 /* -- life and building -- */
@@ -6721,16 +6754,30 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
+/* Lets a group's terms name variables again. */
+GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
+    int32_t r;
+    int64_t t;
+    for (r = 0; r < g->row_count; ++r)
+        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+            const int32_t *variable = g->local_variable + g->row[r].local;
+            g->term[t].i = variable[g->term[t].i];
+            if (g->term[t].j >= 0) g->term[t].j = variable[g->term[t].j];
+        }
+    g->placed = false;
+}
+
 /* Gives back what compilation made of a group. */
 GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
-    gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
+    if (g->placed) gproji_unplace_terms(g);
     gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
     gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
-    g->term_local = NULL;
+    gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
+    g->multiplier = NULL;
 }
 
 /* Ends the compiled state and gives its memory back. */
@@ -6743,19 +6790,19 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
     gproji_give(&s->own, s->front_row, s->front_row_room, sizeof *s->front_row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
-    gproji_give(&s->own, s->step, n, sizeof *s->step);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
+    gproji_give(&s->own, s->sum, n, sizeof *s->sum);
     gproji_give(&s->own, s->residual, n, sizeof *s->residual);
-    gproji_give(&s->own, s->correction, n, sizeof *s->correction);
-    gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
+    gproji_give(&s->own, s->balance, n, sizeof *s->balance);
+    gproji_give(&s->own, s->sides, (s->wide_taken + 1) * n, sizeof *s->sides);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
     gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
     s->node = s->node_first = NULL;
     s->front_start = NULL;
     s->front_row = NULL;
-    s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
-    s->wide_response = s->wide_matrix = s->wide_vector = NULL;
+    s->gradient = s->step = s->saved = s->sum = s->residual = s->balance = NULL;
+    s->sides = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
     s->compiled = false;
@@ -6764,9 +6811,11 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
     int32_t i;
     if (!s) return;
+    for (i = 0; i < s->group_count; ++i) s->group[i].placed = false; /* nobody reads its terms any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
+        gproji_give(&s->own, s->group[i].share, s->group[i].share_capacity, sizeof *s->group[i].share);
         gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
     }
     gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
@@ -6805,9 +6854,19 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     return sum;
 }
 
+/* Makes room for so many more variables. */
+GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
+    size_t wanted = (size_t)s->variable_count + count;
+    void *x = s->x, *block = s->block;
+    bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
+    s->x = (double *)x;
+    enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
+    s->block = (int32_t *)block;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
-    size_t needed;
     if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -6826,17 +6885,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    needed = (size_t)first + (size_t)count;
-    {
-        void *x = s->x, *blocks = s->block;
-        bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, needed, sizeof *s->x);
-        s->x = (double *)x;
-        enough = enough && gproji_reserve(&s->own, &blocks, &s->block_capacity, needed, sizeof *s->block);
-        s->block = (int32_t *)blocks;
-        if (!enough) {
-            gproji_fail_memory(&s->error);
-            return -1;
-        }
+    if (!gproji_reserve_variables(s, (size_t)count)) {
+        gproji_fail_memory(&s->error);
+        return -1;
     }
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
@@ -6975,12 +7026,24 @@ GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group 
     return finite;
 }
 
+/* Makes room for so many more rows and terms. */
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms) {
+    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
+    void *row = g->row, *term = g->term, *share = g->share;
+    bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
+    g->row = (gproji_row *)row;
+    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, (size_t)g->row[g->row_count].term + terms,
+                                      sizeof *g->term);
+    g->term = (gproj_term *)term;
+    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->share_capacity, wanted, sizeof *g->share));
+    g->share = (gproji_share *)share;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     gproji_group *g;
     gproji_row *row;
-    void *rows, *all_terms;
-    bool enough;
     if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -6993,25 +7056,19 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, group, "group '%s' has too many rows", g->name);
         return -1;
     }
-    rows = g->row;
-    all_terms = g->term;
-    enough = gproji_reserve(&s->own, &rows, &g->row_capacity, (size_t)g->row_count + 2, sizeof *g->row);
-    g->row = (gproji_row *)rows;
-    enough = enough && gproji_reserve(&s->own, &all_terms, &g->term_capacity,
-                                      (size_t)g->row[g->row_count].term + (size_t)count, sizeof *g->term);
-    g->term = (gproj_term *)all_terms;
-    if (!enough) {
+    if (s->compiled) gproji_system_forget(s);
+    if (!gproji_reserve_rows(s, g, 1, (size_t)count)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
     row = &g->row[g->row_count];
     row->constant = constant;
-    row->weight = row->own = row->factor = 1;
+    row->weight = 1;
     row->element = element;
+    if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
     if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memset(row + 1, 0, sizeof row[1]);
     row[1].term = row->term + count;
-    if (s->compiled) gproji_system_forget(s);
     return g->row_count++;
 }
 
@@ -7043,127 +7100,153 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
 }
 
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group, int32_t row, double weight) {
+    gproji_group *g;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= 1e50))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
                            "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
                            weight, row, group);
-    s->group[group].row[row].own = weight;
-    s->group[group].row[row].weight = weight * s->group[group].row[row].factor;
+    g = &s->group[group];
+    g->row[row].weight = weight;
+    if (g->share) {
+        g->share[row].own = weight;
+        g->row[row].weight *= g->share[row].factor;
+    }
     s->changed = true;
     return GPROJ_OK;
 }
 
-/* phi at x without the compiled state; adds grad phi to `gradient` unless it is NULL. */
-GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t row, const double *x, double *gradient) {
-    double phi = g->row[row].constant;
-    int64_t t;
-    for (t = g->row[row].term; t < g->row[row + 1].term; ++t) {
-        const gproj_term *term = &g->term[t];
-        if (term->j < 0) {
-            phi += term->a * x[term->i];
-            if (gradient) gradient[term->i] += term->a;
-        } else {
-            phi += term->a * x[term->i] * x[term->j];
-            if (!gradient) continue;
-            gradient[term->i] += term->a * x[term->j];
-            gradient[term->j] += term->a * x[term->i];
-        }
+/* The weight of a row, without that of its element. */
+GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
+    return g->share ? g->share[row].own : g->row[row].weight;
+}
+
+/* Lets the group's elements have weights: all 1. */
+GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
+    int32_t r;
+    if (g->share) return true;
+    g->share = (gproji_share *)gproji_take(&s->own, g->row_capacity, sizeof *g->share);
+    if (!g->share) return false;
+    g->share_capacity = g->row_capacity;
+    for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
+    return true;
+}
+
+/* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
+GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
+    return g->placed && i >= 0 ? g->local_variable[row->local + i] : i;
+}
+
+/* phi at x. variable: the variables that the terms' i and j stand for; NULL: i and j themselves. */
+GPROJI_INLINED double gproji_terms_value(const gproji_group *g, const gproji_row *row, const double *x,
+                                         const int32_t *variable) {
+    const gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
+    double phi = row->constant;
+    for (; term < end; ++term) {
+        double value = term->a * x[variable ? variable[term->i] : term->i];
+        phi += term->j < 0 ? value : value * x[variable ? variable[term->j] : term->j];
     }
     return phi;
 }
 
+/* phi at x, whether compiled or not. */
+GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
+    const gproji_row *row = &g->row[r];
+    return g->placed ? gproji_terms_value(g, row, x, g->local_variable + row->local)
+                     : gproji_terms_value(g, row, x, NULL);
+}
+
+/* gradient += grad phi at x, whether compiled or not. */
+GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
+    const gproji_row *row = &g->row[r];
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        double a = g->term[t].a;
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        gradient[i] += j < 0 ? a : a * x[j];
+        if (j >= 0) gradient[j] += a * x[i];
+    }
+}
+
 GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, int32_t row, double *gradient) {
     if (!gproji_system_has_row(s, group, row)) return 0;
-    if (gradient) memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
-    return gproji_row_value(&s->group[group], row, s->x, gradient);
+    if (gradient) {
+        memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
+        gproji_row_gradient(&s->group[group], row, s->x, gradient);
+    }
+    return gproji_row_value(&s->group[group], row, s->x);
 }
 
 /* -- compilation -- */
 
-/* A mark on a variable: the row that named it last, and its place among that row's locals. */
+/* Marks on a variable: the row that named it last; and, on the first of a block, the row that met the block last. */
 typedef struct gproji_named {
-    int32_t row, local;
+    int32_t row, block;
 } gproji_named;
 
-/* The place of a variable among the `count` locals of row r; a new one where the row has not named it before. */
-GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *count) {
-    gproji_named *mark = &named[variable];
-    if (mark->row != r) {
-        mark->row = r;
-        mark->local = (*count)++;
+/* Appends a variable to the `count` locals of row r, unless the row has named it already. */
+GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *local,
+                                        int32_t count) {
+    if (named[variable].row == r) return count;
+    named[variable].row = r;
+    local[count] = variable;
+    return count + 1;
+}
+
+/* The variables of a row, in the order in which its terms name them; returns how many they are. */
+GPROJI_INTERNAL int32_t gproji_name_locals(const gproji_group *g, int32_t r, gproji_named *named, int32_t *local) {
+    int32_t count = 0;
+    int64_t t;
+    for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+        count = gproji_name_local(named, r, g->term[t].i, local, count);
+        if (g->term[t].j >= 0) count = gproji_name_local(named, r, g->term[t].j, local, count);
     }
-    return mark->local;
+    return count;
 }
 
-/* Takes all marks off. */
-GPROJI_INTERNAL void gproji_unname(const gproj_system *s, gproji_named *named) {
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) named[v].row = -1;
+/* Notes the blocks of which a narrow row has more than one variable: coupled[first of block]. */
+GPROJI_INTERNAL void gproji_couple_blocks(const gproj_system *s, int32_t r, gproji_named *named, int32_t count,
+                                          const int32_t *local, int32_t *coupled) {
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        int32_t block = s->block[local[i]];
+        if (named[block].block == r) coupled[block] = 1;
+        named[block].block = r;
+    }
 }
 
-/* Step 1: where the terms' variables are among the variables of their rows, in the order in which they are named; how
-   many each row has; which rows are wide. */
-GPROJI_INTERNAL bool gproji_compile_terms(gproj_system *s, gproji_group *g, gproji_named *named) {
-    int64_t filled = 0, t;
-    int32_t r;
-    g->term_local_count = (size_t)g->row[g->row_count].term;
-    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
-    if (!g->term_local) return false;
-    gproji_unname(s, named);
+/* Step 1: the variables of all rows; which rows are wide; which blocks are coupled, for which `node` serves as marks. */
+GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gproji_named *named) {
+    size_t most = 2 * (size_t)g->row[g->row_count].term;
+    int64_t filled = 0;
+    int32_t r, v, count;
+    void *trimmed;
+    g->local_variable = (int32_t *)gproji_take(&s->own, most, sizeof *g->local_variable);
+    g->local_count = most;
+    if (!g->local_variable) return false;
+    for (v = 0; v < s->variable_count; ++v) named[v].row = named[v].block = -1;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t count = 0;
-        for (t = row->term; t < row[1].term; ++t) {
-            g->term_local[t].i = gproji_name_local(named, r, g->term[t].i, &count);
-            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_name_local(named, r, g->term[t].j, &count);
-        }
+        row->local = filled;
+        count = gproji_name_locals(g, r, named, g->local_variable + filled);
         row->wide = g->global || count > GPROJI_WIDE_ROW;
         s->wide_count += row->wide;
-        row->local = filled;
+        if (!row->wide) gproji_couple_blocks(s, r, named, count, g->local_variable + filled, s->node);
         filled += count;
     }
     g->row[g->row_count].local = filled;
+    trimmed = gproji_retake(&s->own, g->local_variable, most, (size_t)filled, sizeof *g->local_variable);
+    if (!trimmed) return false;
+    g->local_variable = (int32_t *)trimmed;
+    g->local_count = (size_t)filled;
     return true;
 }
 
-/* Step 2: the variables of all rows. */
-GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g) {
-    int64_t t;
-    int32_t r;
-    g->local_count = (size_t)g->row[g->row_count].local;
-    g->local_variable = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_variable);
-    g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
-    g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
-    if (!g->local_variable || !g->local_at || !g->local_gradient) return false;
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            const gproji_term_local *place = &g->term_local[t];
-            g->local_variable[g->row[r].local + place->i] = g->term[t].i;
-            if (place->j >= 0) g->local_variable[g->row[r].local + place->j] = g->term[t].j;
-        }
-    return true;
-}
-
-/* Step 3: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
-GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s, gproji_named *named) {
-    int32_t *coupled = s->node;
-    int32_t i, r, v;
-    int64_t l;
-    memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        gproji_unname(s, named);
-        for (r = 0; r < g->row_count; ++r) {
-            if (g->row[r].wide) continue;
-            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
-                int32_t block = s->block[g->local_variable[l]];
-                if (named[block].row == r) coupled[block] = 1;
-                named[block].row = r;
-            }
-        }
-    }
+/* Step 2: joins the variables of coupled blocks to nodes. `node` has the marks of step 1. */
+GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+    const int32_t *coupled = s->node;
+    int32_t i, v;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
         if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
@@ -7190,7 +7273,8 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
 }
 
-/* The nodes of each row, without rows that have the nodes of the row before. mark: node_count entries. */
+/* The nodes of each row, without rows that join nothing: those of one node, or with the nodes of the row before.
+   mark: node_count entries. */
 GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int32_t i, r, v;
     int64_t l, entries = 0, before = 0; /* where the nodes of the row before begin */
@@ -7206,8 +7290,9 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
                 mark[node] = begin;
                 in->row_node[entries++] = node;
             }
-            if (entries - begin == begin - before &&
-                memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) == 0) {
+            if (entries - begin < 2 ||
+                (entries - begin == begin - before && memcmp(in->row_node + begin, in->row_node + before,
+                                                             (size_t)(entries - begin) * sizeof(int32_t)) == 0)) {
                 for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
                 entries = begin;
                 continue;
@@ -7221,7 +7306,6 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int64_t r, e;
     int32_t v, i;
-    memset(in, 0, sizeof *in);
     in->node_count = s->node_count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
@@ -7244,94 +7328,77 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     return true;
 }
 
-/* Step 4: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
-GPROJI_INTERNAL gproj_code gproji_compile_graph(gproj_system *s) {
-    gproji_incidence in;
-    int64_t *start = NULL;
-    int64_t *mark = NULL;
-    int32_t *adjacent = NULL, *size = NULL;
-    size_t capacity = 0, nodes = (size_t)s->node_count;
+/* The graph of the nodes: two are adjacent when they meet in a narrow row. */
+typedef struct gproji_meetings {
+    int64_t *start;    /* node_count + 1 */
+    int32_t *adjacent; /* of all nodes */
+    int32_t *size;     /* variables of each node */
+    size_t room;       /* of `adjacent` */
+} gproji_meetings;
+
+/* The graph from the incidence. mark: node_count entries. */
+GPROJI_INTERNAL bool gproji_find_meetings(gproj_system *s, const gproji_incidence *in, int64_t *mark,
+                                          gproji_meetings *graph) {
     int64_t filled = 0, e, f;
     int32_t v;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    memset(&in, 0, sizeof in);
-    start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
-    size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size);
-    mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
-    if (!start || !size || !mark || !gproji_incidence_take(s, &in, mark)) goto done;
+    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
     for (v = 0; v < s->node_count; ++v) {
-        mark[v] = -1;
-        size[v] = s->node_first[v + 1] - s->node_first[v];
-    }
-    for (v = 0; v < s->node_count; ++v) {
-        start[v] = filled;
+        size_t most = (size_t)filled; /* with all of the node's rows, as if they had nothing in common */
+        void *room = graph->adjacent;
+        bool enough;
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            most += (size_t)(in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]]);
+        enough = gproji_reserve(&s->own, &room, &graph->room, most, sizeof *graph->adjacent);
+        graph->adjacent = (int32_t *)room;
+        if (!enough) return false;
+        graph->start[v] = filled;
+        graph->size[v] = s->node_first[v + 1] - s->node_first[v];
         mark[v] = v;
-        for (e = in.node_start[v]; e < in.node_start[v + 1]; ++e) {
-            int64_t row = in.node_row[e];
-            void *room = adjacent;
-            bool enough =
-                gproji_reserve(&s->own, &room, &capacity, (size_t)(filled + in.row_start[row + 1] - in.row_start[row]),
-                               sizeof *adjacent);
-            adjacent = (int32_t *)room;
-            if (!enough) goto done;
-            for (f = in.row_start[row]; f < in.row_start[row + 1]; ++f) {
-                int32_t other = in.row_node[f];
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
+                int32_t other = in->row_node[f];
                 if (mark[other] == v) continue;
                 mark[other] = v;
-                adjacent[filled++] = other;
+                graph->adjacent[filled++] = other;
             }
-        }
     }
-    start[s->node_count] = filled;
-    code = gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, size, start, adjacent, NULL);
-done:
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, start, nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, nodes, sizeof *size);
-    gproji_give(&s->own, mark, nodes, sizeof *mark);
-    gproji_give(&s->own, adjacent, capacity, sizeof *adjacent);
-    return code;
-}
-
-/* Step 5: all that the fronts need. */
-
-/* The front of a narrow row; -1 where it has no variables. */
-GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t first = INT32_MAX;
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l) first = gproji_min(first, sy->place[s->node[g->local_variable[l]]]);
-    return first == INT32_MAX ? -1 : sy->front_of[first];
-}
-
-/* Sorts the narrow rows by their fronts. */
-GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
-    int32_t i, r, f, pass;
-    s->front_count = (size_t)s->cholesky->symbolic.fronts;
-    s->front_row_room = 0;
-    for (i = 0; i < s->group_count; ++i) s->front_row_room += (size_t)s->group[i].row_count;
-    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
-    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
-    if (!s->front_start || !s->front_row) return false;
-    for (pass = 0; pass < 2; ++pass) { /* count, fill */
-        for (i = 0; i < s->group_count; ++i) {
-            const gproji_group *g = &s->group[i];
-            for (r = 0; r < g->row_count; ++r) {
-                f = g->row[r].wide ? -1 : gproji_front_of_row(s, g, &g->row[r]);
-                if (f >= 0 && pass == 0) s->front_start[f + 2]++;
-                if (f < 0 || pass == 0) continue;
-                s->front_row[s->front_start[f + 1]].group = i;
-                s->front_row[s->front_start[f + 1]++].row = r;
-            }
-        }
-        for (f = 0; pass == 0 && f < (int32_t)s->front_count; ++f) s->front_start[f + 2] += s->front_start[f + 1];
-    }
-    s->front_row_count = (size_t)s->front_start[s->front_count];
+    graph->start[s->node_count] = filled;
     return true;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th, with what their places are made
-   of, or with their gradients. */
+/* Step 3: the graph of the nodes. */
+GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
+    gproji_incidence in;
+    size_t nodes = (size_t)s->node_count;
+    int64_t *mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    bool done;
+    memset(&in, 0, sizeof in);
+    graph->start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *graph->start);
+    graph->size = (int32_t *)gproji_take(&s->own, nodes, sizeof *graph->size);
+    done = mark && graph->start && graph->size && gproji_incidence_take(s, &in, mark) &&
+           gproji_find_meetings(s, &in, mark, graph);
+    gproji_incidence_give(&s->own, &in);
+    gproji_give(&s->own, mark, nodes, sizeof *mark);
+    return done;
+}
+
+/* Step 4: its analysis for the factorisation. */
+GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproji_meetings graph;
+    size_t nodes = (size_t)s->node_count;
+    memset(&graph, 0, sizeof graph);
+    if (gproji_compile_graph(s, &graph))
+        code =
+            gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, graph.size, graph.start, graph.adjacent, NULL);
+    gproji_give(&s->own, graph.start, nodes + 1, sizeof *graph.start);
+    gproji_give(&s->own, graph.size, nodes, sizeof *graph.size);
+    gproji_give(&s->own, graph.adjacent, graph.room, sizeof *graph.adjacent);
+    return code;
+}
+
+/* A front's rows come from all over the memory: asks for those that follow the k-th, with their variables or with their
+   gradients. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
@@ -7342,72 +7409,164 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool pl
         GPROJI_PREFETCH(row + 1);
         GPROJI_PREFETCH(g->local_at + next->local);
         GPROJI_PREFETCH(placing ? (const void *)(g->local_variable + next->local) : g->local_gradient + next->local);
-        GPROJI_PREFETCH(placing ? (const void *)(g->term_local + next->term) : g->local_gradient + next->local + 8);
+        if (!placing) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
     }
 }
 
-/* The storage rows of a narrow row's locals, ascending, and its locals in their order. at: of the front's nodes;
-   moved: work, where each local goes. */
-GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row, const int32_t *at,
-                                      int32_t moved[GPROJI_WIDE_ROW]) {
-    int32_t *local = g->local_variable + row->local, *key = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), i, j, from[GPROJI_WIDE_ROW];
-    int64_t t;
+/* Step 5: all that the fronts need. */
+
+/* What the places of all rows are found with. */
+typedef struct gproji_placing {
+    int32_t *column; /* of each variable, its column of L */
+    int32_t
+        *where; /* of each variable of a row, its place among the locals; of each node, its storage row in a front */
+    int32_t *front; /* of all rows, group by group, the front; -1: none */
+    size_t rows;
+} gproji_placing;
+
+/* Sorts a narrow row's variables by their columns. By insertion: rows are short, and their terms name the variables of a
+   node in order. */
+GPROJI_INTERNAL void gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local) {
+    int32_t key[GPROJI_WIDE_ROW], i, j;
     for (i = 0; i < count; ++i) {
-        int32_t variable = local[i], node = s->node[variable];
-        int32_t own = at[node] + variable - s->node_first[node];
-        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1], from[j] = from[j - 1];
+        int32_t variable = local[i], own = column[variable];
+        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
         key[j] = own;
         local[j] = variable;
-        from[j] = i;
-    }
-    for (i = 0; i < count; ++i) moved[from[i]] = i;
-    for (t = row->term; t < row[1].term; ++t) {
-        gproji_term_local *place = &g->term_local[t];
-        place->i = moved[place->i];
-        if (place->j >= 0) place->j = moved[place->j];
     }
 }
 
-/* Gives all narrow rows their places in their fronts. */
-GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
-    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), f;
-    int32_t moved[GPROJI_WIDE_ROW];
-    int64_t k;
-    if (!at) return false;
+/* Lets the terms of a row name places among its locals. */
+GPROJI_INTERNAL void gproji_place_terms(gproji_group *g, const gproji_row *row, int32_t *where) {
+    const int32_t *local = g->local_variable + row->local;
+    int32_t count = (int32_t)(row[1].local - row->local), i;
+    int64_t t;
+    for (i = 0; i < count; ++i) where[local[i]] = i;
+    for (t = row->term; t < row[1].term; ++t) {
+        g->term[t].i = where[g->term[t].i];
+        if (g->term[t].j >= 0) g->term[t].j = where[g->term[t].j];
+    }
+}
+
+/* Gives the locals of a group's rows their order. front: of each row, the front of the variable that is eliminated
+   first; -1 where there is none. */
+GPROJI_INTERNAL void gproji_place_group(gproj_system *s, gproji_group *g, const gproji_placing *placing,
+                                        int32_t *front) {
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) {
+        const gproji_row *row = &g->row[r];
+        int32_t *local = g->local_variable + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        if (!row->wide) gproji_sort_locals(placing->column, count, local);
+        front[r] = row->wide || count == 0 ? -1 : sy->front_of[sy->place[s->node[local[0]]]];
+        gproji_place_terms(g, row, placing->where);
+    }
+    g->placed = true;
+}
+
+/* Sorts the narrow rows by their fronts: front_start has been cleared. */
+GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
+    int64_t *start = s->front_start, row = 0;
+    int32_t i, r, f;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row)
+            if (front[row] >= 0) start[front[row] + 2]++;
+    for (f = 0; f < (int32_t)s->front_count; ++f) start[f + 2] += start[f + 1];
+    for (row = 0, i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row) {
+            if (front[row] < 0) continue;
+            s->front_row[start[front[row] + 1]].group = i;
+            s->front_row[start[front[row] + 1]++].row = r;
+        }
+    s->front_row_count = (size_t)start[s->front_count];
+}
+
+/* The storage rows of all narrow rows' locals, front by front. at: work, of each variable. */
+GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
+    int32_t f;
+    int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
-        gproji_map_front(&s->cholesky->symbolic, f, at);
+        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
+            const gproji_row *row = &g->row[s->front_row[k].row];
             gproji_expect_rows(s, k, true);
-            gproji_place_row(s, g, &g->row[s->front_row[k].row], at, moved);
+            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_variable[l]];
         }
     }
-    gproji_give(&s->own, at, (size_t)s->node_count, sizeof *at);
-    return true;
 }
 
+GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
+    const int32_t *permutation = s->cholesky->permutation;
+    size_t n = (size_t)s->variable_count;
+    int32_t i;
+    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
+    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
+    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
+    if (!placing->column || !placing->where || !placing->front) return false;
+    gproji_invert(s->variable_count, permutation, placing->column);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
+        if (!g->local_at) return false;
+    }
+    s->front_count = (size_t)s->cholesky->symbolic.fronts;
+    s->front_row_room = placing->rows;
+    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
+    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
+    return s->front_start && s->front_row;
+}
+
+/* Places of all rows in their fronts. */
+GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
+    gproji_placing placing;
+    size_t n = (size_t)s->variable_count, row = 0;
+    int32_t i;
+    bool done;
+    memset(&placing, 0, sizeof placing);
+    for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
+    done = gproji_take_placing(s, &placing);
+    for (i = 0; done && i < s->group_count; ++i) {
+        gproji_place_group(s, &s->group[i], &placing, placing.front + row);
+        row += (size_t)s->group[i].row_count;
+    }
+    if (done) {
+        gproji_sort_rows(s, placing.front);
+        gproji_place_locals(s, placing.where);
+    }
+    gproji_give(&s->own, placing.column, n, sizeof *placing.column);
+    gproji_give(&s->own, placing.where, n, sizeof *placing.where);
+    gproji_give(&s->own, placing.front, placing.rows, sizeof *placing.front);
+    return done;
+}
+
+/* Step 6: what iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
-    s->compiled_variables = s->variable_count;
-    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
+        if (!g->local_gradient) return false;
+    }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
-    s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
-    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
-    s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
-    return s->node && s->node_first && s->gradient && s->step && s->saved && s->residual && s->correction;
+    return s->gradient && s->saved;
 }
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
     if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
     s->wide_taken = k;
-    s->wide_response = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
+    s->sides = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->sides);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
     s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
-    return s->wide_response && s->wide_matrix && s->wide_vector;
+    if (!s->sides || !s->wide_matrix || !s->wide_vector) return false;
+    if (k == 0) return true;
+    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
+    s->balance = (double *)gproji_take(&s->own, n, sizeof *s->balance);
+    return s->residual && s->balance;
 }
 
 GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
@@ -7432,34 +7591,42 @@ GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
     return true;
 }
 
-/* All steps; `named`: work, one for each variable. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *named) {
-    gproj_code code;
+/* Steps 1 and 2. */
+GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
+    gproji_named *named = (gproji_named *)gproji_take(&s->own, n, sizeof *named);
+    bool done;
     int32_t i;
+    s->compiled_variables = s->variable_count;
     s->wide_count = 0;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_terms(s, &s->group[i], named)) return GPROJ_ERROR_MEMORY;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_trim_rows(s, &s->group[i]) || !gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
-    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
-        return GPROJ_ERROR_MEMORY;
-    gproji_compile_nodes(s, named);
-    code = gproji_compile_graph(s);
+    s->node = (int32_t *)gproji_take_zeroed(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    done = named && s->node && s->node_first;
+    for (i = 0; done && i < s->group_count; ++i)
+        done = gproji_trim_rows(s, &s->group[i]) && gproji_compile_locals(s, &s->group[i], named);
+    if (done) gproji_compile_nodes(s);
+    gproji_give(&s->own, named, n, sizeof *named);
+    return done;
+}
+
+/* All steps. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s) {
+    gproj_code code;
+    if (!gproji_compile_variables(s)) return GPROJ_ERROR_MEMORY;
+    code = gproji_compile_analysis(s);
     if (code) return code;
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-    if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
-    return gproji_compile_fronts(s) && gproji_compile_places(s) ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+    if (!gproji_compile_places(s) || !gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) ||
+        !gproji_take_hinges(s) || !gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_ERROR_MEMORY;
+    return GPROJ_OK;
 }
 
 /* Makes the rows ready for iterations; nothing to do when they are. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
-    size_t variables = (size_t)s->variable_count;
-    gproji_named *named;
-    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_code code;
     if (s->compiled) return GPROJ_OK;
-    named = (gproji_named *)gproji_take(&s->own, variables, sizeof *named);
-    if (named) code = gproji_compile_steps(s, named);
-    gproji_give(&s->own, named, variables, sizeof *named);
+    code = gproji_compile_steps(s);
     if (code == GPROJ_OK) {
         s->compiled = true;
         return code;
@@ -7484,22 +7651,47 @@ typedef struct gproji_evaluation {
 /* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
+    const int32_t *variable = g->local_variable + row->local;
     gproji_sum sum = {0, 0};
     int64_t t;
     sum.high = row->constant;
     for (t = row->term; t < row[1].term; ++t) {
         const gproj_term *term = &g->term[t];
         gproji_sum product = {0, 0};
-        gproji_sum_add_product(&product, term->a, x[term->i]);
+        gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
         if (term->j < 0) {
             gproji_sum_add(&sum, product.high);
             sum.low += product.low;
         } else {
-            gproji_sum_add_product(&sum, product.high, x[term->j]);
-            sum.low += product.low * x[term->j];
+            gproji_sum_add_product(&sum, product.high, x[variable[term->j]]);
+            sum.low += product.low * x[variable[term->j]];
         }
     }
     return gproji_sum_value(&sum);
+}
+
+/* phi of a row at x; `size` becomes the sum of its terms' absolute values, and grad phi is added to `gradient`. */
+GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
+                                          double *gradient, double *size) {
+    const int32_t *variable = g->local_variable + row->local;
+    double phi = row->constant, sum = fabs(row->constant);
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        const gproj_term *term = &g->term[t];
+        double value = term->a * x[variable[term->i]], other;
+        if (term->j < 0) {
+            gradient[term->i] += term->a;
+        } else {
+            other = x[variable[term->j]];
+            gradient[term->i] += term->a * other;
+            gradient[term->j] += value;
+            value *= other;
+        }
+        phi += value;
+        sum += fabs(value);
+    }
+    *size = sum;
+    return phi;
 }
 
 /* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
@@ -7511,28 +7703,12 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
     for (; r < end; ++r) {
         gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local, phi = row->constant, size = fabs(row->constant);
-        int64_t t;
+        double *gradient = g->local_gradient + row->local, phi, size;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
         if (!(row->weight > 0)) row->active = false;
         if (!(row->weight > 0)) continue;
-        for (t = row->term; t < row[1].term; ++t) {
-            const gproj_term *term = &g->term[t];
-            const gproji_term_local *place = &g->term_local[t];
-            if (term->j < 0) {
-                double value = term->a * e->x[term->i];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a;
-            } else {
-                double value = term->a * e->x[term->i] * e->x[term->j];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a * e->x[term->j];
-                gradient[place->j] += term->a * e->x[term->i];
-            }
-        }
+        phi = gproji_linearise_row(g, row, e->x, gradient, &size);
         if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
         row->phi = phi;
         row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -7618,10 +7794,10 @@ GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row 
 /* w^2 y (Hessian of phi), lower triangle */
 GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
     const int32_t *at = g->local_at + row->local;
-    double w2y = gproji_weight2(g, row) * (g->kind == GPROJ_WISH ? row->phi : row->multiplier);
+    double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
     int64_t t;
     for (t = row->term; t < row[1].term; ++t) {
-        int32_t i = g->term_local[t].i, j = g->term_local[t].j;
+        int32_t i = g->term[t].i, j = g->term[t].j;
         if (j < 0) continue;
         gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
     }
@@ -7671,8 +7847,12 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
 /* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
    (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
-   an approximation dx, with r = -gradient - A dx and c = A^-1 r, the correction is
-       c - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
+   an approximation dx, at first 0, with A = L L', Y = L^-1 U and z = L^-1 (-gradient - A dx), a better one is
+       dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
+   so that U costs half a solution. */
+
+/* The parts of a step that may cancel to it without a check: see gproji_refine_step. */
+static const double gproji_parts_most = 1e3;
 
 /* Calls `visit` for the wide rows that act in a fixed order; returns how many there are. */
 typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
@@ -7688,25 +7868,25 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     return index;
 }
 
-/* Column `index` of U. */
+/* Column `index` of U, or of Y. */
+GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
+    return s->sides + (int64_t)s->variable_count * (index + 1);
+}
+
 GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double *column = s->wide_response + (int64_t)s->variable_count * index;
+    double *column = gproji_wide_side(s, index);
     memset(column, 0, (size_t)s->variable_count * sizeof *column);
     gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
 
-/* Row `index` of I + U'A^-1 U, up to the diagonal. */
-GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          int32_t index) {
-    double *out = s->wide_matrix + (int64_t)index * s->wide_count, weight = sqrt(gproji_weight2(g, row));
-    int32_t k;
-    for (k = 0; k <= index; ++k)
-        out[k] = weight * gproji_row_times(g, row, s->wide_response + (int64_t)s->variable_count * k) + (k == index);
+/* w phi */
+GPROJI_INTERNAL void gproji_wide_value(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * row->phi;
 }
 
-GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double ahead = gproji_row_times(g, row, s->step) + gproji_row_times(g, row, s->correction);
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + ahead);
+/* w phi + U'dx */
+GPROJI_INTERNAL void gproji_wide_ahead(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
 }
 
 /* Factors the small matrix in place by rows: L L' = M. It is I plus a positive semidefinite matrix, so no pivot is less
@@ -7736,48 +7916,78 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* correction = c - A^-1 U m from correction = c: see above. `wide`: columns of U. */
-GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide) {
-    int64_t n = s->variable_count, i;
-    int32_t k;
-    if (wide == 0) return;
-    gproji_for_wide_rows(s, gproji_wide_project);
-    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
-    for (k = 0; k < wide; ++k)
-        for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
+/* a'b; four sums, so that none has to wait for the one before. */
+GPROJI_INTERNAL double gproji_wide_dot(int64_t count, const double *a, const double *b) {
+    double sum[4] = {0, 0, 0, 0};
+    int64_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* The right-hand sides of a step: the columns of U, and -gradient. Returns the number of wide rows. */
-GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
-    size_t n = (size_t)s->variable_count, v;
-    int32_t wide = gproji_for_wide_rows(s, gproji_wide_column);
-    double *last = s->wide_response + n * (size_t)wide;
-    for (v = 0; v < n; ++v) last[v] = -s->gradient[v];
-    return wide;
-}
-
-/* The step from what A^-1 makes of its right-hand sides. */
-GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide) {
-    size_t n = (size_t)s->variable_count;
-    gproji_for_wide_rows(s, gproji_wide_products);
+/* I + Y'Y, factored. `wide`: columns of Y. */
+GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
+    int32_t i, k;
+    for (i = 0; i < wide; ++i)
+        for (k = 0; k <= i; ++k)
+            s->wide_matrix[(int64_t)i * s->wide_count + k] =
+                gproji_wide_dot(s->variable_count, gproji_wide_side(s, i), gproji_wide_side(s, k)) + (k == i);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count);
-    memset(s->step, 0, n * sizeof *s->step);
-    memcpy(s->correction, s->wide_response + n * (size_t)wide, n * sizeof *s->step);
-    gproji_wide_correct(s, wide);
-    memcpy(s->step, s->correction, n * sizeof *s->step);
+}
+
+/* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
+GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
+    int64_t n = s->variable_count, i;
+    double parts = sqrt(gproji_wide_dot(n, z, z));
+    int32_t k;
+    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_wide_dot(n, gproji_wide_side(s, k), z);
+    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < wide; ++k) {
+        const double *side = gproji_wide_side(s, k);
+        double m = s->wide_vector[k];
+        for (i = 0; i < n; ++i) z[i] -= m * side[i];
+        parts += fabs(m) * sqrt(gproji_wide_dot(n, side, side));
+    }
+    return parts / gproji_fmax(sqrt(gproji_wide_dot(n, z, z)), DBL_MIN);
+}
+
+/* The right-hand sides of a step: -gradient, and U. Returns the number of wide rows. */
+GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
+    return gproji_for_wide_rows(s, gproji_wide_column);
+}
+
+/* The step from its right-hand sides, of which the factorisation has made z and Y already if it has taken them along.
+   Returns how large the parts of L'dx are to it. */
+GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
+    gproj_cholesky *c = s->cholesky;
+    double parts = 1;
+    if (taken && wide == 0) {
+        gproji_cholesky_finish(c, s->step);
+        return parts;
+    }
+    if (taken)
+        memcpy(s->sides, c->solution, ((size_t)wide + 1) * (size_t)s->variable_count * sizeof *s->sides);
+    else
+        gproji_cholesky_forward(c, wide + 1, s->sides, s->sides);
+    if (wide > 0) {
+        gproji_wide_products(s, wide);
+        gproji_for_wide_rows(s, gproji_wide_value);
+        parts = gproji_wide_correct(s, wide, s->step);
+    }
+    gproji_cholesky_backward(c, s->step, s->step);
+    return parts;
 }
 
 /* The step with the factor of A. */
-GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) {
-    int32_t wide = gproji_step_sides(s);
-    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-}
+GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* correction += U m at this step. */
+/* balance += U m at this step. */
 GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
     (void)index;
-    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->correction);
+    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->balance);
 }
 
 /* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
@@ -7785,23 +7995,32 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
     double left = 0, size = 0;
     int32_t v;
     gproji_matrix_times(s, epsilon, s->step, s->residual);
-    memset(s->correction, 0, (size_t)s->variable_count * sizeof *s->correction);
+    memset(s->balance, 0, (size_t)s->variable_count * sizeof *s->balance);
     gproji_for_wide_rows(s, gproji_wide_pull);
     for (v = 0; v < s->variable_count; ++v) {
         s->residual[v] = -s->gradient[v] - s->residual[v];
-        left = gproji_fmax(left, fabs(s->residual[v] - s->correction[v]));
-        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->correction[v]));
+        left = gproji_fmax(left, fabs(s->residual[v] - s->balance[v]));
+        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->balance[v]));
     }
     return left <= 1e-9 * size;
 }
 
-/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. */
-GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, int32_t rounds) {
+/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
+   costs a product with all rows, and is left out where the answer is known. `parts`: what z and the Y_k m_k are to their
+   sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
+   as many of |L||Y_k|, and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
+   misses its equations by `parts` times what one without wide rows would, by some roundings of |L||L'dx|, which is not
+   looked at either; besides that by roundings of |U U'||dx|, as U'dx has them, however exact dx is. What must be looked
+   at are large parts that cancel: wide rows that say what narrow ones say already, or other wide ones. */
+GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     int32_t v;
-    while (wide > 0 && rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
-        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
-        gproji_wide_correct(s, wide);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
+    if (wide == 0 || parts <= gproji_parts_most) return;
+    while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+        gproji_for_wide_rows(s, gproji_wide_ahead);
+        gproji_cholesky_forward(s->cholesky, 1, s->residual, s->residual);
+        gproji_wide_correct(s, wide, s->residual);
+        gproji_cholesky_backward(s->cholesky, s->residual, s->residual);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->residual[v];
     }
 }
 
@@ -7859,7 +8078,7 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, to change their coefficients in place. */
+/* The terms of a row, to change their coefficients in place; for what they name see gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
@@ -7960,7 +8179,7 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     double sum = 0;
     int64_t t;
     for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[g->term[t].i]);
+        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[gproji_variable_of(g, &g->row[row], g->term[t].i)]);
     return 16 * DBL_EPSILON * sum;
 }
 
@@ -7997,16 +8216,11 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     wide = gproji_step_sides(s);
     fused = wide < s->cholesky->batch;
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->wide_response);
+    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
-    if (fused)
-        gproji_cholesky_finish(s->cholesky, s->wide_response);
-    else
-        gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-    gproji_refine_step(s, wide, epsilon, GPROJI_REFINEMENTS);
+    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -8060,7 +8274,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_value(g, r, s->x, NULL) - along.phi - along.h;
+            along.q = gproji_row_value(g, r, s->x) - along.phi - along.h;
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
@@ -8121,16 +8335,19 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
-GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const gproji_course *m) {
-    double none = gproji_merit_at(m, 0), full = gproji_merit_at(m, 1), t;
-    if (!(full <= DBL_MAX)) return 0;
+GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop) {
+    gproji_course merit;
+    double none, full, t;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
+    gproji_merit_along(loop->system, &merit);
+    none = gproji_merit_at(&merit, 0), full = gproji_merit_at(&merit, 1);
+    if (!(full <= DBL_MAX)) return 0;
     if (full > none) {
-        t = gproji_minimise_merit(m, 0.05, 1);
-        return gproji_merit_at(m, t) < none ? t : 0;
+        t = gproji_minimise_merit(&merit, 0.05, 1);
+        return gproji_merit_at(&merit, t) < none ? t : 0;
     }
     if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_merit(m, 0.1, 2);
+    t = gproji_minimise_merit(&merit, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
 
@@ -8150,9 +8367,9 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     const gproji_row *row = &g->row[r];
     double ahead;
     if (!(row->weight > 0)) return false;
-    if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
+    if (g->guard) return row->active || gproji_row_value(g, r, s->x) < -g->slack;
     ahead = row->phi + gproji_row_times(g, row, s->step);
-    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x, NULL) < -slack;
+    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
 }
 
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
@@ -8188,15 +8405,13 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    gproji_course merit;
     loop->iteration.epsilon = epsilon;
     if (!gproji_find_bounded_step(loop, epsilon)) {
         gproji_step_back(s);
         return false;
     }
-    gproji_merit_along(s, &merit);
-    loop->iteration.length = gproji_step_length(loop, &merit);
-    loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+    loop->iteration.length = gproji_step_length(loop);
+    if (loop->iteration.length != 1) loop->iteration.step = gproji_take_step(s, loop->iteration.length);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
 }
@@ -8217,12 +8432,17 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
-        if (gproji_try_step(loop, epsilon)) {
-            double before = loop->standing.residual;
-            gproji_linearise(loop);
+        double before = loop->standing.residual;
+        bool stepped = gproji_try_step(loop, epsilon);
+        if (stepped) gproji_linearise(loop);
+        if (stepped && loop->standing.merit <= DBL_MAX) {
             if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
                 loop->epsilon_least = gproji_fmax(0.1 * loop->epsilon_least, gproji_epsilon_least);
             return true;
+        }
+        if (stepped) { /* beyond all numbers */
+            gproji_step_back(s);
+            gproji_linearise(loop);
         }
         gproji_start_bounds(s);
     }
@@ -8440,6 +8660,21 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     }
 }
 
+/* All multipliers are 0. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    int32_t i;
+    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
+    if (!s->sum) return false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier) return false;
+        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return true;
+}
+
 /* Does the row have a multiplier now? */
 GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_row *row) {
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
@@ -8453,9 +8688,10 @@ GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
         gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            if (!gproji_is_multiplied(g, row)) row->multiplier = 0;
-            row->rise = row->active ? 0 : -row->multiplier;
-            row->phi += row->multiplier;
+            gproji_multiplier *multiplier = &g->multiplier[r];
+            if (!gproji_is_multiplied(g, row)) multiplier->y = 0;
+            multiplier->rise = row->active ? 0 : -multiplier->y;
+            row->phi += multiplier->y;
         }
     }
 }
@@ -8473,8 +8709,8 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
                 row->phi = 0;
                 continue;
             }
-            row->phi += gproji_row_times(g, row, s->step) - (first ? row->multiplier : 0);
-            row->rise += row->phi;
+            row->phi += gproji_row_times(g, row, s->step) - (first ? g->multiplier[r].y : 0);
+            g->multiplier[r].rise += row->phi;
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -8485,7 +8721,7 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
    definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
-    double *sum = s->residual, first = 0, left = HUGE_VAL;
+    double *sum = s->sum, first = 0, left = HUGE_VAL;
     int32_t round, v;
     bool factored;
     double follows = gproji_epsilon_max;
@@ -8521,8 +8757,8 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             gproji_row *row = &g->row[r];
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
-                double phi = gproji_row_value(g, r, s->saved, NULL) + gproji_row_times(g, row, s->step);
-                active = row->active ? row->multiplier + row->rise < 0 : !g->guard && phi < -1e-12;
+                double phi = gproji_row_value(g, r, s->saved) + gproji_row_times(g, row, s->step);
+                active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0 : !g->guard && phi < -1e-12;
             }
             changed = changed || active != row->active;
             row->active = active;
@@ -8538,7 +8774,7 @@ GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            row->active = gproji_is_multiplied(g, row) && row->phi + row->multiplier < 0;
+            row->active = gproji_is_multiplied(g, row) && row->phi + g->multiplier[r].y < 0;
         }
     }
 }
@@ -8548,8 +8784,8 @@ GPROJI_INTERNAL void gproji_limit_multipliers(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
-            gproji_row *row = &s->group[i].row[r];
-            row->rise = gproji_fmin(row->rise, -row->multiplier);
+            gproji_multiplier *multiplier = &s->group[i].multiplier[r];
+            multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
         }
 }
 
@@ -8558,7 +8794,7 @@ GPROJI_INTERNAL void gproji_evaluate_slide(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x, NULL);
+            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
 }
 
 /* Finds a slide, again where it meets bounds. */
@@ -8587,9 +8823,9 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            double w2 = gproji_weight2(g, row), y = row->multiplier + row->rise, phi;
+            double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi;
             if (!(w2 > 0)) continue;
-            phi = gproji_row_value(g, r, x, NULL);
+            phi = gproji_row_value(g, r, x);
             if (g->kind == GPROJ_BOUND && phi + y >= 0) {
                 value -= w2 * y * y;
                 continue;
@@ -8610,8 +8846,7 @@ GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             row->phi = 0;
-            if (row->active && gproji_is_multiplied(g, row))
-                row->phi = gproji_counted(g, gproji_row_value(g, r, s->x, NULL));
+            if (row->active && gproji_is_multiplied(g, row)) row->phi = gproji_counted(g, gproji_row_value(g, r, s->x));
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -8630,7 +8865,7 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
         now = gproji_evaluate_constraints(s);
         for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->step[v];
     }
-    memcpy(s->step, s->residual, (size_t)s->variable_count * sizeof *s->step);
+    memcpy(s->step, s->sum, (size_t)s->variable_count * sizeof *s->step);
 }
 
 /* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
@@ -8649,7 +8884,8 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
         if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
-            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier += t * s->group[i].row[r].rise;
+            for (r = 0; r < s->group[i].row_count; ++r)
+                s->group[i].multiplier[r].y += t * s->group[i].multiplier[r].rise;
         return true;
     }
     gproji_step_back(s);
@@ -8701,7 +8937,7 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             bool wish = g->kind == GPROJ_WISH;
-            double pull = gproji_weight2(g, row) * (wish ? row->phi : row->multiplier);
+            double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
             gproji_row_add(g, row, pull, s->gradient);
             rows += wish;
             for (l = row->local; wish && l < row[1].local; ++l)
@@ -8765,12 +9001,14 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop, int32_t iterations) {
     gproj_system *s = loop->system;
-    int32_t half = iterations / 2 + iterations % 2, i, r, n;
+    int32_t half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
     s->late = 0;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
+    if (!gproji_start_multipliers(s)) {
+        gproji_fail_memory(&s->error);
+        return GPROJ_FAILED;
+    }
     gproji_see_nearest(loop);
     gproji_start_bounds(s);
     for (n = 1; n <= iterations; ++n) {
@@ -8835,8 +9073,8 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
 }
 
 /* The v-th of the variables that a row names, two a term; -1 where a linear term has no second one. */
-GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
-    return v % 2 ? g->term[v / 2].j : g->term[v / 2].i;
+GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
+    return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
 }
 
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
@@ -8844,27 +9082,27 @@ GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
     int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
     double size = 1, worst = 0;
-    gproji_row_value(g, r, s->x, gradient);
+    gproji_row_gradient(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
     }
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         double x, h, up, down, difference;
         if (v < 0) continue;
         x = s->x[v];
         h = 1e-5 * gproji_fmax(1, fabs(x));
         s->x[v] = x + h;
-        up = gproji_row_value(g, r, s->x, NULL);
+        up = gproji_row_value(g, r, s->x);
         s->x[v] = x - h;
-        down = gproji_row_value(g, r, s->x, NULL);
+        down = gproji_row_value(g, r, s->x);
         s->x[v] = x;
         difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
     for (k = first; k < end; ++k)
-        if (gproji_named_variable(g, k) >= 0) gradient[gproji_named_variable(g, k)] = 0;
+        if (gproji_named_variable(g, r, k) >= 0) gradient[gproji_named_variable(g, r, k)] = 0;
     return worst;
 }
 
@@ -14370,6 +14608,14 @@ GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, dou
     term->a = a;
 }
 
+/* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
+GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms) {
+    gproj_system *s = form->system;
+    if (group >= 0 &&
+        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms)))
+        gproji_fail_memory(&s->error);
+}
+
 /* Refuses vertex numbers out of range. */
 GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
                                                const int32_t *vertices) {
@@ -14452,6 +14698,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, c
     int32_t i, k, group;
     if (!part) return -1;
     group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
@@ -14567,6 +14814,16 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     }
 }
 
+/* Room for the normals of all faces that have none yet. */
+GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
+    size_t faces = 0, corners = 0;
+    int32_t f;
+    for (f = 0; f < form->mesh->face_count; ++f)
+        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
+            ++faces, corners += (size_t)form->mesh->face_degree[f];
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 3 * faces + 6 * corners);
+}
+
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
     int32_t group, f;
@@ -14577,6 +14834,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     }
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
+    gproji_expect_normals(form, group);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
@@ -14653,7 +14911,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
             part->segment[i] = gproji_walk(curve, part->segment[i], p);
-        } else if (system->group[group].row[3 * i + 2].own > 0) {
+        } else if (gproji_own_weight(&system->group[group], 3 * i + 2) > 0) {
             continue;
         }
         after = gproji_along(curve, part->segment[i], p, true) > 0;
@@ -14915,8 +15173,11 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     gproj_term *term;
     int32_t group, v;
+    size_t vertices;
     if (!gproji_form_ready(form)) return -1;
+    vertices = (size_t)form->mesh->vertex_count;
     group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 6 * vertices, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -15117,14 +15378,17 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
     g = &form->system->group[group];
     have = gproji_element_count(form->mesh, g->place);
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
-    if (!of) return gproji_fail_memory(&form->error);
+    if (!of || !gproji_share_weights(form->system, g)) {
+        gproji_give(&form->own, of, (size_t)have, sizeof *of);
+        return gproji_fail_memory(&form->error);
+    }
     for (k = 0; k < have; ++k) of[k] = -1;
     for (k = 0; k < count; ++k) of[elements ? elements[k] : k] = weights[k];
     for (k = 0; k < g->row_count; ++k) {
         gproji_row *row = &g->row[k];
         if (row->element < 0 || row->element >= have || of[row->element] < 0) continue;
-        row->factor = of[row->element];
-        row->weight = row->own * row->factor;
+        g->share[k].factor = of[row->element];
+        row->weight = g->share[k].own * g->share[k].factor;
     }
     gproji_give(&form->own, of, (size_t)have, sizeof *of);
     form->system->changed = true;
@@ -16297,6 +16561,8 @@ GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
     gproj_term *term;
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
+    gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
+                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v]);
     count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
     if (!term) {
@@ -16507,11 +16773,13 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
-    int32_t count, edge = form->system->group[group].row[row].element;
+    const gproji_group *g = &form->system->group[group];
+    int32_t count, edge = g->row[row].element;
     const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
-    if (count != 1 || term->j >= 0 || term->i != form->statics->force[edge]) return -1;
-    if (form->system->group[group].row[row].constant != 0) return -1;
+    if (count != 1 || term->j >= 0) return -1;
+    if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
+    if (g->row[row].constant != 0) return -1;
     *sign = term->a;
     return edge;
 }
@@ -17331,13 +17599,15 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
 
 /* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
    them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
-    int32_t vertices = 3 * form->mesh->vertex_count, t;
+GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
+    int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
-    for (t = 0; t < count; ++t) {
-        if (term[t].i >= vertices) continue;
-        if (term[t].j >= 0 && term[t].j < vertices) return true;
-        if (term[t].j < 0) sum[term[t].i % 3] += term[t].a;
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        if (i >= vertices) continue;
+        if (j >= 0 && j < vertices) return true;
+        if (j < 0) sum[i % 3] += g->term[t].a;
     }
     return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
 }
@@ -17348,16 +17618,13 @@ GPROJI_INTERNAL bool gproji_bound_holds(const gproji_row *row) { return row->con
 
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t g, r, count;
-    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
-        gproj_group_info info = gproj_system_group_info(form->system, g);
-        if (form->system->group[g].guard) continue;
-        for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
-            const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
-            bool bound = info.kind == GPROJ_BOUND, volume = form->system->group[g].global;
-            if (!(form->system->group[g].row[r].weight > 0)) continue;
-            if (bound ? gproji_bound_holds(&form->system->group[g].row[r])
-                      : volume || gproji_row_holds(form, term, count))
+    int32_t i, r;
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            if (g->kind == GPROJ_BOUND ? gproji_bound_holds(row) : g->global || gproji_row_holds(form, g, row))
                 return true;
         }
     }

@@ -563,8 +563,7 @@ enum {
 
 typedef struct block_matrix {
     const matrix *matrix;
-    const gproji_symbolic *sy;
-    const int32_t *first;   /* the first variable of each node */
+    const gproj_cholesky *cholesky;
     const int32_t *node_of; /* the node of each variable */
 } block_matrix;
 
@@ -572,17 +571,18 @@ typedef struct block_matrix {
 static void load_blocks(void *user, int32_t front, const gproji_panel *panel) {
     const block_matrix *blocks = (const block_matrix *)user;
     const matrix *m = blocks->matrix;
-    int32_t at[NODES], k, j, node[2];
+    const gproji_symbolic *sy = &blocks->cholesky->symbolic;
+    int32_t at[8 * NODES], k, j, node[2];
     int64_t p;
-    gproji_map_front(blocks->sy, front, at);
+    gproji_map_variables(blocks->cholesky, front, at);
     for (j = 0; j < m->n; ++j)
         for (p = m->start[j]; p < m->start[j + 1]; ++p) {
             int32_t variable[2], row[2];
             variable[0] = m->row[p], variable[1] = j;
             for (k = 0; k < 2; ++k) node[k] = blocks->node_of[variable[k]];
-            k = blocks->sy->place[node[0]] < blocks->sy->place[node[1]] ? 0 : 1;
-            if (blocks->sy->front_of[blocks->sy->place[node[k]]] != front) continue;
-            for (k = 0; k < 2; ++k) row[k] = at[node[k]] + variable[k] - blocks->first[node[k]];
+            k = sy->place[node[0]] < sy->place[node[1]] ? 0 : 1;
+            if (sy->front_of[sy->place[node[k]]] != front) continue;
+            for (k = 0; k < 2; ++k) row[k] = at[variable[k]];
             gproji_panel_column(panel, row[0] < row[1] ? row[0] : row[1])[row[0] < row[1] ? row[1] : row[0]] +=
                 m->value[p];
         }
@@ -626,7 +626,7 @@ GPROJT_TEST(cholesky_blocks) {
                     for (b = 0; b < (i == j ? a + 1 : size[j]); ++b)
                         matrix_add(&m, first[i] + a, first[j] + b, i == j && a == b ? 200.0 : gprojt_uniform(&seed));
         matrix_finish(&m);
-        blocks.matrix = &m, blocks.sy = &c->symbolic, blocks.first = first, blocks.node_of = node_of;
+        blocks.matrix = &m, blocks.cholesky = c, blocks.node_of = node_of;
         y = (double *)malloc((size_t)n * 3 * sizeof(double)), x = (double *)malloc((size_t)n * 3 * sizeof(double));
         for (i = 0; i < 3 * n; ++i) y[i] = sin((double)i);
         GPROJT_CHECK(gproji_cholesky_factor_with(c, load_blocks, &blocks, 2, y) == GPROJ_FACTORED);
