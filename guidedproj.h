@@ -11294,7 +11294,8 @@ typedef struct gproji_pattern {
     int32_t edge[GPROJI_PATH_EDGES];  /* e_j */
     int32_t rows;                     /* w; > 0 only where no corner is on the right of the path */
     int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
-    bool ring;
+    int32_t flat;  /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    bool ring;     /* all corners get two faces: a ring of quads around the patch */
     bool bare; /* one strip of quads in a ring, whatever the sides are */
     double cost;
 } gproji_pattern;
@@ -11586,17 +11587,49 @@ GPROJI_INTERNAL bool gproji_build_core(gproji_patch *patch, const gproji_pattern
     return true;
 }
 
-/* A strip of quads along side i: a new side outside of it, and one edge more for both neighbours. */
-GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i) {
-    int32_t before = (i + patch->sides - 1) % patch->sides, after = (i + 1) % patch->sides, j, *s = patch->side[i];
-    int32_t outer = patch->vertices, n = patch->edges[i];
-    for (j = 0; j < n; ++j)
-        if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
-    patch->side[before][++patch->edges[before]] = outer;
+GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
+
+/* Does a strip run from corner i to the next corner that is not flat, over flat ones between? Sets that corner. */
+GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t i, int32_t *to) {
+    *to = i + 1;
+    if (gproji_is_flat(flat, sides, i) || !gproji_is_flat(flat, sides, i + 1)) return false;
+    while (gproji_is_flat(flat, sides, *to)) ++*to;
+    return true;
+}
+
+/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not flat
+   to the next. False where there are not two such corners, or a side is too short. */
+GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
+    int32_t i, to, sharp = 0;
+    for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
+    if (sharp < 2) return false;
+    for (i = 0; i < sides; ++i)
+        if (gproji_has_long_strip(flat, sides, i, &to)) --inner[(i + sides - 1) % sides], --inner[to % sides];
+    for (i = 0; i < sides; ++i)
+        if (inner[i] < 1) return false;
+    return true;
+}
+
+/* A strip of quads along sides i to to - 1 (numbers may go on beyond the last): new sides outside of them, and one edge
+   more for both neighbours. */
+GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
+    int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
+    int32_t outer = patch->vertices;
+    for (side = i; side < to; ++side) {
+        int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
+        for (j = 0; j < n; ++j)
+            if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
+        outer += n;
+    }
+    patch->side[before][++patch->edges[before]] = patch->vertices;
     memmove(patch->side[after] + 1, patch->side[after], (size_t)(++patch->edges[after]) * sizeof(int32_t));
-    patch->side[after][0] = outer + n;
-    for (j = 0; j <= n; ++j) s[j] = outer + j;
-    patch->vertices += n + 1;
+    patch->side[after][0] = outer;
+    for (side = i; side < to; ++side)
+        for (j = 0, outer = patch->vertices; j <= patch->edges[side % patch->sides]; ++j) {
+            patch->side[side % patch->sides][j] = outer + j;
+            if (j == patch->edges[side % patch->sides]) patch->vertices = outer + j;
+        }
+    ++patch->vertices;
     return true;
 }
 
@@ -11621,7 +11654,9 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_patter
     if (!gproji_build_core(patch, p, length)) return false;
     for (i = 0; i < p->sides && !p->bare; ++i)
         for (k = 0; k < p->strip[i]; ++k)
-            if (!gproji_add_strip(patch, i)) return false;
+            if (!gproji_add_strip(patch, i, i + 1)) return false;
+    for (i = 0; i < p->sides && p->flat; ++i)
+        if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
     if (!gproji_close_patch(patch, p->ring)) return false;
     for (i = 0; i < patch->vertices; ++i)
         if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
@@ -11629,19 +11664,19 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_patter
     return true;
 }
 
-/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 or 3 at other vertices of the
-   boundary? Destroys `uses`. */
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 (or up to `most`) at other
+   vertices of the boundary? Destroys `uses`. */
 GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, int32_t most) {
     int32_t i, side, *uses = patch->uses.data;
     size_t at = 0;
     for (side = 0; side < patch->sides; ++side)
         for (i = 0; i < patch->edges[side]; ++i, ++at) {
             int32_t v = patch->loop.data[at];
-            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? 3 : 2)) return false;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
             uses[v] = -1; /* twice on the boundary is not good */
         }
     for (i = 0; i < patch->vertices; ++i)
-        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > most)) return false;
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
     return true;
 }
 
@@ -12139,24 +12174,23 @@ GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t c
 /* -- patches -- */
 
 /* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are left out;
-   where there are fewer than 2, places in between are taken. Tells whether a corner is nearly flat. */
-GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], bool *flat) {
+   where there are fewer than 2, places in between are taken. Sets the bits of those that are nearly flat. */
+GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
     int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
     for (; n > GPROJI_PATCH_SIDES; --n) {
         int32_t flattest = -1;
         for (i = 0; i < o->count; ++i)
-            if ((o->entry[i] & 1) &&
-                (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
+            if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
                 flattest = i;
         o->entry[flattest] &= ~1;
     }
     for (i = 0; n < 2 && i < o->count; ++i)
         if (o->entry[i] & 1) break;
     for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
-    for (*flat = false, k = 0, i = 0; i < o->count; ++i) {
+    for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
         if (!(o->entry[i] & 1)) continue;
+        if (gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
         place[k++] = i;
-        *flat |= gproji_outline_angle(o, i) > GPROJI_FLAT;
     }
     return k;
 }
@@ -12188,26 +12222,30 @@ GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patc
     int32_t turned[GPROJI_PATCH_SIDES], i;
     for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
     if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
-    return gproji_patch_is_good(patch, 5);
+    return gproji_patch_is_good(patch, f->cut_vertices > f->boundary ? 2 : 3);
 }
 
-/* The pattern wanted: of those that are good the `variant`-th, without a ring before those with one; at last a ring of quads
-   around one strip. */
+/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a ring; at
+   last a ring around one strip. -1: no memory. */
 GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, int32_t sides, const int32_t *length,
-                                              bool flat, gproji_pattern *chosen) {
-    int32_t good = 0, i, ring, sum = 0;
+                                              int32_t flat, gproji_pattern *chosen) {
+    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
     memset(chosen, 0, sizeof *chosen);
-    gproji_find_patterns(c, sides, length);
-    for (ring = flat; ring < 2; ++ring)
+    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
+        gproji_find_patterns(c, sides, ring ? length : inner);
         for (i = 0; i < c->count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c->pattern[i];
             gproji_patch patch;
             int32_t outcome;
-            c->pattern[i].ring = ring != 0;
-            outcome = gproji_try_pattern(f, &patch, &c->pattern[i], length);
+            p->ring = ring != 0;
+            for (k = 0; k < sides && !ring; ++k)
+                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
+            outcome = gproji_try_pattern(f, &patch, p, length);
             gproji_patch_give(&patch);
             if (outcome < 0) return -1;
-            if (outcome > 0) *chosen = c->pattern[i], ++good;
+            if (outcome > 0) *chosen = *p, ++good;
         }
+    }
     if (good > 0) return 1;
     for (i = 0; i < sides; ++i) sum += length[i];
     chosen->sides = sides;
@@ -12221,7 +12259,8 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gpr
     int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], sides, i;
     gproji_pattern p;
     gproji_patch patch;
-    bool flat, done;
+    int32_t flat;
+    bool done;
     sides = gproji_patch_corners(o, place, &flat);
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
     if (gproji_choose_pattern(f, c, sides, length, flat, &p) < 0) return false;
