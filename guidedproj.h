@@ -11281,6 +11281,7 @@ enum {
     GPROJI_CANDIDATES = 64,  /* patterns that are kept while searching */
     GPROJI_TRIED_EDGES = 40, /* all e_j are tried up to about this */
     GPROJI_UNTANGLE_STEPS = 300,
+    GPROJI_FILL_TRIES = 8,
     GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
     GPROJI_QUAD_ENTRIES = 36 /* the lower triangle of a symmetric 8x8 matrix */
 };
@@ -11661,22 +11662,6 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_patter
     for (i = 0; i < patch->vertices; ++i)
         if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
     for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
-    return true;
-}
-
-/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 (or up to `most`) at other
-   vertices of the boundary? Destroys `uses`. */
-GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, int32_t most) {
-    int32_t i, side, *uses = patch->uses.data;
-    size_t at = 0;
-    for (side = 0; side < patch->sides; ++side)
-        for (i = 0; i < patch->edges[side]; ++i, ++at) {
-            int32_t v = patch->loop.data[at];
-            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
-            uses[v] = -1; /* twice on the boundary is not good */
-        }
-    for (i = 0; i < patch->vertices; ++i)
-        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
     return true;
 }
 
@@ -12072,23 +12057,35 @@ GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i,
     return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
 }
 
-/* What is to be expected of a patch of the outline from place i to place j, closed by a cut whose ends are corners or not:
-   by the number of its sides, and the numbers of edges of 4 sides. */
-GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first, bool last) {
-    static const double cost[] = {3, 2, 0.8, 0.3, 0, 0.3, 0.6};
-    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[4] = {0, 0, 0, 0};
-    if (j - i + edges < 4) return HUGE_VAL;
-    if (n > 6) return 0.6 + 0.6 * (n - 6);
-    if (n != 4) return cost[n];
-    for (k = i; k < j; ++k) { /* side 0 has the beginning, up to the first corner */
-        if (k > i && (o->entry[k % o->count] & 1)) ++side;
-        if (k == i && first) ++side;
-        ++length[side % 4];
+/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short sides
+   leave no room for others. */
+GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
+    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
+    int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
+    for (i = 1; i < sides; ++i) least = gproji_min(least, length[i]);
+    if (sides == 4) {
+        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
+        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
     }
-    if (last) ++side;
-    length[side % 4] += edges;
-    k = abs(length[0] - length[2]) + abs(length[1] - length[3]);
-    return k > 0 ? 0.3 + 0.03 * k : 0;
+    if (sides % 2 && sides > 1 && gproji_find_strips(sides, length, strip)) {
+        for (i = 0; i < sides && strip[i] > 0; ++i) continue;
+        if (i == sides) return 0.2;
+    }
+    return cost[sides] + (least < 3 ? 0.6 : 0);
+}
+
+/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. */
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first, bool last) {
+    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    if (j - i + edges < 4) return HUGE_VAL;
+    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
+    if (n < 2) return gproji_sides_cost(n, length);
+    for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
+        side += k == i ? first : o->entry[k % o->count] & 1;
+        ++length[side % n];
+    }
+    length[(side + last) % n] += edges;
+    return gproji_sides_cost(n, length);
 }
 
 /* Costs of cuts from place i to place j, with numbers of edges of the right parity. */
@@ -12107,6 +12104,7 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
         corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
         cost += gproji_angle_cost(angle);
     }
+    cost += a >= o->f->boundary || b >= o->f->boundary ? 0.5 : 0; /* the end of three patches inside */
     if (cost >= best->cost) return;
     clearance = gproji_clearance_cost(o, i, j);
     cost += clearance + 0.02 * length / o->edge;
@@ -12195,6 +12193,21 @@ GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GP
     return k;
 }
 
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
+   boundary, or 3 where these are on the curve? `at`: the place of the pattern's first corner. Destroys `uses`. */
+GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
+    int32_t i, side, from = at, *uses = patch->uses.data;
+    for (side = 0; side < patch->sides; ++side)
+        for (i = 0; i < patch->edges[side]; ++i, ++at) {
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->boundary ? 3 : 2;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
+            uses[v] = -1; /* twice on the boundary is not good */
+        }
+    for (i = 0; i < patch->vertices; ++i)
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
+    return true;
+}
+
 /* Copies a finished patch into the filling. */
 GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *o, int32_t from, gproji_patch *patch) {
     int32_t *number = patch->uses.data, i, n = (int32_t)patch->loop.count;
@@ -12217,18 +12230,19 @@ GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *
 }
 
 /* Tries a pattern. 1: the patch is built and good; 0: it is not; -1: no memory. Give the patch back in any case. */
-GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_pattern *p,
-                                           const int32_t *length) {
+GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_outline *o,
+                                           const int32_t *place, const gproji_pattern *p, const int32_t *length) {
     int32_t turned[GPROJI_PATCH_SIDES], i;
     for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
     if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
-    return gproji_patch_is_good(patch, f->cut_vertices > f->boundary ? 2 : 3);
+    return gproji_patch_is_good(patch, o, place[p->first]);
 }
 
 /* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a ring; at
    last a ring around one strip. -1: no memory. */
-GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, int32_t sides, const int32_t *length,
-                                              int32_t flat, gproji_pattern *chosen) {
+GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
+                                              int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
+                                              gproji_pattern *chosen) {
     int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
     memset(chosen, 0, sizeof *chosen);
     for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
@@ -12240,7 +12254,7 @@ GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidat
             p->ring = ring != 0;
             for (k = 0; k < sides && !ring; ++k)
                 if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
-            outcome = gproji_try_pattern(f, &patch, p, length);
+            outcome = gproji_try_pattern(f, &patch, o, place, p, length);
             gproji_patch_give(&patch);
             if (outcome < 0) return -1;
             if (outcome > 0) *chosen = *p, ++good;
@@ -12263,8 +12277,8 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gpr
     bool done;
     sides = gproji_patch_corners(o, place, &flat);
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
-    if (gproji_choose_pattern(f, c, sides, length, flat, &p) < 0) return false;
-    done = gproji_try_pattern(f, &patch, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
+    if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
+    done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
     gproji_patch_give(&patch);
     ++f->leaves;
     return done;
@@ -12480,8 +12494,8 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     }
 }
 
-/* A step of Newton's method, shortened until the distortion is less. False where none is. */
-GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u) {
+/* A step of Newton's method, shortened until the distortion is less. False where it does not gain about this part of it. */
+GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
     double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
@@ -12495,7 +12509,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u) {
     memcpy(u->start, moving, n * sizeof *moving);
     for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
         for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
-        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > 1e-9 * before;
+        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
     }
     memcpy(moving, u->start, n * sizeof *moving);
     gproji_distortion(u);
@@ -12532,11 +12546,10 @@ GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling 
             }
     if (!gproji_pairs_analyse(&u->m)) return gproji_fail_memory(f->error);
     u->epsilon = 1;
-    gproji_distortion(u);
-    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) {
-        bool turned = u->least <= 0;
-        u->epsilon = turned ? sqrt(1e-12 + 0.04 * u->least * u->least) : 1e-9;
-        if (!gproji_untangle_step(u) && !turned) break;
+    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
+        if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
+        u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
     }
     return GPROJ_OK;
 }
@@ -12636,19 +12649,61 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
 }
 
-GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
+/* The largest valence inside; `count` has room for all vertices. */
+GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
+    int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    size_t i;
+    if (!count) return gproji_fail_memory(f->error);
+    for (*most = 0, i = 0; i < f->quad.count; ++i)
+        if (f->quad.data[i] >= f->boundary) *most = gproji_max(*most, ++count[f->quad.data[i]]);
+    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    return GPROJ_OK;
+}
+
+/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the right
+   way up. Sets whether it is good. */
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
     double least = 0;
+    int32_t most = 0;
+    gproj_code code;
+    f->polygon.count = (size_t)f->boundary;
+    f->patch.count = 1;
+    f->patch.data[0] = f->boundary;
+    f->quad.count = 0;
+    f->vertices = f->boundary;
+    f->leaves = 0;
+    *good = false;
+    code = gproji_fill_patches(f, c);
+    if (!code) code = gproji_find_valence(f, &most);
+    if (code || most > valence) return code;
+    code = gproji_place_vertices(f, &least);
+    *good = f->vertices == f->boundary || least > 0;
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candidates *c) {
+    static const int32_t valence[3] = {5, 6, INT32_MAX};
+    int32_t variant = f->options.variant, pass, tries;
+    for (pass = 0; pass < 3; ++pass)
+        for (tries = 0; tries < GPROJI_FILL_TRIES; ++tries) {
+            bool good;
+            gproj_code code;
+            f->options.variant = variant + tries;
+            code = gproji_try_filling(f, c, valence[pass], &good);
+            if (code || good) return code;
+        }
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                       "no filling without a quad turned over was found; divide the sides finer or mark other corners");
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
     gproji_candidates *c;
     gproj_code code = gproji_check_curve(f);
     if (!code) code = gproji_divide_curve(f);
     if (code) return code;
     c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
-    code = c ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
+    code = c ? gproji_fill_outline(f, c) : gproji_fail_memory(f->error);
     gproji_give(f->heap, c, 1, sizeof *c);
-    if (!code) code = gproji_place_vertices(f, &least);
-    if (!code && f->vertices > f->boundary && !(least > 0))
-        code = gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                           "no filling without a quad turned over was found; divide the sides finer or mark other corners");
     if (!code) code = gproji_build_filling(f, object);
     if (!code) gproji_describe_filling(f, &object->mesh, info);
     return code;
