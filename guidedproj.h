@@ -803,32 +803,33 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 typedef struct gproj_fill_options {
     int32_t corner_count;   /* 0: corners are where the curve turns by more than 45 degrees, as for gproj_form_is_corner */
     const int32_t *corners; /* numbers of points, ascending */
-    /* Edges of each side, from corner j to the next one; at equal distances along the curve. NULL: they follow from
-       edge_length, so that their sum is even. */
-    const int32_t *subdivisions;
+    int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
+    const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
     double edge_length; /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
-    bool keep_points;   /* the points of the curve are the vertices of the boundary; no subdivisions then */
+    bool keep_points;   /* the points of the curve are the vertices of the boundary, whatever is wanted */
     int32_t variant;    /* 0: the combinatorics with the fewest irregular vertices; 1, 2, ..: others, while there are any */
 } gproj_fill_options;
 
 /* What has been made. */
 typedef struct gproj_fill_info {
-    int32_t boundary_count;             /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
-    int32_t side_count;                 /* polylines of the mesh: side j from its first to its last vertex */
-    int32_t patch_count;                /* patches of at most 6 sides that the curve was cut into */
-    int32_t irregular_count;            /* inner vertices whose valence is not 4 */
-    int32_t min_valence, max_valence;   /* of inner vertices; 0 where there are none */
-    double min_angle, max_angle;        /* of the quads' corners, in degrees, seen along the normal */
+    int32_t boundary_count; /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
+    int32_t side_count;     /* polylines of the mesh: side j from its first to its last vertex */
+    int32_t patch_count;              /* patches of at most 6 sides that the curve was cut into */
+    int32_t irregular_count;          /* inner vertices whose valence is not 4 */
+    int32_t min_valence, max_valence; /* of inner vertices; 0 where there are none */
+    double min_angle, max_angle;      /* of the quads' corners, in degrees, seen along the normal */
 } gproj_fill_info;
 
-/* Fills the closed curve through `count` points (3 * count numbers; the last is joined to the first). Vertex 0 is the
+/* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is the
    first corner; a curve without corners begins at its first point. The corners of the mesh are exactly points of the
    curve, the other vertices of its boundary are on its segments. Counter-clockwise curves give faces that look up. The
-   polylines of the mesh are its sides; a curve with fewer than 2 corners is cut into 4 of about equal lengths.
-   Corners with more than 195 degrees inside, and more than 6 corners, are dealt with by cutting the curve, from corners to
-   where the cut is short and its angles are good. `options`, `info`, `host` and `error` may be NULL.
-   Refused, naming the place: curves that cross themselves or return to a point, corners out of order, numbers of edges
-   below 1 or with an odd sum, with what to change. */
+   polylines of the mesh are its sides; a curve with fewer than 2 corners is given 4, at about equal distances.
+   A corner has one face; one of more than 165 degrees inside has two. Corners of more than 195 degrees are ends of cuts
+   through the inside, and so are others where there are more than 6: to where the cut is short, its angles are good, and
+   the patches need few irregular vertices. Valence 6 is taken where this leaves nothing better.
+   `options`, `info`, `host` and `error` may be NULL. Refused, naming the point (of a side: the first one): curves that
+   meet themselves or enclose no area, corners out of order, numbers of edges below 1 or with an odd sum, with what to
+   change, and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
@@ -11286,6 +11287,11 @@ enum {
     GPROJI_QUAD_ENTRIES = 36 /* the lower triangle of a symmetric 8x8 matrix */
 };
 
+#define GPROJI_REFLEX 3.403392041388943  /* 195 degrees: corners beyond are cut */
+#define GPROJI_FLAT 2.879793265790644    /* 165 degrees: corners beyond get two faces */
+#define GPROJI_OBTUSE 2.356194490192345  /* 135 degrees: at the ends of a cut, corners below */
+#define GPROJI_RIGHT 1.570796326794897
+
 typedef struct gproji_pattern {
     int32_t sides;
     int32_t first;                    /* the pattern's corner 0 is the patch's corner `first` */
@@ -11539,6 +11545,7 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
                     gproji_try_edges(c, &p, p.edges == 1 ? most : gproji_min(most, GPROJI_TRIED_EDGES));
                 }
             }
+        if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
         if (!gproji_try_rows(c, &p, 1)) gproji_try_rows(c, &p, 0);
     }
 }
@@ -11816,8 +11823,10 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "%d corners%s; give at least 2, or 0 to have them found", o->corner_count,
+                           "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                            o->corner_count > 1 ? " in an array that is NULL" : "");
+    if (o->variant < 0)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0", o->variant);
     for (i = 0; i < o->corner_count && taken; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -11831,14 +11840,12 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     }
     for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
         if (gproji_turns(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
-    if (taken && f->corner.count < 2) {
-        if (f->options.subdivisions)
-            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "numbers of edges are given for the sides of a curve with %d corners; mark at least 2 corners",
-                               (int32_t)f->corner.count);
-        taken = gproji_make_corners(f);
-    }
+    if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
     f->sides = (int32_t)f->corner.count;
+    if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
+                           o->subdivisions ? "" : " by a NULL array", f->sides);
     return taken ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
@@ -11868,17 +11875,34 @@ GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_
     return best;
 }
 
-/* Numbers of edges by the wanted edge length: alike on opposite sides of 4 that are of about the same length. */
-GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
-    int32_t side, sum = 0, change = 0, longest = 0;
+/* The edges that strips over nearly flat corners take from the sides: see gproji_inner_lengths. */
+GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken) {
+    int32_t side, flat = 0, many[GPROJI_PATCH_SIDES];
     for (side = 0; side < f->sides; ++side) {
-        double length = gproji_side_length(f, side), other;
-        if (f->sides == 4) {
-            other = gproji_side_length(f, (side + 2) % 4);
-            if (length < 1.7 * other && other < 1.7 * length) length = 0.5 * (side < 2 ? length + other : other + length);
-        }
-        length = gproji_fmin(length / f->edge_length, GPROJI_FILL_EDGES);
+        int32_t c = f->corner.data[side];
+        bool is_flat = gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT;
+        if (is_flat) flat |= 1 << side;
+        many[side] = 3; /* more than are taken */
+    }
+    if (!gproji_inner_lengths(f->sides, flat, many, taken)) memcpy(taken, many, sizeof many);
+    for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
+}
+
+/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about the same
+   length. */
+GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
+    int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
+    if (f->sides == 4) gproji_strip_edges(f, taken);
+    for (side = 0; side < f->sides; ++side) {
+        double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
+        int32_t opposite = (side + 2) % 4;
         edges[side] = gproji_max(1, (int32_t)(length + 0.5));
+        if (f->sides == 4) {
+            other = gproji_fmin(gproji_side_length(f, opposite) / f->edge_length, GPROJI_FILL_EDGES);
+            if (length < 1.7 * other && other < 1.7 * length)
+                edges[side] = gproji_max(1, (int32_t)(0.5 * (length + other - (taken[side] + taken[opposite])) + 0.5)) +
+                              taken[side];
+        }
         sum = gproji_min(sum + edges[side], GPROJI_FILL_EDGES + 1);
         if (edges[side] > edges[longest]) longest = side;
     }
@@ -11894,22 +11918,22 @@ GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *
     int32_t side, sum = 0, change = 0;
     for (side = 0; side < f->sides; ++side) {
         if (edges[side] < 1)
-            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, side,
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
                                "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
         if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
-            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_EDGE, side,
+            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
                                "the sides up to side %d have more than %d edges; use longer edges", side,
                                (int32_t)GPROJI_FILL_EDGES);
     }
     if (sum % 2) {
         side = gproji_best_change(f, edges, &change);
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, side,
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
                            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
                            "of %d%s", sum, side, edges[side] + change, edges[side],
                            f->options.keep_points ? " (add or leave out a point)" : "");
     }
     if (sum < 4)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, 0,
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
                            "the sides have %d edges together; quads need at least 4", sum);
     f->boundary = sum;
     return GPROJ_OK;
@@ -11927,13 +11951,13 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
     if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
     for (side = 0; side < f->sides; ++side) {
-        int32_t n = !f->options.keep_points && f->options.subdivisions ? f->options.subdivisions[side] : 0;
+        int32_t n = !f->options.keep_points && f->options.side_count ? f->options.subdivisions[side] : 0;
         gproji_side_points(f, side, &from, &to);
         if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
             return gproji_fail_memory(f->error);
     }
     edges = f->start.data + 1;
-    if (!f->options.keep_points && !f->options.subdivisions) gproji_choose_edges(f, edges);
+    if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
     code = gproji_check_edges(f, edges);
     for (side = 0; side < f->sides && !code; ++side) f->start.data[side + 1] += f->start.data[side];
     return code;
@@ -12027,11 +12051,6 @@ GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t 
     return n;
 }
 
-#define GPROJI_REFLEX 3.403392041388943  /* 195 degrees: corners beyond are cut */
-#define GPROJI_FLAT 2.879793265790644    /* 165 degrees: corners beyond get two faces */
-#define GPROJI_OBTUSE 2.356194490192345  /* 135 degrees: at the ends of a cut, corners below */
-#define GPROJI_RIGHT 1.570796326794897
-
 /* How far the angle is from 1, 2 or 3 right angles, as a part of it, squared. */
 GPROJI_INTERNAL double gproji_angle_cost(double angle) {
     int32_t n = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
@@ -12074,10 +12093,14 @@ GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
     return cost[sides] + (least < 3 ? 0.6 : 0);
 }
 
-/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. */
+/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts that are
+   to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first, bool last) {
     int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    int32_t reflex = 0;
     if (j - i + edges < 4) return HUGE_VAL;
+    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
+    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
     if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
     if (n < 2) return gproji_sides_cost(n, length);
     for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
@@ -12685,7 +12708,7 @@ GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candida
     static const int32_t valence[3] = {5, 6, INT32_MAX};
     int32_t variant = f->options.variant, pass, tries;
     for (pass = 0; pass < 3; ++pass)
-        for (tries = 0; tries < GPROJI_FILL_TRIES; ++tries) {
+        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries; ++tries) {
             bool good;
             gproj_code code;
             f->options.variant = variant + tries;
