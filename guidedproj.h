@@ -801,19 +801,21 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
    itself. No quad is turned over there, nor has it a corner of 180 degrees or more. The mesh's heights over that plane are
    those of the curve at the boundary, and harmonic inside (each vertex at the mean height of its neighbours). */
 typedef struct gproj_fill_options {
-    int32_t corner_count;   /* 0: corners are where the curve turns by more than 45 degrees, as for gproj_form_is_corner */
-    const int32_t *corners; /* numbers of points, ascending */
+    int32_t
+        corner_count; /* 0: corners are where the curve turns by more than 45 degrees, as for gproj_form_is_corner */
+    const int32_t *corners;      /* numbers of points, ascending */
     int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
     const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
-    double edge_length; /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
-    bool keep_points;   /* the points of the curve are the vertices of the boundary, whatever is wanted */
-    int32_t variant;    /* 0: the combinatorics with the fewest irregular vertices; 1, 2, ..: others, while there are any */
+    double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
+    bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
+    int32_t
+        variant; /* 0: the combinatorics with the fewest irregular vertices; 1, 2, ..: others, while there are any */
 } gproj_fill_options;
 
 /* What has been made. */
 typedef struct gproj_fill_info {
-    int32_t boundary_count; /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
-    int32_t side_count;     /* polylines of the mesh: side j from its first to its last vertex */
+    int32_t boundary_count;           /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
+    int32_t side_count;               /* polylines of the mesh: side j from its first to its last vertex */
     int32_t patch_count;              /* patches of at most 6 sides that the curve was cut into */
     int32_t irregular_count;          /* inner vertices whose valence is not 4 */
     int32_t min_valence, max_valence; /* of inner vertices; 0 where there are none */
@@ -11284,26 +11286,26 @@ enum {
     GPROJI_UNTANGLE_STEPS = 300,
     GPROJI_FILL_TRIES = 8,
     GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
-    GPROJI_QUAD_ENTRIES = 36 /* the lower triangle of a symmetric 8x8 matrix */
+    GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
 };
 
-#define GPROJI_REFLEX 3.403392041388943  /* 195 degrees: corners beyond are cut */
-#define GPROJI_FLAT 2.879793265790644    /* 165 degrees: corners beyond get two faces */
-#define GPROJI_OBTUSE 2.356194490192345  /* 135 degrees: at the ends of a cut, corners below */
+#define GPROJI_REFLEX 3.403392041388943 /* 195 degrees: corners beyond are cut */
+#define GPROJI_FLAT 2.879793265790644   /* 165 degrees: corners beyond get two faces */
+#define GPROJI_OBTUSE 2.356194490192345 /* 135 degrees: at the ends of a cut, corners below */
 #define GPROJI_RIGHT 1.570796326794897
 
 typedef struct gproji_pattern {
     int32_t sides;
-    int32_t first;                    /* the pattern's corner 0 is the patch's corner `first` */
-    int32_t end[2];                   /* corners at the ends of the path; a point: all at end 0 */
-    int32_t edges;                    /* of the path; 0: a point. Nodes between are edges - 1 */
-    int32_t below;                    /* bit j: the corner of node j + 1 is on the right of the path */
-    int32_t edge[GPROJI_PATH_EDGES];  /* e_j */
-    int32_t rows;                     /* w; > 0 only where no corner is on the right of the path */
+    int32_t first;                     /* the pattern's corner 0 is the patch's corner `first` */
+    int32_t end[2];                    /* corners at the ends of the path; a point: all at end 0 */
+    int32_t edges;                     /* of the path; 0: a point. Nodes between are edges - 1 */
+    int32_t below;                     /* bit j: the corner of node j + 1 is on the right of the path */
+    int32_t edge[GPROJI_PATH_EDGES];   /* e_j */
+    int32_t rows;                      /* w; > 0 only where no corner is on the right of the path */
     int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
-    int32_t flat;  /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
-    bool ring;     /* all corners get two faces: a ring of quads around the patch */
-    bool bare; /* one strip of quads in a ring, whatever the sides are */
+    int32_t flat;                      /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    bool ring;                         /* all corners get two faces: a ring of quads around the patch */
+    bool bare;                         /* one strip of quads in a ring, whatever the sides are */
     double cost;
 } gproji_pattern;
 
@@ -11311,10 +11313,10 @@ typedef struct gproji_pattern {
 typedef struct gproji_patch {
     gproji_heap *heap;
     int32_t sides;
-    int32_t length[GPROJI_PATCH_SIDES];      /* edges wanted on each side */
-    int32_t edges[GPROJI_PATCH_SIDES];       /* edges now */
-    int32_t *side[GPROJI_PATCH_SIDES];       /* length + 1 vertices: of the sides as they are now, both ends included */
-    int32_t *block;                          /* memory of all sides */
+    int32_t length[GPROJI_PATCH_SIDES]; /* edges wanted on each side */
+    int32_t edges[GPROJI_PATCH_SIDES];  /* edges now */
+    int32_t *side[GPROJI_PATCH_SIDES];  /* length + 1 vertices: of the sides as they are now, both ends included */
+    int32_t *block;                     /* memory of all sides */
     size_t block_size;
     gproji_ints quad; /* 4 vertices each */
     gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
@@ -11329,22 +11331,22 @@ typedef struct gproji_filling {
     gproj_fill_options options;
     int32_t count; /* of the points */
     const double *points;
-    double *seen;          /* 2 * count: the points in the plane */
+    double *seen; /* 2 * count: the points in the plane */
     double normal[3], across[3], up[3];
-    double edge_length;    /* wanted */
+    double edge_length; /* wanted */
     int32_t sides;
-    gproji_ints corner;    /* points; sides of them */
-    gproji_ints start;     /* sides + 1: the first vertex of each side */
-    int32_t boundary;      /* vertices of the boundary */
-    double *border;        /* 3 * boundary: their positions */
-    gproji_ints polygon;   /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
-    gproji_ints patch;     /* ends of the patches in `polygon` */
-    gproji_ints quad;      /* 4 vertices each */
-    double *flat;          /* 2 * vertices, in the plane */
+    gproji_ints corner;  /* points; sides of them */
+    gproji_ints start;   /* sides + 1: the first vertex of each side */
+    int32_t boundary;    /* vertices of the boundary */
+    double *border;      /* 3 * boundary: their positions */
+    gproji_ints polygon; /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
+    gproji_ints patch;   /* ends of the patches in `polygon` */
+    gproji_ints quad;    /* 4 vertices each */
+    double *flat;        /* 2 * vertices, in the plane */
     size_t flat_capacity;
     int32_t vertices;
-    int32_t cut_vertices;  /* boundary and cuts come first */
-    int32_t leaves;        /* patches that were filled */
+    int32_t cut_vertices; /* boundary and cuts come first */
+    int32_t leaves;       /* patches that were filled */
 } gproji_filling;
 
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
@@ -11356,7 +11358,8 @@ GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c, int32_t d) {
+GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
+                                      int32_t d) {
     return gproji_ints_add(heap, ints, a) && gproji_ints_add(heap, ints, b) && gproji_ints_add(heap, ints, c) &&
            gproji_ints_add(heap, ints, d);
 }
@@ -11759,7 +11762,8 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     int32_t i, j;
     if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           f->points ? "a closed curve of %d points; it needs at least 3" : "the points of the curve are NULL",
+                           f->points ? "a closed curve of %d points; it needs at least 3"
+                                     : "the points of the curve are NULL",
                            f->count);
     code = gproji_check_positions(f->count, f->points, "point", f->error);
     if (code) return code;
@@ -11774,9 +11778,11 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     if (!f->seen) return gproji_fail_memory(f->error);
     code = gproji_see_curve(f);
     if (!code && gproji_find_crossing(f->seen, f->count, &i, &j))
-        code = gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                           "the curve meets itself, as seen along its normal: after point %d and after point %d; only simple "
-                           "curves can be filled", i, j);
+        code = gproji_fail(
+            f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+            "the curve meets itself, as seen along its normal: after point %d and after point %d; only simple "
+            "curves can be filled",
+            i, j);
     return code;
 }
 
@@ -11826,7 +11832,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
                            "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                            o->corner_count > 1 ? " in an array that is NULL" : "");
     if (o->variant < 0)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0", o->variant);
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
+                           o->variant);
     for (i = 0; i < o->corner_count && taken; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -11834,8 +11841,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
                                "corner %d is point %d, but the points are 0 to %d", i, c, f->count - 1);
         if (c <= before)
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
-                               "corner %d is point %d, after point %d; list corners in ascending order, each once", i, c,
-                               before);
+                               "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
+                               c, before);
         taken = gproji_ints_add(f->heap, &f->corner, c);
     }
     for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
@@ -11927,10 +11934,11 @@ GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *
     }
     if (sum % 2) {
         side = gproji_best_change(f, edges, &change);
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-                           "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
-                           "of %d%s", sum, side, edges[side] + change, edges[side],
-                           f->options.keep_points ? " (add or leave out a point)" : "");
+        return gproji_fail(
+            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
+            "of %d%s",
+            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
     }
     if (sum < 4)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
@@ -12017,8 +12025,9 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
     if (!gproji_find_crossing(f->flat, f->boundary, &i, &j)) return GPROJ_OK;
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                       "with so few edges the boundary meets itself, after its vertices %d and %d; divide the sides finer", i, j);
+    return gproji_fail(
+        f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+        "with so few edges the boundary meets itself, after its vertices %d and %d; divide the sides finer", i, j);
 }
 
 /* -- cuts -- */
@@ -12069,7 +12078,8 @@ GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i,
         if (p == a || p == b) continue;
         if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return HUGE_VAL;
         along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
-                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) / length;
+                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
+                length;
         off = fabs(gproji_turn2(xy, a, b, p)) / length;
         if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
     }
@@ -12095,7 +12105,8 @@ GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
 
 /* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts that are
    to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
-GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first, bool last) {
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
+                                        bool last) {
     int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
     int32_t reflex = 0;
     if (j - i + edges < 4) return HUGE_VAL;
@@ -12161,8 +12172,8 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
 }
 
 /* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., in this or the other order. */
-GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j, int32_t first,
-                                     int32_t inner, bool forward) {
+GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
+                                     int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
     for (k = i; k <= j; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
@@ -12318,7 +12329,8 @@ GPROJI_INTERNAL gproj_code gproji_fill_patches(gproji_filling *f, gproji_candida
             if (stage == 1 && f->patch.data[at] < 0) continue; /* it has been cut */
             o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
             for (k = 0; k < o.count; ++k)
-                o.edge += gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+                o.edge +=
+                    gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
             if (stage == 1) {
                 if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
                 continue;
@@ -12341,7 +12353,7 @@ typedef struct gproji_pairs {
     gproj_cholesky *cholesky;
     int32_t unknowns;
     int64_t count;
-    int32_t *pair; /* 2 * count: unknowns, negative: there is none */
+    int32_t *pair;  /* 2 * count: unknowns, negative: there is none */
     int64_t *start; /* unknowns + 1 */
     int32_t *row;
     int64_t *place; /* count: of each pair in `row` and `value`; -1: nowhere */
@@ -12437,16 +12449,17 @@ typedef struct gproji_untangling {
     double *edge;     /* of each quad: s */
     double *gradient; /* 2 a vertex that moves */
     double *step;
-    double *start;    /* flat positions before a step */
+    double *start; /* flat positions before a step */
     double epsilon;
-    double least;     /* D of the worst corner, at the last evaluation */
+    double least; /* D of the worst corner, at the last evaluation */
 } gproji_untangling;
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
 /* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X) with X
    linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
-GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4], double hessian[4][4]) {
+GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
+                                                double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
     double turn[4], weight = GPROJI_AREA_WEIGHT;
     int32_t i, j;
@@ -12468,7 +12481,8 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
 
 GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
     const int32_t *quad = u->f->quad.data;
-    const double *p = u->f->flat + 2 * (size_t)quad[corner], *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
+    const double *p = u->f->flat + 2 * (size_t)quad[corner],
+                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
                  *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
     double s = u->edge[corner / 4];
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
@@ -12666,7 +12680,8 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
     for (i = 0; i < n; ++i) {
         double angle = gproji_inner_angle(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
-                                          f->quad.data[gproji_quad_previous(i)]) * 57.29577951308232;
+                                          f->quad.data[gproji_quad_previous(i)]) *
+                       57.29577951308232;
         if (i == 0 || angle < info->min_angle) info->min_angle = angle;
         if (i == 0 || angle > info->max_angle) info->max_angle = angle;
     }
