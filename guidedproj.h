@@ -11261,7 +11261,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 
 /* ============================================================================================================
    >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, ordering (pools), cholesky, mesh,
-   text (growing arrays).
+   text (growing arrays), hierarchy.
 
    A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by patterns in
    the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where theirs is a table,
@@ -11713,12 +11713,56 @@ GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32
     return gproji_segments_meet(xy, i, b, j, d);
 }
 
-/* The first two sides of a closed polygon that meet; false where it is simple. */
-GPROJI_INTERNAL bool gproji_find_crossing(const double *xy, int32_t count, int32_t *first, int32_t *second) {
-    for (*first = 0; *first < count; ++*first)
-        for (*second = *first + 1; *second < count; ++*second)
-            if (gproji_polygon_meets(xy, count, *first, *second)) return true;
-    return false;
+/* A closed polygon. */
+typedef struct gproji_loop2 {
+    const double *xy;
+    int32_t count;
+} gproji_loop2;
+
+GPROJI_INTERNAL void gproji_loop_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const gproji_loop2 *loop = (const gproji_loop2 *)user;
+    const double *p = loop->xy + 2 * (size_t)item, *q = loop->xy + 2 * (size_t)((item + 1) % loop->count);
+    gproji_set3(gproji_fmin(p[0], q[0]), gproji_fmin(p[1], q[1]), 0, low);
+    gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
+}
+
+/* The lowest side after side i that meets it; the number of sides where there is none. */
+GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gproji_hierarchy *tree, int32_t i) {
+    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = loop->count, k;
+    double low[3], high[3];
+    gproji_loop_box(loop, i, low, high);
+    stack[0] = 0;
+    while (depth > 0) {
+        int32_t at = stack[--depth];
+        const gproji_node *node = &tree->node[at];
+        if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
+            continue;
+        if (node->right >= 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+            continue;
+        }
+        for (k = node->begin; k < node->end; ++k) {
+            int32_t j = tree->item[k];
+            if (j > i && j < found && gproji_polygon_meets(loop->xy, loop->count, i, j)) found = j;
+        }
+    }
+    return found;
+}
+
+/* The first two sides of a closed polygon that meet; first = count where it is simple. False: no memory. */
+GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
+                                          int32_t *second) {
+    gproji_hierarchy tree;
+    gproji_loop2 loop;
+    loop.xy = xy, loop.count = count;
+    if (!gproji_hierarchy_build(heap, &tree, count, gproji_loop_box, &loop)) return false;
+    for (*first = 0; *first < count; ++*first) {
+        *second = gproji_find_meeting(&loop, &tree, *first);
+        if (*second < count) break;
+    }
+    gproji_hierarchy_give(heap, &tree);
+    return true;
 }
 
 /* The angle inside a counter-clockwise polygon at p between the directions to q (along the polygon) and r, 0 to 2 pi. */
@@ -11777,13 +11821,13 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
     if (!f->seen) return gproji_fail_memory(f->error);
     code = gproji_see_curve(f);
-    if (!code && gproji_find_crossing(f->seen, f->count, &i, &j))
-        code = gproji_fail(
-            f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-            "the curve meets itself, as seen along its normal: after point %d and after point %d; only simple "
-            "curves can be filled",
-            i, j);
-    return code;
+    if (code) return code;
+    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->count) return GPROJ_OK;
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                       "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
+                       "simple curves can be filled",
+                       i, j);
 }
 
 /* Does the curve turn by more than 45 degrees at a point (see gproj_form_is_corner)? */
@@ -12024,7 +12068,8 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
             return gproji_fail_memory(f->error);
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
-    if (!gproji_find_crossing(f->flat, f->boundary, &i, &j)) return GPROJ_OK;
+    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->boundary) return GPROJ_OK;
     return gproji_fail(
         f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
         "with so few edges the boundary meets itself, after its vertices %d and %d; divide the sides finer", i, j);
@@ -12126,7 +12171,7 @@ GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int3
 GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
     const double *xy = o->f->flat;
     int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end;
-    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0, clearance;
+    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0;
     bool corner[2][2];
     at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b); /* in the part from i to j */
     at[0][1] = gproji_outline_angle(o, i) - at[0][0];
@@ -12138,10 +12183,10 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
         corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
         cost += gproji_angle_cost(angle);
     }
-    cost += a >= o->f->boundary || b >= o->f->boundary ? 0.5 : 0; /* the end of three patches inside */
+    cost += 0.02 * length / o->edge;
+    if (a >= o->f->boundary || b >= o->f->boundary) cost += 0.5; /* three patches would meet inside */
     if (cost >= best->cost) return;
-    clearance = gproji_clearance_cost(o, i, j);
-    cost += clearance + 0.02 * length / o->edge;
+    cost += gproji_clearance_cost(o, i, j);
     if (!(cost < best->cost)) return;
     wanted = (int32_t)(length / o->edge + 0.5);
     for (edges = gproji_max(1, wanted - 3); edges <= wanted + 3; ++edges) {
@@ -12434,7 +12479,8 @@ GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t f
     if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
     done = side && gproji_harmonic_system(f, &m, fixed, fields, field, side);
     for (i = 0; done && i < unknowns; ++i)
-        for (k = 0; k < fields; ++k) field[(size_t)(i + fixed) * (size_t)fields + k] = side[k * (size_t)unknowns + i];
+        for (k = 0; k < fields; ++k)
+            field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];
     gproji_pairs_give(&m);
     return done ? GPROJ_OK : gproji_fail_memory(f->error);
 }
