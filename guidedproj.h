@@ -12498,6 +12498,7 @@ typedef struct gproji_untangling {
     double *start; /* flat positions before a step */
     double epsilon;
     double least; /* D of the worst corner, at the last evaluation */
+    bool failed;  /* no memory to factor */
 } gproji_untangling;
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
@@ -12583,9 +12584,12 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
     double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
+    gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
     for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
-    if (gproj_cholesky_factor(u->m.cholesky, u->m.value) != GPROJ_FACTORED) return false;
+    outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
+    u->failed = outcome == GPROJ_FACTOR_FAILED;
+    if (outcome != GPROJ_FACTORED) return false;
     gproj_cholesky_solve(u->m.cholesky, 1, u->gradient, u->step);
     before = gproji_distortion(u);
     slope = gproji_dot(u->gradient, u->step, n);
@@ -12631,6 +12635,7 @@ GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling 
     u->epsilon = 1;
     for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
         if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u->failed) return gproji_fail_memory(f->error);
         if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
         u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
     }
