@@ -792,46 +792,47 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 /* ------------------------------------------------------------------------------------------------------------
    >>api-fill   From a closed curve to a mesh of quads that fills it.
 
-   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any numbers
-   can be filled whose sum is even, and at least 4: a mesh of quads has an even number of edges on its boundary. Inside,
-   vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite sides of
-   4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
+   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
+   numbers can be filled whose sum is even and at least 4: the boundary of a mesh of quads has an even number of edges.
+   Inside, vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite
+   sides of 4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
 
-   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not cross
-   itself. No quad is turned over there, nor has it a corner of 180 degrees or more. The mesh's heights over that plane are
-   those of the curve at the boundary, and harmonic inside (each vertex at the mean height of its neighbours). */
+   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not meet
+   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are
+   those of the curve at the boundary, and harmonic inside: each vertex is at the mean height of its neighbours. */
 typedef struct gproj_fill_options {
-    int32_t
-        corner_count; /* 0: corners are where the curve turns by more than 45 degrees, as for gproj_form_is_corner */
+    int32_t corner_count;        /* 0: where the curve turns by more than 45 degrees (see gproj_form_is_corner) */
     const int32_t *corners;      /* numbers of points, ascending */
     int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
     const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
     bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
-    int32_t
-        variant; /* 0: the combinatorics with the fewest irregular vertices; 1, 2, ..: others, while there are any */
+    int32_t rings;               /* rows of quads that run around along the whole boundary */
+    int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
 } gproj_fill_options;
 
 /* What has been made. */
 typedef struct gproj_fill_info {
-    int32_t boundary_count;           /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
-    int32_t side_count;               /* polylines of the mesh: side j from its first to its last vertex */
-    int32_t patch_count;              /* patches of at most 6 sides that the curve was cut into */
-    int32_t irregular_count;          /* inner vertices whose valence is not 4 */
-    int32_t min_valence, max_valence; /* of inner vertices; 0 where there are none */
-    double min_angle, max_angle;      /* of the quads' corners, in degrees, seen along the normal */
+    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
+    int32_t side_count;      /* polylines of the mesh: side j from its first to its last vertex */
+    int32_t patch_count;     /* patches of at most 6 sides that the curve was cut into */
+    int32_t irregular_count; /* inner vertices whose valence is not 4 */
+    int32_t min_valence;     /* of inner vertices; 0 where there are none */
+    int32_t max_valence;
+    double min_angle; /* of the quads' corners, in degrees, seen along the normal */
+    double max_angle;
 } gproj_fill_info;
 
-/* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is the
-   first corner; a curve without corners begins at its first point. The corners of the mesh are exactly points of the
-   curve, the other vertices of its boundary are on its segments. Counter-clockwise curves give faces that look up. The
-   polylines of the mesh are its sides; a curve with fewer than 2 corners is given 4, at about equal distances.
-   A corner has one face; one of more than 165 degrees inside has two. Corners of more than 195 degrees are ends of cuts
-   through the inside, and so are others where there are more than 6: to where the cut is short, its angles are good, and
-   the patches need few irregular vertices. Valence 6 is taken where this leaves nothing better.
-   `options`, `info`, `host` and `error` may be NULL. Refused, naming the point (of a side: the first one): curves that
-   meet themselves or enclose no area, corners out of order, numbers of edges below 1 or with an odd sum, with what to
-   change, and curves for which no filling was found. */
+/* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
+   the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
+   its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
+   fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
+   Without rings a corner has one face, and one of more than 165 degrees inside has two. Corners of more than 195 degrees
+   are ends of cuts through the inside, and so are others where there are more than 6: to where the cut is short, its
+   angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves nothing better.
+   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
+   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
+   with an odd sum, with what to change, and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
@@ -11285,6 +11286,7 @@ enum {
     GPROJI_TRIED_EDGES = 40, /* all e_j are tried up to about this */
     GPROJI_UNTANGLE_STEPS = 300,
     GPROJI_FILL_TRIES = 8,
+    GPROJI_FILL_RINGS = 1 << 10,
     GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
     GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
 };
@@ -11345,8 +11347,9 @@ typedef struct gproji_filling {
     double *flat;        /* 2 * vertices, in the plane */
     size_t flat_capacity;
     int32_t vertices;
-    int32_t cut_vertices; /* boundary and cuts come first */
-    int32_t leaves;       /* patches that were filled */
+    int32_t curve_vertices; /* those of the boundary, and of rings along it, come first */
+    int32_t cut_vertices;   /* then those of cuts */
+    int32_t leaves;         /* patches that were filled */
 } gproji_filling;
 
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
@@ -11875,6 +11878,9 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                            o->corner_count > 1 ? " in an array that is NULL" : "");
+    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
+                           (int32_t)GPROJI_FILL_RINGS);
     if (o->variant < 0)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
                            o->variant);
@@ -11943,7 +11949,7 @@ GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken)
    length. */
 GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
     int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
-    if (f->sides == 4) gproji_strip_edges(f, taken);
+    if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
     for (side = 0; side < f->sides; ++side) {
         double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
         int32_t opposite = (side + 2) % 4;
@@ -12184,7 +12190,7 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
         cost += gproji_angle_cost(angle);
     }
     cost += 0.02 * length / o->edge;
-    if (a >= o->f->boundary || b >= o->f->boundary) cost += 0.5; /* three patches would meet inside */
+    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
     if (cost >= best->cost) return;
     cost += gproji_clearance_cost(o, i, j);
     if (!(cost < best->cost)) return;
@@ -12266,19 +12272,20 @@ GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GP
     for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
     for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
         if (!(o->entry[i] & 1)) continue;
-        if (gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
+        if (o->f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
         place[k++] = i;
     }
     return k;
 }
 
 /* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
-   boundary, or 3 where these are on the curve? `at`: the place of the pattern's first corner. Destroys `uses`. */
+   boundary, or 3 where these are on the curve or a
+   ring along it? `at`: the place of the pattern's first corner. Destroys `uses`. */
 GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
     int32_t i, side, from = at, *uses = patch->uses.data;
     for (side = 0; side < patch->sides; ++side)
         for (i = 0; i < patch->edges[side]; ++i, ++at) {
-            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->boundary ? 3 : 2;
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
             if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
             uses[v] = -1; /* twice on the boundary is not good */
         }
@@ -12361,6 +12368,24 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gpr
     gproji_patch_give(&patch);
     ++f->leaves;
     return done;
+}
+
+/* The rings wanted, and what they leave as the first patch. Its outline is near the boundary as yet. */
+GPROJI_INTERNAL bool gproji_add_rings(gproji_filling *f) {
+    int32_t n = f->boundary, ring, i;
+    for (ring = 1; ring <= f->options.rings; ++ring)
+        for (i = 0; i < n; ++i) {
+            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
+                return false;
+        }
+    f->curve_vertices = f->vertices;
+    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
+    return true;
 }
 
 /* Cuts the outline into patches, then fills them: vertices of cuts come before those inside of patches. */
@@ -12762,7 +12787,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidat
     f->vertices = f->boundary;
     f->leaves = 0;
     *good = false;
-    code = gproji_fill_patches(f, c);
+    code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
     if (!code) code = gproji_find_valence(f, &most);
     if (code || most > valence) return code;
     code = gproji_place_vertices(f, &least);
