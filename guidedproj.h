@@ -11264,26 +11264,28 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
    >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, ordering (pools), cholesky, mesh,
    text (growing arrays), hierarchy.
 
-   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by patterns in
-   the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where theirs is a table,
-   our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and one at each node
-   between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path may be thickened to w
-   rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the numbers of sides i - 1 and
-   i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of strips:
+   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
+   patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
+   theirs is a table, our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and
+   one at each node between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path
+   may be thickened to w rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the
+   numbers of sides i - 1 and i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of
+   strips:
        l_i = (edges of the core from corner i to corner i + 1) + k_(i-1) + k_(i+1).
    With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex of valence 3, 4, 5, and a node between of valence 5.
-   For few e_j all solutions are tried. The path with one corner at each node and w rows has a solution for nearly all l;
-   where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole boundary, and the
-   strip of quads in such a ring fills any even number of edges.
+   For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a solution for
+   nearly all l; where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole
+   boundary, and the strip of quads in such a ring fills any even number of edges.
 
-   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of all
-   quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais, Ray,
-   Sokolov 2021), by Newton steps with the convex part of the Hessian. */
+   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of
+   all quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais,
+   Ray, Sokolov 2021), by Newton steps with the convex part of the Hessian. */
 enum {
     GPROJI_PATCH_SIDES = 6,
     GPROJI_PATH_EDGES = 5,
-    GPROJI_CANDIDATES = 64,  /* patterns that are kept while searching */
-    GPROJI_TRIED_EDGES = 40, /* all e_j are tried up to about this */
+    GPROJI_CANDIDATES = 64,    /* patterns that are kept while searching */
+    GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
+    GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
     GPROJI_UNTANGLE_STEPS = 300,
     GPROJI_FILL_TRIES = 8,
     GPROJI_FILL_RINGS = 1 << 10,
@@ -11315,10 +11317,9 @@ typedef struct gproji_pattern {
 typedef struct gproji_patch {
     gproji_heap *heap;
     int32_t sides;
-    int32_t length[GPROJI_PATCH_SIDES]; /* edges wanted on each side */
-    int32_t edges[GPROJI_PATCH_SIDES];  /* edges now */
-    int32_t *side[GPROJI_PATCH_SIDES];  /* length + 1 vertices: of the sides as they are now, both ends included */
-    int32_t *block;                     /* memory of all sides */
+    int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
+    int32_t *side[GPROJI_PATCH_SIDES]; /* length + 1 vertices: of the sides as they are now, both ends included */
+    int32_t *block;                    /* memory of all sides */
     size_t block_size;
     gproji_ints quad; /* 4 vertices each */
     gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
@@ -11369,8 +11370,8 @@ GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int3
 
 /* -- patterns: their equations -- */
 
-/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows, along
-   the right of the path, up the rows, and back along its left. */
+/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows,
+   along the right of the path, up the rows, and back along its left. */
 GPROJI_INTERNAL int32_t gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES]) {
     int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
     column[0] = 0;
@@ -11524,6 +11525,7 @@ GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
 
 /* All kinds of patterns for a patch. */
 GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, const int32_t *length) {
+    static const int32_t tried[4] = {0, INT32_MAX, GPROJI_TRIED_PAIRS, GPROJI_TRIED_TRIPLES};
     int32_t most = length[0], a, b, below, i;
     gproji_pattern p;
     memset(&p, 0, sizeof p);
@@ -11543,12 +11545,12 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
         for (a = 1; a <= 3; a += 2)
             for (b = a; b <= 3; b += 2) {
                 p.edges = sides - a - b + 1;
-                if (p.edges < 1 || p.edges > 3 || (p.edges > 1 && most > 3 * GPROJI_TRIED_EDGES)) continue;
+                if (p.edges < 1 || p.edges > 3) continue;
                 p.end[0] = a, p.end[1] = b, p.rows = 0;
                 for (below = 0; below < 1 << (p.edges - 1); ++below) {
                     p.below = below;
                     if (gproji_is_turned_kind(&p)) continue;
-                    gproji_try_edges(c, &p, p.edges == 1 ? most : gproji_min(most, GPROJI_TRIED_EDGES));
+                    gproji_try_edges(c, &p, gproji_min(most, tried[p.edges]));
                 }
             }
         if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
@@ -11611,8 +11613,8 @@ GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t 
     return true;
 }
 
-/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not flat
-   to the next. False where there are not two such corners, or a side is too short. */
+/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not
+   flat to the next. False where there are not two such corners, or a side is too short. */
 GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
     int32_t i, to, sharp = 0;
     for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
@@ -11768,7 +11770,7 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
     return true;
 }
 
-/* The angle inside a counter-clockwise polygon at p between the directions to q (along the polygon) and r, 0 to 2 pi. */
+/* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
 GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q, int32_t r) {
     const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
     double u[2], v[2], angle;
@@ -11945,8 +11947,8 @@ GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken)
     for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
 }
 
-/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about the same
-   length. */
+/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about
+   the same length. */
 GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
     int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
     if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
@@ -12137,8 +12139,8 @@ GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i,
     return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
 }
 
-/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short sides
-   leave no room for others. */
+/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short
+   sides leave no room for others. */
 GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
     int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
@@ -12154,8 +12156,8 @@ GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
     return cost[sides] + (least < 3 ? 0.6 : 0);
 }
 
-/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts that are
-   to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
+/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts
+   that are to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
@@ -12222,7 +12224,7 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     return best;
 }
 
-/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., in this or the other order. */
+/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., forward or backward. */
 GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
@@ -12256,8 +12258,8 @@ GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t c
 
 /* -- patches -- */
 
-/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are left out;
-   where there are fewer than 2, places in between are taken. Sets the bits of those that are nearly flat. */
+/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are
+   left out; where there are fewer than 2, places in between are taken. `flat`: the bits of those that are flat. */
 GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
     int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
     for (; n > GPROJI_PATCH_SIDES; --n) {
@@ -12324,8 +12326,8 @@ GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patc
     return gproji_patch_is_good(patch, o, place[p->first]);
 }
 
-/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a ring; at
-   last a ring around one strip. -1: no memory. */
+/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a
+   ring; at last a ring around one strip. -1: no memory. */
 GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
                                               int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
                                               gproji_pattern *chosen) {
@@ -12471,8 +12473,8 @@ GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
 GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
 GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
 
-/* The solution of the Laplace equation: vertices from `fixed` on go to the mean of their neighbours (at boundaries of
-   quads that touch fixed vertices only once, these count half). `fields` numbers a vertex. */
+/* The Laplace equation: each vertex from `fixed` on is the mean of its neighbours. `field` has `fields` numbers a
+   vertex; `side` first the right-hand sides, then the solutions, one after the other. */
 GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pairs *m, int32_t fixed, int32_t fields,
                                             const double *field, double *side) {
     int32_t n = (int32_t)f->quad.count, i, k, end;
@@ -12494,6 +12496,7 @@ GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pair
            gproj_cholesky_solve(m->cholesky, fields, side, side) == GPROJ_OK;
 }
 
+/* Sets the fields of the vertices from `fixed` on. */
 GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
     int32_t unknowns = f->vertices - fixed, i, k;
     gproji_pairs m;
@@ -12513,7 +12516,7 @@ GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t f
 /* The distortion of the mesh in the plane. For a corner at p with neighbours q and r of a quad of wanted edge s, with
    a = (q - p) / s, b = (r - p) / s and D = det(a, b):
        (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X),  X = (D + sqrt(D^2 + epsilon^2)) / 2,
-   least for a square of edge s where lambda = .. and infinite, for epsilon = 0, at D = 0. */
+   least for a square of edge s and, where epsilon = 0, infinite at D = 0. */
 typedef struct gproji_untangling {
     gproji_filling *f;
     gproji_pairs m;
@@ -12528,8 +12531,8 @@ typedef struct gproji_untangling {
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
-/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X) with X
-   linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
+/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X)
+   with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
 GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
                                                 double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
@@ -12603,7 +12606,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     }
 }
 
-/* A step of Newton's method, shortened until the distortion is less. False where it does not gain about this part of it. */
+/* A step of Newton's method, shortened until the distortion is less. False where it gains less than this part of it. */
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
@@ -12667,13 +12670,22 @@ GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling 
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f, double *least) {
+/* Do all corners of all quads turn left? */
+GPROJI_INTERNAL bool gproji_is_untangled(const gproji_filling *f) {
+    int32_t n = (int32_t)f->quad.count, i;
+    for (i = 0; i < n; ++i)
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                           f->quad.data[gproji_quad_previous(i)]) > 0))
+            return false;
+    return true;
+}
+
+GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     int32_t unknowns = 2 * (f->vertices - f->boundary);
     gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
     gproji_untangling u;
     memset(&u, 0, sizeof u);
     u.f = f;
-    *least = 0;
     if (code || unknowns == 0) return code;
     if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)(f->quad.count / 4))) {
         u.edge = (double *)gproji_pool_take(&u.m.pool, (int64_t)f->quad.count / 4, sizeof *u.edge);
@@ -12682,7 +12694,6 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f, double *leas
         u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
     }
     code = u.edge && u.gradient && u.step && u.start ? gproji_untangle(f, &u) : gproji_fail_memory(f->error);
-    *least = u.least;
     gproji_pairs_give(&u.m);
     return code;
 }
@@ -12763,7 +12774,7 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
 }
 
-/* The largest valence inside; `count` has room for all vertices. */
+/* The largest valence inside. */
 GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
     int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
     size_t i;
@@ -12774,10 +12785,9 @@ GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most)
     return GPROJ_OK;
 }
 
-/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the right
-   way up. Sets whether it is good. */
+/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the
+   right way up. Sets whether it is good. */
 GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
-    double least = 0;
     int32_t most = 0;
     gproj_code code;
     f->polygon.count = (size_t)f->boundary;
@@ -12790,8 +12800,8 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidat
     code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
     if (!code) code = gproji_find_valence(f, &most);
     if (code || most > valence) return code;
-    code = gproji_place_vertices(f, &least);
-    *good = f->vertices == f->boundary || least > 0;
+    code = gproji_place_vertices(f);
+    *good = gproji_is_untangled(f);
     return code;
 }
 

@@ -435,6 +435,54 @@ GPROJT_TEST(sides_are_divided_evenly) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Rings run along the whole boundary, also past corners and where the inside is cut. */
+GPROJT_TEST(rings) {
+    static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
+    int32_t i, k, shape;
+    for (shape = 0; shape < 2; ++shape) {
+        gprojt_curve c = shape ? gprojt_polygon(6, L) : gprojt_rose(4, 12, 0.2);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.options.edge_length = 0.6;
+        c.options.rings = 3;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.irregular_count == (shape ? 6 : 4)); /* 3 at each corner, 5 where the L is reflex */
+        for (i = 0; i < info.boundary_count; ++i) /* one edge leads inside from each vertex, and on to the next ring */
+            for (k = 0; k < 3; ++k) {
+                int32_t v = k * info.boundary_count + i, ring[6], n = gproj_mesh_one_ring(mesh, v, ring, 6), next = 0;
+                GPROJT_CHECK(n == (k == 0 ? 3 : 4));
+                while (next < n && ring[next] != v + info.boundary_count) ++next;
+                GPROJT_CHECK(next < n);
+            }
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A quad alone has no choice; where it would be bent inwards, another mesh of the same boundary is taken. */
+GPROJT_TEST(single_quads) {
+    static const double flat[] = {0, 0, 4, 0, 5, 4, 0, 3}, bent[] = {0, 0, 4, 0, 1, 1, 0, 4};
+    static const int32_t corner[] = {0, 1, 3};
+    gprojt_curve c = gprojt_polygon(4, flat);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.options.keep_points = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(mesh->face_count == 1 && info.irregular_count == 0 && info.max_valence == 0);
+    gproj_mesh_destroy(mesh);
+    c = gprojt_polygon(4, bent);
+    c.options.keep_points = true;
+    memcpy(c.corner, corner, sizeof corner);
+    c.corner_count = 3, c.marked = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+    GPROJT_CHECK(mesh->face_count == 5 && info.irregular_count == 4); /* a cube without one of its faces */
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(variants_differ) {
     gprojt_curve c = gprojt_rose(5, 12, 0.1);
     int32_t i, k, faces[3], irregular[3];
@@ -583,6 +631,8 @@ GPROJT_TEST(refusals_of_options) {
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "NULL"));
     c = good, c.options.variant = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant"));
+    c = good, c.options.rings = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-1 rings"));
     c = good, c.options.edge_length = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "edge length is -1"));
     c.options.edge_length = 1e-9;
@@ -635,6 +685,8 @@ int main(void) {
     GPROJT_RUN(corners_that_are_flat);
     GPROJT_RUN(points_of_the_curve_are_kept);
     GPROJT_RUN(sides_are_divided_evenly);
+    GPROJT_RUN(rings);
+    GPROJT_RUN(single_quads);
     GPROJT_RUN(variants_differ);
     GPROJT_RUN(anywhere_in_space);
     GPROJT_RUN(heights_are_harmonic);
