@@ -11283,7 +11283,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 enum {
     GPROJI_PATCH_SIDES = 6,
     GPROJI_PATH_EDGES = 5,
-    GPROJI_CANDIDATES = 64,    /* patterns that are kept while searching */
+    GPROJI_CANDIDATES = 40,    /* more than there are kinds of patterns */
     GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
     GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
     GPROJI_UNTANGLE_STEPS = 300,
@@ -11442,13 +11442,9 @@ GPROJI_INTERNAL bool gproji_same_kind(const gproji_pattern *a, const gproji_patt
 GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p) {
     int32_t i;
     for (i = 0; i < c->count && !gproji_same_kind(&c->pattern[i], p); ++i) continue;
-    if (i < c->count) {
-        if (c->pattern[i].cost <= p->cost) return;
-    } else if (c->count < GPROJI_CANDIDATES) {
-        ++c->count;
-    } else if (c->pattern[--i].cost <= p->cost) {
-        return;
-    }
+    if (i < c->count && c->pattern[i].cost <= p->cost) return;
+    GPROJ_ASSERT(i < GPROJI_CANDIDATES);
+    c->count += i == c->count;
     for (; i > 0 && c->pattern[i - 1].cost > p->cost; --i) c->pattern[i] = c->pattern[i - 1];
     c->pattern[i] = *p;
 }
@@ -12057,6 +12053,13 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
     return true;
 }
 
+/* The side of the edge that begins at a vertex of the boundary. */
+GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
+    int32_t side = 0;
+    while (f->start.data[side + 1] <= vertex) ++side;
+    return side;
+}
+
 /* The vertices of the boundary, and the first patch: all of it. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     gproj_code code = gproji_find_corners(f);
@@ -12078,9 +12081,9 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
     if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
-    return gproji_fail(
-        f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-        "with so few edges the boundary meets itself, after its vertices %d and %d; divide the sides finer", i, j);
+    i = gproji_side_of(f, i), j = gproji_side_of(f, j);
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[i],
+                       "with so few edges side %d meets side %d; divide them finer", i, j);
 }
 
 /* -- cuts -- */
