@@ -6,8 +6,9 @@
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
      machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
-     least squares with bounds, and projection onto any system of quadratic equations and inequalities.
+     Its parts can be used alone: half-edge meshes with OBJ and OFF, closed curves filled with quads, closest points, a
+     sparse Cholesky factorisation, least squares with bounds, and projection onto any system of quadratic equations
+     and inequalities.
 
    WHAT IT DOES NOT DO
      - draw, edit interactively, or remesh: it moves vertices and keeps the combinatorics as they are;
@@ -827,9 +828,10 @@ typedef struct gproj_fill_info {
    the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
    its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
    fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
-   Without rings a corner has one face, and one of more than 165 degrees inside has two. Corners of more than 195 degrees
-   are ends of cuts through the inside, and so are others where there are more than 6: to where the cut is short, its
-   angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves nothing better.
+   A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
+   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where the
+   cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves
+   nothing better.
    `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
    side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
    with an odd sum, with what to change, and curves for which no filling was found. */
@@ -12284,8 +12286,8 @@ GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GP
 }
 
 /* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
-   boundary, or 3 where these are on the curve or a
-   ring along it? `at`: the place of the pattern's first corner. Destroys `uses`. */
+   boundary, or 3 where these are on the curve or a ring along it? `at`: the place of the pattern's first corner.
+   Destroys `uses`. */
 GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
     int32_t i, side, from = at, *uses = patch->uses.data;
     for (side = 0; side < patch->sides; ++side)
@@ -12361,12 +12363,11 @@ GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidat
 }
 
 GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
-    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], sides, i;
+    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat, i;
+    int32_t sides = gproji_patch_corners(o, place, &flat);
     gproji_pattern p;
     gproji_patch patch;
-    int32_t flat;
     bool done;
-    sides = gproji_patch_corners(o, place, &flat);
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
     if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
     done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
