@@ -6,13 +6,13 @@
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
      machine precision, and you get an honest verdict: what holds, how exactly, and where it does not.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, changes of their combinatorics, closest points, a
-     sparse Cholesky factorisation, least squares with bounds, and projection onto any system of quadratic equations and
-     inequalities.
+     Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their combinatorics, closed
+     curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with bounds, and
+     projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, edit interactively, or remesh: solving moves vertices and keeps the combinatorics as they are (you can
-       change them: >>api-edit);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (you can change them:
+       >>api-subdivide, >>api-edit, >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -69,6 +69,7 @@
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-offset     parallel meshes at constant distance, supports
+       >>api-fill       meshes of quads from closed curves
        >>api-form       form-finding: a mesh, what must hold, what is wished
        >>api-statics    forces in the edges of a form
      the implementation: each section uses only earlier ones
@@ -96,6 +97,7 @@
        >>edit           changes of the combinatorics
        >>measure        what a mesh is like
        >>offset         parallel meshes and what is between them
+       >>fill           closed curves filled with quads
        >>form           a mesh and its system
        >>catalogue      the constraints and wishes
        >>statics        equilibrium, bounds on forces, their start
@@ -994,6 +996,54 @@ typedef struct gproj_offset_measures {
 
 /* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-fill   From a closed curve to a mesh of quads that fills it.
+
+   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
+   numbers can be filled whose sum is even and at least 4: the boundary of a mesh of quads has an even number of edges.
+   Inside, vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite
+   sides of 4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
+
+   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not meet
+   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are
+   those of the curve at the boundary, and harmonic inside: each vertex is at the mean height of its neighbours. */
+typedef struct gproj_fill_options {
+    int32_t corner_count;        /* 0: where the curve turns by more than 45 degrees (see gproj_form_is_corner) */
+    const int32_t *corners;      /* numbers of points, ascending */
+    int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
+    const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
+    double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
+    bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
+    int32_t rings;               /* rows of quads that run around along the whole boundary */
+    int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
+} gproj_fill_options;
+
+/* What has been made. */
+typedef struct gproj_fill_info {
+    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
+    int32_t side_count;      /* polylines of the mesh: side j from its first to its last vertex */
+    int32_t patch_count;     /* patches of at most 6 sides that the curve was cut into */
+    int32_t irregular_count; /* inner vertices whose valence is not 4 */
+    int32_t min_valence;     /* of inner vertices; 0 where there are none */
+    int32_t max_valence;
+    double min_angle; /* of the quads' corners, in degrees, seen along the normal */
+    double max_angle;
+} gproj_fill_info;
+
+/* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
+   the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
+   its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
+   fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
+   A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
+   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where the
+   cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves
+   nothing better.
+   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
+   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
+   with an odd sum, with what to change, and curves for which no filling was found. */
+GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
+                                      gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
@@ -14320,6 +14370,1606 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
                          &m.vertex_distance_min, &m.vertex_distance_max);
     for (e = 0; e < mesh->edge_count; ++e) gproji_measure_edge_offset(mesh, offset, e, unit, &m);
     return m;
+}
+
+/* ============================================================================================================
+   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, ordering (pools), cholesky, mesh,
+   text (growing arrays), hierarchy.
+
+   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
+   patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
+   theirs is a table, our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and
+   one at each node between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path
+   may be thickened to w rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the
+   numbers of sides i - 1 and i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of
+   strips:
+       l_i = (edges of the core from corner i to corner i + 1) + k_(i-1) + k_(i+1).
+   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex of valence 3, 4, 5, and a node between of valence 5.
+   For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a solution for
+   nearly all l; where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole
+   boundary, and the strip of quads in such a ring fills any even number of edges.
+
+   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of
+   all quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais,
+   Ray, Sokolov 2021), by Newton steps with the convex part of the Hessian. */
+enum {
+    GPROJI_PATCH_SIDES = 6,
+    GPROJI_PATH_EDGES = 5,
+    GPROJI_CANDIDATES = 40,    /* more than there are kinds of patterns */
+    GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
+    GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
+    GPROJI_UNTANGLE_STEPS = 300,
+    GPROJI_FILL_TRIES = 8,
+    GPROJI_FILL_RINGS = 1 << 10,
+    GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
+    GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
+};
+
+#define GPROJI_REFLEX 3.403392041388943 /* 195 degrees: corners beyond are cut */
+#define GPROJI_FLAT 2.879793265790644   /* 165 degrees: corners beyond get two faces */
+#define GPROJI_OBTUSE 2.356194490192345 /* 135 degrees: at the ends of a cut, corners below */
+#define GPROJI_RIGHT 1.570796326794897
+
+typedef struct gproji_pattern {
+    int32_t sides;
+    int32_t first;                     /* the pattern's corner 0 is the patch's corner `first` */
+    int32_t end[2];                    /* corners at the ends of the path; a point: all at end 0 */
+    int32_t edges;                     /* of the path; 0: a point. Nodes between are edges - 1 */
+    int32_t below;                     /* bit j: the corner of node j + 1 is on the right of the path */
+    int32_t edge[GPROJI_PATH_EDGES];   /* e_j */
+    int32_t rows;                      /* w; > 0 only where no corner is on the right of the path */
+    int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
+    int32_t flat;                      /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    bool ring;                         /* all corners get two faces: a ring of quads around the patch */
+    bool bare;                         /* one strip of quads in a ring, whatever the sides are */
+    double cost;
+} gproji_pattern;
+
+/* A patch under construction. Vertices and quads have local numbers. */
+typedef struct gproji_patch {
+    gproji_heap *heap;
+    int32_t sides;
+    int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
+    int32_t *side[GPROJI_PATCH_SIDES]; /* length + 1 vertices: of the sides as they are now, both ends included */
+    int32_t *block;                    /* memory of all sides */
+    size_t block_size;
+    gproji_ints quad; /* 4 vertices each */
+    gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
+    gproji_ints uses; /* faces at each vertex */
+    int32_t vertices;
+} gproji_patch;
+
+typedef struct gproji_filling {
+    gproji_heap *heap;
+    const gproj_host *host;
+    gproj_error *error;
+    gproj_fill_options options;
+    int32_t count; /* of the points */
+    const double *points;
+    double *seen; /* 2 * count: the points in the plane */
+    double normal[3], across[3], up[3];
+    double edge_length; /* wanted */
+    int32_t sides;
+    gproji_ints corner;  /* points; sides of them */
+    gproji_ints start;   /* sides + 1: the first vertex of each side */
+    int32_t boundary;    /* vertices of the boundary */
+    double *border;      /* 3 * boundary: their positions */
+    gproji_ints polygon; /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
+    gproji_ints patch;   /* ends of the patches in `polygon` */
+    gproji_ints quad;    /* 4 vertices each */
+    double *flat;        /* 2 * vertices, in the plane */
+    size_t flat_capacity;
+    int32_t vertices;
+    int32_t curve_vertices; /* those of the boundary, and of rings along it, come first */
+    int32_t cut_vertices;   /* then those of cuts */
+    int32_t leaves;         /* patches that were filled */
+} gproji_filling;
+
+GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
+    void *block = ints->data;
+    if (ints->count >= INT32_MAX - 1) return false;
+    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
+    ints->data = (int32_t *)block;
+    ints->data[ints->count++] = value;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
+                                      int32_t d) {
+    return gproji_ints_add(heap, ints, a) && gproji_ints_add(heap, ints, b) && gproji_ints_add(heap, ints, c) &&
+           gproji_ints_add(heap, ints, d);
+}
+
+/* -- patterns: their equations -- */
+
+/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows,
+   along the right of the path, up the rows, and back along its left. */
+GPROJI_INTERNAL int32_t gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES]) {
+    int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
+    column[0] = 0;
+    for (i = 0; i < p->edges; ++i) column[i + 1] = column[i] + p->edge[i];
+    all = column[nodes - 1];
+    for (i = 0; i < p->end[0]; ++i) at[n++] = 0;
+    for (i = 1; i + 1 < nodes; ++i)
+        if (p->below >> (i - 1) & 1) at[n++] = p->rows + column[i];
+    for (i = 0; i < p->end[1]; ++i) at[n++] = 2 * p->rows + all;
+    for (i = nodes - 2; i > 0; --i)
+        if (!(p->below >> (i - 1) & 1)) at[n++] = 2 * p->rows + 2 * all - column[i];
+    return 2 * p->rows + 2 * all;
+}
+
+/* The core's vertex at a place of the walk. Vertices are numbered by rows, from below. */
+GPROJI_INTERNAL int32_t gproji_core_vertex(int32_t rows, int32_t all, int32_t place) {
+    int32_t around = 2 * (rows + all);
+    if (around == 0) return 0;
+    place %= around;
+    if (place < rows) return (rows - place) * (all + 1);
+    if (place <= rows + all) return place - rows;
+    if (place <= 2 * rows + all) return (place - rows - all) * (all + 1) + all;
+    return rows * (all + 1) + around - place;
+}
+
+/* The strips k with rest_i = k_(i-1) + k_(i+1): over the cycles of sides i, i + 2, .. False where there are none. */
+GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
+    int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
+    for (first = 0; first < cycles; ++first) {
+        for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
+        /* once around, k_first becomes value - k_first (odd) or value + k_first (even) */
+        if (length % 2 ? value % 2 != 0 : value != 0) return false;
+        start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
+        for (n = 0, i = first; n < length; ++n, i = (i + 2) % sides) {
+            if (start < 0) return false;
+            strip[i] = start;
+            start = rest[(i + 1) % sides] - start;
+        }
+    }
+    return true;
+}
+
+/* Irregular vertices count most, then the distances between them and from them to the boundary. */
+GPROJI_INTERNAL double gproji_pattern_cost(const gproji_pattern *p) {
+    double cost = 0;
+    int32_t i;
+    if (p->edges == 0)
+        cost += 4 * (p->sides > 4 ? p->sides - 4 : 4 - p->sides) + (p->sides == 6 ? 8 : 0);
+    else
+        cost += 4 * ((p->end[0] != 2) + (p->end[1] != 2) + p->edges - 1);
+    for (i = 0; i < p->sides; ++i) cost += p->strip[i] > 0 ? 1.0 / p->strip[i] : 3;
+    for (i = 0; i < p->edges; ++i) cost += 1.0 / p->edge[i];
+    return cost + (p->rows > 0 ? 1 : 0);
+}
+
+/* Candidates, at most one of each kind and rotation, in the order of their costs. */
+typedef struct gproji_candidates {
+    const int32_t *length; /* of the patch's sides */
+    int32_t count;
+    gproji_pattern pattern[GPROJI_CANDIDATES];
+} gproji_candidates;
+
+GPROJI_INTERNAL bool gproji_same_kind(const gproji_pattern *a, const gproji_pattern *b) {
+    return a->first == b->first && a->end[0] == b->end[0] && a->edges == b->edges && a->below == b->below &&
+           (a->rows > 0) == (b->rows > 0);
+}
+
+GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p) {
+    int32_t i;
+    for (i = 0; i < c->count && !gproji_same_kind(&c->pattern[i], p); ++i) continue;
+    if (i < c->count && c->pattern[i].cost <= p->cost) return;
+    GPROJ_ASSERT(i < GPROJI_CANDIDATES);
+    c->count += i == c->count;
+    for (; i > 0 && c->pattern[i - 1].cost > p->cost; --i) c->pattern[i] = c->pattern[i - 1];
+    c->pattern[i] = *p;
+}
+
+/* What the core leaves of the sides for the strips. False where it needs more than there is. */
+GPROJI_INTERNAL bool gproji_rest(const gproji_candidates *c, const gproji_pattern *p, int32_t *rest) {
+    int32_t at[GPROJI_PATCH_SIDES], around = gproji_core_corners(p, at), i;
+    for (i = 0; i < p->sides; ++i) {
+        int32_t to = i + 1 < p->sides ? at[i + 1] : at[0] + around;
+        rest[i] = c->length[(i + p->first) % p->sides] - (to - at[i]);
+        if (rest[i] < 0) return false;
+    }
+    return true;
+}
+
+/* All e_j of one kind of path without rows. */
+GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, int32_t most) {
+    int32_t rest[GPROJI_PATCH_SIDES], i = 0;
+    for (i = 0; i < p->edges; ++i) p->edge[i] = 1;
+    do {
+        if (gproji_rest(c, p, rest) && gproji_find_strips(p->sides, rest, p->strip)) {
+            p->cost = gproji_pattern_cost(p);
+            gproji_offer(c, p);
+        }
+        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1;
+    } while (i < p->edges);
+}
+
+/* The path with a corner at each node and rows: sides 1, 2, .. have one e_j each, side 0 their sum and 2 w. So
+   e_j = l - k - k, and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum of the k_i but for i = 1 and n - 1 (with two sides:
+   + k_0 - k_1). These strips grow evenly until w >= 0. */
+GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
+    int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
+    p->end[0] = p->end[1] = 1;
+    p->edges = n - 1;
+    p->below = 0;
+    p->rows = c->length[p->first];
+    for (i = 1; i < n; ++i) p->rows -= c->length[(i + p->first) % n];
+    p->rows /= 2;
+    for (i = 0; i < n; ++i) {
+        p->strip[i] = least;
+        p->rows += i != 1 && i != n - 1 ? least : n == 2 ? -least : 0;
+        rest[i] = c->length[(i + p->first) % n] - 2 * least;
+        if (i > 0 && rest[i] < 1) return false;
+    }
+    while (p->rows < 0) {
+        for (best = -1, i = 0; i < n; ++i) {
+            int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
+            if (i == 1 || i == n - 1) continue;
+            if ((before > 0 && rest[before] < least_rest) || (after > 0 && rest[after] < least_rest)) continue;
+            if (best < 0 || p->strip[i] < p->strip[best]) best = i;
+        }
+        if (best < 0) return false;
+        ++p->strip[best], ++p->rows;
+        --rest[(best + n - 1) % n], --rest[(best + 1) % n];
+    }
+    for (side = 1; side < n; ++side) p->edge[n - 1 - side] = rest[side];
+    p->cost = gproji_pattern_cost(p);
+    gproji_offer(c, p);
+    return true;
+}
+
+/* A path with equal ends, seen from its other end, is a path of the same kind: is that one tried instead? */
+GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
+    int32_t below = 0, first = p->first + p->end[0], j, nodes = p->edges - 1;
+    for (j = 0; j < nodes; ++j) {
+        bool right = (p->below >> j & 1) != 0;
+        first += right;
+        if (!right) below |= 1 << (nodes - 1 - j);
+    }
+    first %= p->sides;
+    return p->end[0] == p->end[1] && (below < p->below || (below == p->below && first < p->first));
+}
+
+/* All kinds of patterns for a patch. */
+GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, const int32_t *length) {
+    static const int32_t tried[4] = {0, INT32_MAX, GPROJI_TRIED_PAIRS, GPROJI_TRIED_TRIPLES};
+    int32_t most = length[0], a, b, below, i;
+    gproji_pattern p;
+    memset(&p, 0, sizeof p);
+    c->length = length;
+    c->count = 0;
+    for (i = 1; i < sides; ++i) most = gproji_max(most, length[i]);
+    p.sides = sides;
+    p.end[0] = sides;
+    gproji_try_edges(c, &p, 0);
+    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) { /* a grid: a path along one side */
+        p.end[0] = p.end[1] = 2, p.edges = 1, p.edge[0] = length[1], p.strip[1] = length[0];
+        p.strip[0] = p.strip[2] = p.strip[3] = 0;
+        p.cost = -1;
+        gproji_offer(c, &p);
+    }
+    for (p.first = 0; p.first < sides; ++p.first) {
+        for (a = 1; a <= 3; a += 2)
+            for (b = a; b <= 3; b += 2) {
+                p.edges = sides - a - b + 1;
+                if (p.edges < 1 || p.edges > 3) continue;
+                p.end[0] = a, p.end[1] = b, p.rows = 0;
+                for (below = 0; below < 1 << (p.edges - 1); ++below) {
+                    p.below = below;
+                    if (gproji_is_turned_kind(&p)) continue;
+                    gproji_try_edges(c, &p, gproji_min(most, tried[p.edges]));
+                }
+            }
+        if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
+        if (!gproji_try_rows(c, &p, 1)) gproji_try_rows(c, &p, 0);
+    }
+}
+
+/* -- patterns: their quads -- */
+
+GPROJI_INTERNAL bool gproji_patch_take(gproji_patch *patch, gproji_heap *heap, int32_t sides, const int32_t *length) {
+    size_t at = 0;
+    int32_t i;
+    memset(patch, 0, sizeof *patch);
+    patch->heap = heap;
+    patch->sides = sides;
+    for (i = 0; i < sides; ++i) patch->block_size += (size_t)length[i] + 1;
+    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
+    for (i = 0; patch->block && i < sides; ++i) {
+        patch->side[i] = patch->block + at;
+        at += (size_t)length[i] + 1;
+    }
+    return patch->block != NULL;
+}
+
+GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
+    gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
+    gproji_ints_give(patch->heap, &patch->quad);
+    gproji_ints_give(patch->heap, &patch->loop);
+    gproji_ints_give(patch->heap, &patch->uses);
+}
+
+/* The core and its sides. */
+GPROJI_INTERNAL bool gproji_build_core(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, i, j, rows = p->rows;
+    for (i = 0; i < p->edges; ++i) all += p->edge[i];
+    if (p->bare)
+        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
+    else
+        at[p->sides] = gproji_core_corners(p, at) + at[0];
+    for (i = 0; i < p->sides; ++i) {
+        patch->edges[i] = at[i + 1] - at[i];
+        for (j = 0; j <= patch->edges[i]; ++j) patch->side[i][j] = gproji_core_vertex(rows, all, at[i] + j);
+    }
+    patch->vertices = (rows + 1) * (all + 1);
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < all; ++j) {
+            int32_t v = i * (all + 1) + j;
+            if (!gproji_ints_add4(patch->heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+        }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
+
+/* Does a strip run from corner i to the next corner that is not flat, over flat ones between? Sets that corner. */
+GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t i, int32_t *to) {
+    *to = i + 1;
+    if (gproji_is_flat(flat, sides, i) || !gproji_is_flat(flat, sides, i + 1)) return false;
+    while (gproji_is_flat(flat, sides, *to)) ++*to;
+    return true;
+}
+
+/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not
+   flat to the next. False where there are not two such corners, or a side is too short. */
+GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
+    int32_t i, to, sharp = 0;
+    for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
+    if (sharp < 2) return false;
+    for (i = 0; i < sides; ++i)
+        if (gproji_has_long_strip(flat, sides, i, &to)) --inner[(i + sides - 1) % sides], --inner[to % sides];
+    for (i = 0; i < sides; ++i)
+        if (inner[i] < 1) return false;
+    return true;
+}
+
+/* A strip of quads along sides i to to - 1 (numbers may go on beyond the last): new sides outside of them, and one edge
+   more for both neighbours. */
+GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
+    int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
+    int32_t outer = patch->vertices;
+    for (side = i; side < to; ++side) {
+        int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
+        for (j = 0; j < n; ++j)
+            if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
+        outer += n;
+    }
+    patch->side[before][++patch->edges[before]] = patch->vertices;
+    memmove(patch->side[after] + 1, patch->side[after], (size_t)(++patch->edges[after]) * sizeof(int32_t));
+    patch->side[after][0] = outer;
+    for (side = i; side < to; ++side)
+        for (j = 0, outer = patch->vertices; j <= patch->edges[side % patch->sides]; ++j) {
+            patch->side[side % patch->sides][j] = outer + j;
+            if (j == patch->edges[side % patch->sides]) patch->vertices = outer + j;
+        }
+    ++patch->vertices;
+    return true;
+}
+
+/* The boundary as a loop, in a ring of quads if so wanted. */
+GPROJI_INTERNAL bool gproji_close_patch(gproji_patch *patch, bool ring) {
+    int32_t i, j, n;
+    for (i = 0; i < patch->sides; ++i)
+        for (j = 0; j < patch->edges[i]; ++j)
+            if (!gproji_ints_add(patch->heap, &patch->loop, patch->side[i][j])) return false;
+    n = (int32_t)patch->loop.count;
+    for (i = 0; ring && i < n; ++i) {
+        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
+        if (!gproji_ints_add4(patch->heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+    }
+    for (i = 0; ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
+    int32_t i, k;
+    size_t q;
+    if (!gproji_build_core(patch, p, length)) return false;
+    for (i = 0; i < p->sides && !p->bare; ++i)
+        for (k = 0; k < p->strip[i]; ++k)
+            if (!gproji_add_strip(patch, i, i + 1)) return false;
+    for (i = 0; i < p->sides && p->flat; ++i)
+        if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
+    if (!gproji_close_patch(patch, p->ring)) return false;
+    for (i = 0; i < patch->vertices; ++i)
+        if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
+    for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
+    return true;
+}
+
+/* -- the plane -- */
+
+/* Twice the area of the triangle of points i, j, k of an array xy, positive when counter-clockwise. */
+GPROJI_INTERNAL double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
+    const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+GPROJI_INTERNAL double gproji_distance2(const double *xy, int32_t i, int32_t j) {
+    double x = xy[2 * (size_t)j] - xy[2 * (size_t)i], y = xy[2 * (size_t)j + 1] - xy[2 * (size_t)i + 1];
+    return sqrt(x * x + y * y);
+}
+
+/* Do the segments a b and c d have a common point? */
+GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b, int32_t c, int32_t d) {
+    const double *p = xy + 2 * (size_t)a, *q = xy + 2 * (size_t)b, *r = xy + 2 * (size_t)c, *s = xy + 2 * (size_t)d;
+    double abc, abd, cda, cdb;
+    int32_t k;
+    for (k = 0; k < 2; ++k)
+        if (gproji_fmax(p[k], q[k]) < gproji_fmin(r[k], s[k]) || gproji_fmax(r[k], s[k]) < gproji_fmin(p[k], q[k]))
+            return false;
+    abc = gproji_turn2(xy, a, b, c), abd = gproji_turn2(xy, a, b, d);
+    cda = gproji_turn2(xy, c, d, a), cdb = gproji_turn2(xy, c, d, b);
+    return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) || (cda < 0 && cdb < 0));
+}
+
+/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet where they should not? Neighbours: do they fold back? */
+GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32_t i, int32_t j) {
+    int32_t b = (i + 1) % count, d = (j + 1) % count;
+    if (b == j || d == i) {
+        int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
+        const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
+        double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
+        return along >= 0 && fabs(gproji_turn2(xy, at, from, to)) <= 1e-12 * along;
+    }
+    return gproji_segments_meet(xy, i, b, j, d);
+}
+
+/* A closed polygon. */
+typedef struct gproji_loop2 {
+    const double *xy;
+    int32_t count;
+} gproji_loop2;
+
+GPROJI_INTERNAL void gproji_loop_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const gproji_loop2 *loop = (const gproji_loop2 *)user;
+    const double *p = loop->xy + 2 * (size_t)item, *q = loop->xy + 2 * (size_t)((item + 1) % loop->count);
+    gproji_set3(gproji_fmin(p[0], q[0]), gproji_fmin(p[1], q[1]), 0, low);
+    gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
+}
+
+/* The lowest side after side i that meets it; the number of sides where there is none. */
+GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gproji_hierarchy *tree, int32_t i) {
+    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = loop->count, k;
+    double low[3], high[3];
+    gproji_loop_box(loop, i, low, high);
+    stack[0] = 0;
+    while (depth > 0) {
+        int32_t at = stack[--depth];
+        const gproji_node *node = &tree->node[at];
+        if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
+            continue;
+        if (node->right >= 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+            continue;
+        }
+        for (k = node->begin; k < node->end; ++k) {
+            int32_t j = tree->item[k];
+            if (j > i && j < found && gproji_polygon_meets(loop->xy, loop->count, i, j)) found = j;
+        }
+    }
+    return found;
+}
+
+/* The first two sides of a closed polygon that meet; first = count where it is simple. False: no memory. */
+GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
+                                          int32_t *second) {
+    gproji_hierarchy tree;
+    gproji_loop2 loop;
+    loop.xy = xy, loop.count = count;
+    if (!gproji_hierarchy_build(heap, &tree, count, gproji_loop_box, &loop)) return false;
+    for (*first = 0; *first < count; ++*first) {
+        *second = gproji_find_meeting(&loop, &tree, *first);
+        if (*second < count) break;
+    }
+    gproji_hierarchy_give(heap, &tree);
+    return true;
+}
+
+/* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
+GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q, int32_t r) {
+    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
+    double u[2], v[2], angle;
+    u[0] = b[0] - a[0], u[1] = b[1] - a[1], v[0] = c[0] - a[0], v[1] = c[1] - a[1];
+    angle = atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    return angle < 0 ? angle + 6.283185307179586 : angle;
+}
+
+/* -- the curve -- */
+
+/* The plane of the vectorial area, with which the curve runs counter-clockwise. Writes the points as seen there. */
+GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
+    static const double none[3] = {0, 0, 0};
+    double a[3], b[3], cross[3], extent = 0;
+    int32_t i;
+    gproji_set3(0, 0, 0, f->normal);
+    for (i = 1; i < f->count; ++i) {
+        gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
+        extent = gproji_fmax(extent, gproji_dot3(a, a));
+        if (i + 1 == f->count) break;
+        gproji_sub3(f->points + 3 * (size_t)i + 3, f->points, b);
+        gproji_cross3(a, b, cross);
+        gproji_add_scaled3(0.5, cross, f->normal);
+    }
+    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, none))
+        return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                           "the curve encloses no area; it must not run back along itself");
+    gproji_tangents3(f->normal, f->across, f->up);
+    for (i = 0; i < f->count; ++i) {
+        gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
+        f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
+    gproj_code code;
+    int32_t i, j;
+    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           f->points ? "a closed curve of %d points; it needs at least 3"
+                                     : "the points of the curve are NULL",
+                           f->count);
+    code = gproji_check_positions(f->count, f->points, "point", f->error);
+    if (code) return code;
+    for (i = 0; i < f->count; ++i) {
+        j = i + 1 < f->count ? i + 1 : 0;
+        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
+            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                               "points %d and %d of the curve are the same; leave one out%s", i, j,
+                               j == 0 ? " (the curve is closed without it)" : "");
+    }
+    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    if (!f->seen) return gproji_fail_memory(f->error);
+    code = gproji_see_curve(f);
+    if (code) return code;
+    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->count) return GPROJ_OK;
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                       "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
+                       "simple curves can be filled",
+                       i, j);
+}
+
+/* Does the curve turn by more than 45 degrees at a point (see gproj_form_is_corner)? */
+GPROJI_INTERNAL bool gproji_turns(const gproji_filling *f, int32_t i) {
+    static const double none[3] = {0, 0, 0};
+    const double *p = f->points + 3 * (size_t)i;
+    double in[3], out[3];
+    gproji_sub3(p, f->points + 3 * (size_t)((i + f->count - 1) % f->count), in);
+    gproji_sub3(f->points + 3 * (size_t)((i + 1) % f->count), p, out);
+    gproji_normalise3(in, none);
+    gproji_normalise3(out, none);
+    return gproji_dot3(in, out) < 0.70710678118654752;
+}
+
+/* The length of the curve from point i to point j > i (modulo the number of points). */
+GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i, int32_t j) {
+    double sum = 0;
+    for (; i < j; ++i)
+        sum += gproji_distance3(f->points + 3 * (size_t)(i % f->count), f->points + 3 * (size_t)((i + 1) % f->count));
+    return sum;
+}
+
+/* Four corners at about equal distances, the first one where the only corner is, or the first point. */
+GPROJI_INTERNAL bool gproji_make_corners(gproji_filling *f) {
+    int32_t from = f->corner.count ? f->corner.data[0] : 0, n = 1, i;
+    double all = gproji_length_between(f, from, from + f->count), at = 0;
+    f->corner.count = 0;
+    if (!gproji_ints_add(f->heap, &f->corner, from)) return false;
+    for (i = from; i + 1 < from + f->count && n < 4; ++i) {
+        double step = gproji_length_between(f, i, i + 1);
+        at += step;
+        if (at + step / 2 >= all * n / 4 || from + f->count - 2 - i < 4 - n) {
+            if (!gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count)) return false;
+            ++n;
+        }
+    }
+    return true;
+}
+
+GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
+    const gproj_fill_options *o = &f->options;
+    int32_t i;
+    bool taken = true;
+    if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "%d corners%s; give at least 2, or none to have them found", o->corner_count,
+                           o->corner_count > 1 ? " in an array that is NULL" : "");
+    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
+                           (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
+                           o->variant);
+    for (i = 0; i < o->corner_count && taken; ++i) {
+        int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
+        if (c < 0 || c >= f->count)
+            return gproji_fail(f->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, c,
+                               "corner %d is point %d, but the points are 0 to %d", i, c, f->count - 1);
+        if (c <= before)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
+                               "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
+                               c, before);
+        taken = gproji_ints_add(f->heap, &f->corner, c);
+    }
+    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
+        if (gproji_turns(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
+    if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
+    f->sides = (int32_t)f->corner.count;
+    if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
+                           o->subdivisions ? "" : " by a NULL array", f->sides);
+    return taken ? GPROJ_OK : gproji_fail_memory(f->error);
+}
+
+/* The points of side j: from the first to the last, counted on beyond the end of the array. */
+GPROJI_INTERNAL void gproji_side_points(const gproji_filling *f, int32_t side, int32_t *from, int32_t *to) {
+    *from = f->corner.data[side];
+    *to = side + 1 < f->sides ? f->corner.data[side + 1] : f->corner.data[0];
+    if (*to <= *from) *to += f->count;
+}
+
+GPROJI_INTERNAL double gproji_side_length(const gproji_filling *f, int32_t side) {
+    int32_t from, to;
+    gproji_side_points(f, side, &from, &to);
+    return gproji_length_between(f, from, to);
+}
+
+/* Which side bears one edge more (+1) or less (-1) best, by its edge length? */
+GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_t *edges, int32_t *change) {
+    int32_t side, best = 0;
+    double least = HUGE_VAL;
+    for (side = 0; side < f->sides; ++side) {
+        double wanted = gproji_side_length(f, side) / f->edge_length;
+        int32_t by = edges[side] > 1 && wanted < edges[side] ? -1 : 1;
+        double off = fabs(log((edges[side] + by) / wanted));
+        if (off < least) least = off, best = side, *change = by;
+    }
+    return best;
+}
+
+/* The edges that strips over nearly flat corners take from the sides: see gproji_inner_lengths. */
+GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken) {
+    int32_t side, flat = 0, many[GPROJI_PATCH_SIDES];
+    for (side = 0; side < f->sides; ++side) {
+        int32_t c = f->corner.data[side];
+        bool is_flat = gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT;
+        if (is_flat) flat |= 1 << side;
+        many[side] = 3; /* more than are taken */
+    }
+    if (!gproji_inner_lengths(f->sides, flat, many, taken)) memcpy(taken, many, sizeof many);
+    for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
+}
+
+/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about
+   the same length. */
+GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
+    int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
+    if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
+    for (side = 0; side < f->sides; ++side) {
+        double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
+        int32_t opposite = (side + 2) % 4;
+        edges[side] = gproji_max(1, (int32_t)(length + 0.5));
+        if (f->sides == 4) {
+            other = gproji_fmin(gproji_side_length(f, opposite) / f->edge_length, GPROJI_FILL_EDGES);
+            if (length < 1.7 * other && other < 1.7 * length)
+                edges[side] = gproji_max(1, (int32_t)(0.5 * (length + other - (taken[side] + taken[opposite])) + 0.5)) +
+                              taken[side];
+        }
+        sum = gproji_min(sum + edges[side], GPROJI_FILL_EDGES + 1);
+        if (edges[side] > edges[longest]) longest = side;
+    }
+    if (sum > GPROJI_FILL_EDGES) return;
+    if (sum % 2) {
+        side = gproji_best_change(f, edges, &change);
+        edges[side] += change, sum += change;
+    }
+    if (sum < 4) edges[longest] += 4 - sum;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *edges) {
+    int32_t side, sum = 0, change = 0;
+    for (side = 0; side < f->sides; ++side) {
+        if (edges[side] < 1)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
+        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
+            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "the sides up to side %d have more than %d edges; use longer edges", side,
+                               (int32_t)GPROJI_FILL_EDGES);
+    }
+    if (sum % 2) {
+        side = gproji_best_change(f, edges, &change);
+        return gproji_fail(
+            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
+            "of %d%s",
+            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+    }
+    if (sum < 4)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
+                           "the sides have %d edges together; quads need at least 4", sum);
+    f->boundary = sum;
+    return GPROJ_OK;
+}
+
+/* The number of edges of each side, checked, into `start`, summed up. */
+GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
+    int32_t side, from, to, *edges;
+    gproj_code code;
+    f->edge_length = f->options.edge_length;
+    if (!(f->edge_length >= 0) || !gproji_is_finite(f->edge_length))
+        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
+                           f->edge_length);
+    if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
+    if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
+    for (side = 0; side < f->sides; ++side) {
+        int32_t n = !f->options.keep_points && f->options.side_count ? f->options.subdivisions[side] : 0;
+        gproji_side_points(f, side, &from, &to);
+        if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
+            return gproji_fail_memory(f->error);
+    }
+    edges = f->start.data + 1;
+    if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
+    code = gproji_check_edges(f, edges);
+    for (side = 0; side < f->sides && !code; ++side) f->start.data[side + 1] += f->start.data[side];
+    return code;
+}
+
+/* The vertices of a side but its last: `edges` equal pieces of its length, or its points. */
+GPROJI_INTERNAL void gproji_divide_side(const gproji_filling *f, int32_t side, double *out) {
+    int32_t edges = f->start.data[side + 1] - f->start.data[side], from, to, i, j;
+    double all, before = 0, step;
+    gproji_side_points(f, side, &from, &to);
+    all = gproji_length_between(f, from, to);
+    step = gproji_length_between(f, from, from + 1);
+    for (i = from, j = 0; j < edges; ++j, out += 3) {
+        const double *p, *q;
+        double at = all * j / edges, t, d[3];
+        while (i + 1 < to && at >= before + step) {
+            before += step, ++i;
+            step = gproji_length_between(f, i, i + 1);
+        }
+        if (f->options.keep_points) i = from + j, at = before;
+        p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
+        t = (at - before) / step;
+        gproji_copy3(t > 1 - 1e-9 ? q : p, out);
+        if (t <= 1e-9 || t > 1 - 1e-9) continue; /* a point of the curve */
+        gproji_sub3(q, p, d);
+        gproji_add_scaled3(t, d, out);
+    }
+}
+
+GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
+    void *block = f->flat;
+    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
+    f->flat = (double *)block;
+    f->flat[2 * (size_t)f->vertices] = x;
+    f->flat[2 * (size_t)f->vertices + 1] = y;
+    ++f->vertices;
+    return true;
+}
+
+/* The side of the edge that begins at a vertex of the boundary. */
+GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
+    int32_t side = 0;
+    while (f->start.data[side + 1] <= vertex) ++side;
+    return side;
+}
+
+/* The vertices of the boundary, and the first patch: all of it. */
+GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
+    gproj_code code = gproji_find_corners(f);
+    int32_t side, i, j;
+    if (!code) code = gproji_divide_sides(f);
+    if (code) return code;
+    f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
+    if (!f->border) return gproji_fail_memory(f->error);
+    for (side = 0; side < f->sides; ++side) gproji_divide_side(f, side, f->border + 3 * (size_t)f->start.data[side]);
+    for (side = 0, i = 0; i < f->boundary; ++i) {
+        double d[3];
+        bool corner = i == f->start.data[side];
+        side += corner;
+        gproji_sub3(f->border + 3 * (size_t)i, f->points, d);
+        if (!gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up)) ||
+            !gproji_ints_add(f->heap, &f->polygon, 2 * i + corner))
+            return gproji_fail_memory(f->error);
+    }
+    if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->boundary) return GPROJ_OK;
+    i = gproji_side_of(f, i), j = gproji_side_of(f, j);
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[i],
+                       "with so few edges side %d meets side %d; divide them finer", i, j);
+}
+
+/* -- cuts -- */
+
+/* A cut through a polygon of the filling: from its place i to its place j. */
+typedef struct gproji_cut_line {
+    int32_t i, j;
+    int32_t edges;
+    double cost;
+} gproji_cut_line;
+
+/* A patch: `count` entries of f->polygon. */
+typedef struct gproji_outline {
+    const gproji_filling *f;
+    int32_t *entry;
+    int32_t count;
+    double edge; /* mean edge length */
+} gproji_outline;
+
+GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
+
+GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) {
+    return gproji_inner_angle(o->f->flat, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
+                              gproji_outline_vertex(o, i + o->count - 1));
+}
+
+GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t from, int32_t to) {
+    int32_t i, n = 0;
+    for (i = from; i < to; ++i) n += o->entry[i % o->count] & 1;
+    return n;
+}
+
+/* How far the angle is from 1, 2 or 3 right angles, as a part of it, squared. */
+GPROJI_INTERNAL double gproji_angle_cost(double angle) {
+    int32_t n = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
+    double off = angle / n / GPROJI_RIGHT - 1;
+    return off * off;
+}
+
+/* Is the cut inside, and how near does it pass other vertices? Its cost for that, or infinity. */
+GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i, int32_t j) {
+    const double *xy = o->f->flat;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), k;
+    double length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge;
+    for (k = 0; k < o->count; ++k) {
+        int32_t p = gproji_outline_vertex(o, k), q = gproji_outline_vertex(o, k + 1);
+        double along, off;
+        if (p == a || p == b) continue;
+        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return HUGE_VAL;
+        along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
+                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
+                length;
+        off = fabs(gproji_turn2(xy, a, b, p)) / length;
+        if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
+    }
+    return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
+}
+
+/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short
+   sides leave no room for others. */
+GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
+    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
+    int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
+    for (i = 1; i < sides; ++i) least = gproji_min(least, length[i]);
+    if (sides == 4) {
+        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
+        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
+    }
+    if (sides % 2 && sides > 1 && gproji_find_strips(sides, length, strip)) {
+        for (i = 0; i < sides && strip[i] > 0; ++i) continue;
+        if (i == sides) return 0.2;
+    }
+    return cost[sides] + (least < 3 ? 0.6 : 0);
+}
+
+/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts
+   that are to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
+                                        bool last) {
+    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    int32_t reflex = 0;
+    if (j - i + edges < 4) return HUGE_VAL;
+    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
+    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
+    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
+    if (n < 2) return gproji_sides_cost(n, length);
+    for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
+        side += k == i ? first : o->entry[k % o->count] & 1;
+        ++length[side % n];
+    }
+    length[(side + last) % n] += edges;
+    return gproji_sides_cost(n, length);
+}
+
+/* Costs of cuts from place i to place j, with numbers of edges of the right parity. */
+GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
+    const double *xy = o->f->flat;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end;
+    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0;
+    bool corner[2][2];
+    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b); /* in the part from i to j */
+    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
+    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
+    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
+    for (end = 0; end < 4; ++end) {
+        double angle = at[end / 2][end % 2];
+        if (!(angle > 0.1)) return;
+        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
+        cost += gproji_angle_cost(angle);
+    }
+    cost += 0.02 * length / o->edge;
+    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
+    if (cost >= best->cost) return;
+    cost += gproji_clearance_cost(o, i, j);
+    if (!(cost < best->cost)) return;
+    wanted = (int32_t)(length / o->edge + 0.5);
+    for (edges = gproji_max(1, wanted - 3); edges <= wanted + 3; ++edges) {
+        double off = log(edges * o->edge / length), all;
+        if ((j - i + edges) % 2) continue;
+        all = cost + 2 * off * off + gproji_part_cost(o, i, j, edges, corner[0][0], corner[1][0]) +
+              gproji_part_cost(o, j, i + o->count, edges, corner[1][1], corner[0][1]);
+        if (all < best->cost) best->i = i, best->j = j, best->edges = edges, best->cost = all;
+    }
+}
+
+/* The best cut from a corner that is reflex, or from any where there are more than 6; cost infinite: none. */
+GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
+    gproji_cut_line best = {0, 0, 0, HUGE_VAL};
+    bool many = gproji_outline_corners(o, 0, o->count) > GPROJI_PATCH_SIDES, reflex = false;
+    int32_t i, j, pass;
+    for (i = 0; i < o->count; ++i) reflex |= (o->entry[i] & 1) && gproji_outline_angle(o, i) > GPROJI_REFLEX;
+    if (!reflex && !many) return best;
+    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass)
+        for (i = 0; i < o->count; ++i) {
+            if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
+            for (j = 0; j < o->count; ++j) {
+                int32_t apart = j > i ? j - i : i - j;
+                if (apart > 1 && apart + 1 < o->count) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
+            }
+        }
+    return best;
+}
+
+/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., forward or backward. */
+GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
+                                     int32_t first, int32_t inner, bool forward) {
+    int32_t k, from = (int32_t)f->polygon.count, to, end;
+    for (k = i; k <= j; ++k)
+        if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
+    to = (int32_t)f->polygon.count - 1;
+    for (k = 0; k < inner; ++k)
+        if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
+    if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    for (end = 0; end < 2; ++end) { /* corners of the part by their angles */
+        int32_t at = end ? to : from;
+        gproji_outline o;
+        o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
+        f->polygon.data[at] &= ~1;
+        f->polygon.data[at] |= gproji_outline_angle(&o, at - from) < GPROJI_OBTUSE;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t count, const gproji_cut_line *cut) {
+    int32_t a = f->polygon.data[start + cut->i] >> 1, b = f->polygon.data[start + cut->j] >> 1, first = f->vertices, k;
+    for (k = 1; k < cut->edges; ++k) { /* from j to i */
+        double t = (double)k / cut->edges;
+        if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                             (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+            return false;
+    }
+    return gproji_add_part(f, start, count, cut->i, cut->j, first, cut->edges - 1, true) &&
+           gproji_add_part(f, start, count, cut->j, cut->i + count, first, cut->edges - 1, false);
+}
+
+/* -- patches -- */
+
+/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are
+   left out; where there are fewer than 2, places in between are taken. `flat`: the bits of those that are flat. */
+GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
+    int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
+    for (; n > GPROJI_PATCH_SIDES; --n) {
+        int32_t flattest = -1;
+        for (i = 0; i < o->count; ++i)
+            if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
+                flattest = i;
+        o->entry[flattest] &= ~1;
+    }
+    for (i = 0; n < 2 && i < o->count; ++i)
+        if (o->entry[i] & 1) break;
+    for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
+    for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
+        if (!(o->entry[i] & 1)) continue;
+        if (o->f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
+        place[k++] = i;
+    }
+    return k;
+}
+
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
+   boundary, or 3 where these are on the curve or a ring along it? `at`: the place of the pattern's first corner.
+   Destroys `uses`. */
+GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
+    int32_t i, side, from = at, *uses = patch->uses.data;
+    for (side = 0; side < patch->sides; ++side)
+        for (i = 0; i < patch->edges[side]; ++i, ++at) {
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
+            uses[v] = -1; /* twice on the boundary is not good */
+        }
+    for (i = 0; i < patch->vertices; ++i)
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
+    return true;
+}
+
+/* Copies a finished patch into the filling. */
+GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *o, int32_t from, gproji_patch *patch) {
+    int32_t *number = patch->uses.data, i, n = (int32_t)patch->loop.count;
+    size_t q;
+    double x = 0, y = 0;
+    for (i = 0; i < patch->vertices; ++i) number[i] = -1;
+    for (i = 0; i < n; ++i) {
+        int32_t v = gproji_outline_vertex(o, from + i);
+        number[patch->loop.data[i]] = v;
+        x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
+    }
+    for (i = 0; i < patch->vertices; ++i) {
+        if (number[i] >= 0) continue;
+        number[i] = f->vertices;
+        if (!gproji_add_flat(f, x, y)) return false;
+    }
+    for (q = 0; q < patch->quad.count; ++q)
+        if (!gproji_ints_add(f->heap, &f->quad, number[patch->quad.data[q]])) return false;
+    return true;
+}
+
+/* Tries a pattern. 1: the patch is built and good; 0: it is not; -1: no memory. Give the patch back in any case. */
+GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_outline *o,
+                                           const int32_t *place, const gproji_pattern *p, const int32_t *length) {
+    int32_t turned[GPROJI_PATCH_SIDES], i;
+    for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
+    if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
+    return gproji_patch_is_good(patch, o, place[p->first]);
+}
+
+/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a
+   ring; at last a ring around one strip. -1: no memory. */
+GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
+                                              int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
+                                              gproji_pattern *chosen) {
+    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
+    memset(chosen, 0, sizeof *chosen);
+    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
+        gproji_find_patterns(c, sides, ring ? length : inner);
+        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c->pattern[i];
+            gproji_patch patch;
+            int32_t outcome;
+            p->ring = ring != 0;
+            for (k = 0; k < sides && !ring; ++k)
+                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
+            outcome = gproji_try_pattern(f, &patch, o, place, p, length);
+            gproji_patch_give(&patch);
+            if (outcome < 0) return -1;
+            if (outcome > 0) *chosen = *p, ++good;
+        }
+    }
+    if (good > 0) return 1;
+    for (i = 0; i < sides; ++i) sum += length[i];
+    chosen->sides = sides;
+    chosen->edges = chosen->rows = 1;
+    chosen->edge[0] = sum / 2 - 1;
+    chosen->bare = chosen->ring = true;
+    return 1;
+}
+
+GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
+    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat, i;
+    int32_t sides = gproji_patch_corners(o, place, &flat);
+    gproji_pattern p;
+    gproji_patch patch;
+    bool done;
+    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
+    if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
+    done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
+    gproji_patch_give(&patch);
+    ++f->leaves;
+    return done;
+}
+
+/* The rings wanted, and what they leave as the first patch. Its outline is near the boundary as yet. */
+GPROJI_INTERNAL bool gproji_add_rings(gproji_filling *f) {
+    int32_t n = f->boundary, ring, i;
+    for (ring = 1; ring <= f->options.rings; ++ring)
+        for (i = 0; i < n; ++i) {
+            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
+                return false;
+        }
+    f->curve_vertices = f->vertices;
+    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
+    return true;
+}
+
+/* Cuts the outline into patches, then fills them: vertices of cuts come before those inside of patches. */
+GPROJI_INTERNAL gproj_code gproji_fill_patches(gproji_filling *f, gproji_candidates *c) {
+    size_t at;
+    int32_t stage, start, k;
+    for (stage = 0; stage < 2; ++stage) {
+        for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+            gproji_outline o;
+            gproji_cut_line cut;
+            if (stage == 1 && f->patch.data[at] < 0) continue; /* it has been cut */
+            o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+            for (k = 0; k < o.count; ++k)
+                o.edge +=
+                    gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+            if (stage == 1) {
+                if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
+                continue;
+            }
+            cut = gproji_find_cut(&o);
+            if (!(cut.cost < HUGE_VAL)) continue;
+            if (!gproji_make_cut(f, start, o.count, &cut)) return gproji_fail_memory(f->error);
+            f->patch.data[at] = -f->patch.data[at];
+        }
+        if (stage == 0) f->cut_vertices = f->vertices;
+    }
+    return GPROJ_OK;
+}
+
+/* -- positions -- */
+
+/* A symmetric matrix given by pairs of unknowns, repeated ones summed, and its factorisation. */
+typedef struct gproji_pairs {
+    gproji_pool pool;
+    gproj_cholesky *cholesky;
+    int32_t unknowns;
+    int64_t count;
+    int32_t *pair;  /* 2 * count: unknowns, negative: there is none */
+    int64_t *start; /* unknowns + 1 */
+    int32_t *row;
+    int64_t *place; /* count: of each pair in `row` and `value`; -1: nowhere */
+    double *value;
+} gproji_pairs;
+
+GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
+    memset(m, 0, sizeof *m);
+    gproji_pool_start(&m->pool, f->heap);
+    m->unknowns = unknowns;
+    m->count = count;
+    m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
+    m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
+    m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
+    m->place = (int64_t *)gproji_pool_take(&m->pool, count, sizeof *m->place);
+    m->value = (double *)gproji_pool_take(&m->pool, count, sizeof *m->value);
+    m->cholesky = gproj_cholesky_create(f->host);
+    return m->pair && m->start && m->row && m->place && m->value && m->cholesky;
+}
+
+GPROJI_INTERNAL void gproji_pairs_give(gproji_pairs *m) {
+    gproj_cholesky_destroy(m->cholesky);
+    gproji_pool_give_all(&m->pool);
+}
+
+/* Sorts the pairs by columns and analyses the pattern. */
+GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
+    int64_t e;
+    int32_t i;
+    for (e = 0; e < m->count; ++e) {
+        int32_t column = gproji_min(m->pair[2 * e], m->pair[2 * e + 1]);
+        if (column >= 0) ++m->start[column + 2];
+    }
+    for (i = 2; i <= m->unknowns; ++i) m->start[i] += m->start[i - 1];
+    for (e = 0; e < m->count; ++e) { /* start[column + 1] moves from the column's beginning to its end */
+        int32_t column = gproji_min(m->pair[2 * e], m->pair[2 * e + 1]);
+        m->place[e] = -1;
+        if (column < 0) continue;
+        m->place[e] = m->start[column + 1]++;
+        m->row[m->place[e]] = gproji_max(m->pair[2 * e], m->pair[2 * e + 1]);
+    }
+    return gproj_cholesky_analyse(m->cholesky, m->unknowns, m->start, m->row, NULL) == GPROJ_OK;
+}
+
+GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
+GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
+
+/* The Laplace equation: each vertex from `fixed` on is the mean of its neighbours. `field` has `fields` numbers a
+   vertex; `side` first the right-hand sides, then the solutions, one after the other. */
+GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pairs *m, int32_t fixed, int32_t fields,
+                                            const double *field, double *side) {
+    int32_t n = (int32_t)f->quad.count, i, k, end;
+    for (i = 0; i < n; ++i) {
+        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m->pair + 6 * (size_t)i;
+        pair[0] = pair[1] = pair[4] = a - fixed;
+        pair[2] = pair[3] = pair[5] = b - fixed;
+        for (end = 0; end < 2; ++end)
+            for (k = 0; k < fields; ++k) {
+                int32_t inner = end ? a : b, outer = end ? b : a;
+                if (inner >= fixed && outer < fixed)
+                    side[(size_t)k * (size_t)m->unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
+            }
+    }
+    if (!gproji_pairs_analyse(m)) return false;
+    for (i = 0; i < 3 * n; ++i)
+        if (m->place[i] >= 0) m->value[m->place[i]] = i % 3 == 2 ? -1 : 1;
+    return gproj_cholesky_factor(m->cholesky, m->value) == GPROJ_FACTORED &&
+           gproj_cholesky_solve(m->cholesky, fields, side, side) == GPROJ_OK;
+}
+
+/* Sets the fields of the vertices from `fixed` on. */
+GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
+    int32_t unknowns = f->vertices - fixed, i, k;
+    gproji_pairs m;
+    double *side = NULL;
+    bool done;
+    if (unknowns == 0) return GPROJ_OK;
+    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)f->quad.count);
+    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
+    done = side && gproji_harmonic_system(f, &m, fixed, fields, field, side);
+    for (i = 0; done && i < unknowns; ++i)
+        for (k = 0; k < fields; ++k)
+            field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];
+    gproji_pairs_give(&m);
+    return done ? GPROJ_OK : gproji_fail_memory(f->error);
+}
+
+/* The distortion of the mesh in the plane. For a corner at p with neighbours q and r of a quad of wanted edge s, with
+   a = (q - p) / s, b = (r - p) / s and D = det(a, b):
+       (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X),  X = (D + sqrt(D^2 + epsilon^2)) / 2,
+   least for a square of edge s and, where epsilon = 0, infinite at D = 0. */
+typedef struct gproji_untangling {
+    gproji_filling *f;
+    gproji_pairs m;
+    double *edge;     /* of each quad: s */
+    double *gradient; /* 2 a vertex that moves */
+    double *step;
+    double *start; /* flat positions before a step */
+    double epsilon;
+    double least; /* D of the worst corner, at the last evaluation */
+    bool failed;  /* no memory to factor */
+} gproji_untangling;
+
+#define GPROJI_AREA_WEIGHT 0.3 /* lambda */
+
+/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X)
+   with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
+GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
+                                                double hessian[4][4]) {
+    double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
+    double turn[4], weight = GPROJI_AREA_WEIGHT;
+    int32_t i, j;
+    x = d > 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d); /* without cancellation */
+    square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
+    value = 0.5 * (square + weight * (1 + d * d)) / x;
+    if (!gradient) return value;
+    bend = 1 / root; /* X' / X */
+    slope = weight * d / x - value * bend;
+    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0];
+    for (i = 0; i < 4; ++i) gradient[i] = z[i] / x + slope * turn[i];
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4; ++j) {
+            double across = square * bend * bend + weight * ((1 - bend * d) * (1 - bend * d) + bend * bend);
+            hessian[i][j] = ((i == j) - bend * (z[i] * turn[j] + turn[i] * z[j]) + across * turn[i] * turn[j]) / x;
+        }
+    return value;
+}
+
+GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
+    const int32_t *quad = u->f->quad.data;
+    const double *p = u->f->flat + 2 * (size_t)quad[corner],
+                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
+                 *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
+    double s = u->edge[corner / 4];
+    z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
+}
+
+/* The sum over all corners, and the worst D. */
+GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
+    int32_t n = (int32_t)u->f->quad.count, c;
+    double sum = 0, z[4];
+    u->least = HUGE_VAL;
+    for (c = 0; c < n; ++c) {
+        gproji_corner_edges(u, c, z);
+        u->least = gproji_fmin(u->least, z[0] * z[3] - z[1] * z[2]);
+        sum += gproji_corner_distortion(z, u->epsilon, NULL, NULL);
+    }
+    return sum;
+}
+
+/* Adds one quad's gradient and Hessian: 8 numbers, x and y of its vertices. */
+GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
+    double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
+    int32_t corner, i, j, k = 0;
+    for (corner = 0; corner < 4; ++corner) { /* z = (q, r - p, p) / s: each of them in two places */
+        int32_t p = corner, ends[2], a, b;
+        ends[0] = (corner + 1) % 4, ends[1] = (corner + 3) % 4;
+        gproji_corner_edges(u, 4 * quad + corner, z);
+        gproji_corner_distortion(z, u->epsilon, g, h);
+        for (i = 0; i < 4; ++i) {
+            a = 2 * ends[i / 2] + i % 2;
+            gradient[a] += g[i] / s, gradient[2 * p + i % 2] -= g[i] / s;
+            for (j = 0; j < 4; ++j) {
+                double value = h[i][j] / (s * s);
+                b = 2 * ends[j / 2] + j % 2;
+                hessian[a][b] += value, hessian[a][2 * p + j % 2] -= value;
+                hessian[2 * p + i % 2][b] -= value, hessian[2 * p + i % 2][2 * p + j % 2] += value;
+            }
+        }
+    }
+    for (i = 0; i < 8; ++i) {
+        int32_t v = u->f->quad.data[4 * quad + i / 2] - u->f->boundary;
+        if (v >= 0) u->gradient[2 * v + i % 2] += gradient[i];
+        for (j = 0; j <= i; ++j, ++k) {
+            int64_t place = u->m.place[GPROJI_QUAD_ENTRIES * (int64_t)quad + k];
+            if (place >= 0) u->m.value[place] = hessian[i][j];
+        }
+    }
+}
+
+/* A step of Newton's method, shortened until the distortion is less. False where it gains less than this part of it. */
+GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
+    gproji_filling *f = u->f;
+    size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
+    int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
+    gproj_factor_outcome outcome;
+    memset(u->gradient, 0, n * sizeof *u->gradient);
+    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
+    outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
+    u->failed = outcome == GPROJ_FACTOR_FAILED;
+    if (outcome != GPROJ_FACTORED) return false;
+    gproj_cholesky_solve(u->m.cholesky, 1, u->gradient, u->step);
+    before = gproji_distortion(u);
+    slope = gproji_dot(u->gradient, u->step, n);
+    memcpy(u->start, moving, n * sizeof *moving);
+    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
+        for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
+        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
+    }
+    memcpy(moving, u->start, n * sizeof *moving);
+    gproji_distortion(u);
+    return false;
+}
+
+/* The wanted edge of each quad: that of the boundary, harmonic inside. */
+GPROJI_INTERNAL gproj_code gproji_find_sizes(gproji_untangling *u) {
+    gproji_filling *f = u->f;
+    int32_t i, quads = (int32_t)f->quad.count / 4;
+    double *size = u->start; /* has room for it */
+    gproj_code code;
+    for (i = 0; i < f->boundary; ++i)
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
+    code = gproji_fill_harmonically(f, f->boundary, 1, size);
+    for (i = 0; i < quads && !code; ++i) {
+        const int32_t *v = f->quad.data + 4 * (size_t)i;
+        u->edge[i] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
+    }
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling *u) {
+    int32_t quads = (int32_t)f->quad.count / 4, q, i, j, n;
+    gproj_code code = gproji_find_sizes(u);
+    if (code) return code;
+    for (q = 0, n = 0; q < quads; ++q)
+        for (i = 0; i < 8; ++i)
+            for (j = 0; j <= i; ++j, ++n) {
+                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
+                u->m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
+                u->m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
+            }
+    if (!gproji_pairs_analyse(&u->m)) return gproji_fail_memory(f->error);
+    u->epsilon = 1;
+    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
+        if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u->failed) return gproji_fail_memory(f->error);
+        if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
+        u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
+    }
+    return GPROJ_OK;
+}
+
+/* Do all corners of all quads turn left? */
+GPROJI_INTERNAL bool gproji_is_untangled(const gproji_filling *f) {
+    int32_t n = (int32_t)f->quad.count, i;
+    for (i = 0; i < n; ++i)
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                           f->quad.data[gproji_quad_previous(i)]) > 0))
+            return false;
+    return true;
+}
+
+GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
+    int32_t unknowns = 2 * (f->vertices - f->boundary);
+    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
+    gproji_untangling u;
+    memset(&u, 0, sizeof u);
+    u.f = f;
+    if (code || unknowns == 0) return code;
+    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)(f->quad.count / 4))) {
+        u.edge = (double *)gproji_pool_take(&u.m.pool, (int64_t)f->quad.count / 4, sizeof *u.edge);
+        u.gradient = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.gradient);
+        u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
+        u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
+    }
+    code = u.edge && u.gradient && u.step && u.start ? gproji_untangle(f, &u) : gproji_fail_memory(f->error);
+    gproji_pairs_give(&u.m);
+    return code;
+}
+
+/* -- the mesh -- */
+
+/* Positions in space: the curve at the boundary; inside those of the plane, with harmonic heights. */
+GPROJI_INTERNAL gproj_code gproji_lift_vertices(gproji_filling *f, double *height, double *position) {
+    int32_t v;
+    gproj_code code;
+    for (v = 0; v < f->boundary; ++v) {
+        double d[3];
+        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
+        height[v] = gproji_dot3(d, f->normal);
+    }
+    code = gproji_fill_harmonically(f, f->boundary, 1, height);
+    memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    for (v = f->boundary; v < f->vertices && !code; ++v) {
+        double *out = position + 3 * (size_t)v;
+        gproji_copy3(f->points, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(height[v], f->normal, out);
+    }
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
+    int32_t faces = (int32_t)f->quad.count / 4, side, i;
+    gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
+    gproji_soup soup;
+    gproji_pool pool;
+    double *height, *position;
+    int32_t *degree;
+    bool taken;
+    gproj_code code;
+    gproji_pool_start(&pool, f->heap);
+    height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
+    position = (double *)gproji_pool_take(&pool, 3 * (int64_t)f->vertices, sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, faces, sizeof *degree);
+    taken = height && position && degree && gproji_ints_add(f->heap, &start, 0);
+    for (side = 0; taken && side < f->sides; ++side) {
+        for (i = f->start.data[side]; taken && i <= f->start.data[side + 1]; ++i)
+            taken = gproji_ints_add(f->heap, &line, i % f->boundary);
+        taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
+    }
+    code = taken ? gproji_lift_vertices(f, height, position) : gproji_fail_memory(f->error);
+    if (!code) {
+        gproji_fill(degree, faces, 4);
+        soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
+        soup.position = position, soup.face_degree = degree, soup.face_vertex = f->quad.data;
+        code = gproji_mesh_build(object, &soup, f->error);
+    }
+    if (!code) code = gproji_mesh_set_polylines(object, f->sides, start.data, line.data, f->error);
+    gproji_ints_give(f->heap, &line);
+    gproji_ints_give(f->heap, &start);
+    gproji_pool_give_all(&pool);
+    return code;
+}
+
+GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
+    int32_t i, n = (int32_t)f->quad.count;
+    info->boundary_count = f->boundary;
+    info->side_count = f->sides;
+    info->patch_count = f->leaves;
+    for (i = f->boundary; i < f->vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(mesh, i);
+        info->irregular_count += valence != 4;
+        info->min_valence = i == f->boundary ? valence : gproji_min(info->min_valence, valence);
+        info->max_valence = gproji_max(info->max_valence, valence);
+    }
+    for (i = 0; i < n; ++i) {
+        double angle = gproji_inner_angle(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                                          f->quad.data[gproji_quad_previous(i)]) *
+                       57.29577951308232;
+        if (i == 0 || angle < info->min_angle) info->min_angle = angle;
+        if (i == 0 || angle > info->max_angle) info->max_angle = angle;
+    }
+}
+
+/* The largest valence inside. */
+GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
+    int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    size_t i;
+    if (!count) return gproji_fail_memory(f->error);
+    for (*most = 0, i = 0; i < f->quad.count; ++i)
+        if (f->quad.data[i] >= f->boundary) *most = gproji_max(*most, ++count[f->quad.data[i]]);
+    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    return GPROJ_OK;
+}
+
+/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the
+   right way up. Sets whether it is good. */
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
+    int32_t most = 0;
+    gproj_code code;
+    f->polygon.count = (size_t)f->boundary;
+    f->patch.count = 1;
+    f->patch.data[0] = f->boundary;
+    f->quad.count = 0;
+    f->vertices = f->boundary;
+    f->leaves = 0;
+    *good = false;
+    code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
+    if (!code) code = gproji_find_valence(f, &most);
+    if (code || most > valence) return code;
+    code = gproji_place_vertices(f);
+    *good = gproji_is_untangled(f);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candidates *c) {
+    static const int32_t valence[3] = {5, 6, INT32_MAX};
+    int32_t variant = f->options.variant, pass, tries;
+    for (pass = 0; pass < 3; ++pass)
+        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries; ++tries) {
+            bool good;
+            gproj_code code;
+            f->options.variant = variant + tries;
+            code = gproji_try_filling(f, c, valence[pass], &good);
+            if (code || good) return code;
+        }
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                       "no filling without a quad turned over was found; divide the sides finer or mark other corners");
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
+    gproji_candidates *c;
+    gproj_code code = gproji_check_curve(f);
+    if (!code) code = gproji_divide_curve(f);
+    if (code) return code;
+    c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
+    code = c ? gproji_fill_outline(f, c) : gproji_fail_memory(f->error);
+    gproji_give(f->heap, c, 1, sizeof *c);
+    if (!code) code = gproji_build_filling(f, object);
+    if (!code) gproji_describe_filling(f, &object->mesh, info);
+    return code;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
+                                      gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_filling f;
+    gproj_fill_info found;
+    gproj_code code;
+    if (!object) return NULL;
+    memset(&f, 0, sizeof f);
+    memset(&found, 0, sizeof found);
+    f.heap = &object->heap, f.host = host, f.error = error;
+    f.count = count, f.points = points;
+    if (options) f.options = *options;
+    code = gproji_fill_curve(&f, object, &found);
+    gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
+    gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
+    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
+    gproji_ints_give(f.heap, &f.corner);
+    gproji_ints_give(f.heap, &f.start);
+    gproji_ints_give(f.heap, &f.polygon);
+    gproji_ints_give(f.heap, &f.patch);
+    gproji_ints_give(f.heap, &f.quad);
+    if (info) *info = found;
+    return gproji_mesh_done(object, code);
 }
 
 /* ============================================================================================================
