@@ -1997,6 +1997,51 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->allocations += part.allocations;
 }
 
+/* -- pools -- */
+
+/* A pool holds the blocks of one piece of work, all given back by one call. */
+enum {
+    GPROJI_POOL_BLOCKS = 48
+};
+typedef struct gproji_pool {
+    gproji_heap *heap;
+    int32_t count;
+    void *block[GPROJI_POOL_BLOCKS];
+    size_t bytes[GPROJI_POOL_BLOCKS];
+} gproji_pool;
+
+GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
+    pool->heap = heap;
+    pool->count = 0;
+}
+
+GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
+    while (pool->count > 0) {
+        pool->count--;
+        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
+    }
+}
+
+/* NULL when there is no memory, also where the count is negative or too large for the address space. */
+GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+    size_t bytes;
+    void *block;
+    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
+    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
+    bytes = gproji_bytes((size_t)count, size);
+    block = gproji_take(pool->heap, bytes, 1);
+    if (!block) return NULL;
+    pool->block[pool->count] = block;
+    pool->bytes[pool->count++] = bytes;
+    return block;
+}
+
+GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+    void *block = gproji_pool_take(pool, count, size);
+    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    return block;
+}
+
 /* ============================================================================================================
    >>error   One door for all failures. Uses platform, number. */
 
@@ -2922,49 +2967,6 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
    ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
    mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
    are broken by the order in which nodes reach a degree list. */
-
-/* A pool holds the blocks of one piece of work, all given back by one call. */
-enum {
-    GPROJI_POOL_BLOCKS = 48
-};
-typedef struct gproji_pool {
-    gproji_heap *heap;
-    int32_t count;
-    void *block[GPROJI_POOL_BLOCKS];
-    size_t bytes[GPROJI_POOL_BLOCKS];
-} gproji_pool;
-
-GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
-    pool->heap = heap;
-    pool->count = 0;
-}
-
-GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
-    while (pool->count > 0) {
-        pool->count--;
-        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
-    }
-}
-
-/* NULL when there is no memory, also where the count is negative or too large for the address space. */
-GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes;
-    void *block;
-    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
-    bytes = gproji_bytes((size_t)count, size);
-    block = gproji_take(pool->heap, bytes, 1);
-    if (!block) return NULL;
-    pool->block[pool->count] = block;
-    pool->bytes[pool->count++] = bytes;
-    return block;
-}
-
-GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
-    void *block = gproji_pool_take(pool, count, size);
-    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
-    return block;
-}
 
 /* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
    a neighbour of each of them. */
@@ -5927,7 +5929,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 }
 
 /* ============================================================================================================
-   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, ordering (pools), cholesky.
+   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, cholesky.
 
    An interior-point method finds which variables are at their bounds; then Newton steps on the others, with exchanges
    of the few that were mistaken, make it exact. All matrices are
@@ -12102,7 +12104,7 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 }
 
 /* ============================================================================================================
-   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, ordering (pools), mesh,
+   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh,
    surface (polygons).
 
    Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them
@@ -14373,7 +14375,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 }
 
 /* ============================================================================================================
-   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, ordering (pools), cholesky, mesh,
+   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, cholesky, mesh,
    text (growing arrays), hierarchy.
 
    A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by

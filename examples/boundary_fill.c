@@ -50,16 +50,17 @@ static gproj_result lift(gproj_mesh *mesh, double height) {
     return result;
 }
 
-/* Planar panels on the same boundary. */
+/* Planar panels with the boundary on the curve: of all such meshes the one that is fairest, without being far away. */
 static gproj_result make_planar(gproj_mesh *mesh) {
     gproj_form *form = gproj_form_create(mesh, NULL);
-    gproj_schedule fading = {0.2, 0.9, 10};
+    gproj_solve_options options = {0};
     gproj_result result;
     gproj_add_planarity(form, 1);
-    gproj_add_fixed_boundary(form, 1);
-    gproj_set_schedule(form, gproj_add_fairness(form, 1), fading);
+    gproj_add_gliding_boundary(form, 1);
+    gproj_add_fairness(form, 0.3);
     gproj_add_closeness(form, 0.05);
-    result = gproj_solve(form, 40, NULL);
+    options.nearest = true;
+    result = gproj_solve(form, 60, &options);
     gproj_form_destroy(form);
     return result;
 }
