@@ -11,8 +11,8 @@
      projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (you can change them:
-       >>api-subdivide, >>api-edit, >>api-fill);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them see
+       also >>api-edit, >>api-subdivide and >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
