@@ -7,11 +7,13 @@
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
      machine precision, and you get an honest verdict: what holds, how exactly, and where it does not. For editors:
      vertices are dragged at screen rate while everything holds, solves go on frame by frame, states are saved for undo.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, closest points, a sparse Cholesky factorisation,
-     least squares with bounds, and projection onto any system of quadratic equations and inequalities.
+     Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their combinatorics, closed
+     curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with bounds, and
+     projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw or remesh: it moves vertices and keeps the combinatorics as they are;
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them see
+       also >>api-edit, >>api-subdivide and >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -63,9 +65,12 @@
        >>api-least-squares  linear least squares with bounds, usable by itself
        >>api-system     quadratic equations and guided projection, without meshes
        >>api-mesh       half-edge meshes, OBJ and OFF
+       >>api-edit       changes of a mesh's combinatorics
+       >>api-subdivide  subdivision, and how fine meshes follow their cages
        >>api-reference  curves and surfaces with closest points
        >>api-measure    planarity, deviation, folds, statistics
        >>api-offset     parallel meshes at constant distance, supports
+       >>api-fill       meshes of quads from closed curves
        >>api-form       form-finding: a mesh, what must hold, what is wished
        >>api-statics    forces in the edges of a form
        >>api-drag       dragging handles
@@ -79,7 +84,8 @@
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
        >>dense          panels and update matrices
-       >>ordering       minimum degree, nested dissection
+       >>ordering       condensation, minimum degree
+       >>dissection     nested dissection
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
        >>least-squares  linear least squares with bounds
@@ -87,11 +93,14 @@
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
        >>text           OBJ and OFF
+       >>subdivide      subdivision by stencils
        >>hierarchy      bounding boxes
        >>curve          polylines
        >>surface        reference surfaces
+       >>edit           changes of the combinatorics
        >>measure        what a mesh is like
        >>offset         parallel meshes and what is between them
+       >>fill           closed curves filled with quads
        >>form           a mesh and its system
        >>catalogue      the constraints and wishes
        >>statics        equilibrium, bounds on forces, their start
@@ -281,8 +290,9 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_DISSECTION, /* nested dissection of the compressed graph, approximate minimum degree within its parts */
-    GPROJ_ORDERING_AMD,        /* approximate minimum degree alone */
+    GPROJ_ORDERING_BEST,       /* the better of the next two, if dissection is likely to pay in four factorisations */
+    GPROJ_ORDERING_AMD,        /* approximate minimum degree */
+    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the middle */
     GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
     GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
@@ -449,7 +459,7 @@ typedef struct gproj_group {
     const char *name; /* for reports, e.g. "planarity"; copied, cut to GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
-       which costs one more solve per row. */
+       which costs half a solve more per row. */
     bool global;
     gproj_place place; /* what the element numbers of its rows count */
     gproj_schedule schedule;
@@ -678,6 +688,206 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 #endif
 
 /* ------------------------------------------------------------------------------------------------------------
+   >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
+
+   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy of them that can be changed, each change in time
+   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as
+   often as wanted, and says where each element has gone:
+
+       gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
+       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
+       gproj_edit_split_face(edit, 4, v, 23, NULL);                  // from there across face 4 to vertex 23
+       gproj_mesh *after = gproj_edit_mesh(edit, NULL, NULL);
+       handle = edit->vertex_number[handle];                         // a vertex of `mesh`, or v, in `after`
+       gproj_edit_destroy(edit);
+
+   NUMBERS  Vertices, edges and faces of the mesh keep their numbers in the edit, whatever is done; new elements get the
+   following ones, and numbers of removed ones are not given again. The number of a vertex or edge that was merged into
+   another one stands for that one, in all functions here; of the two the lower number stays.
+   REFUSALS  After each change the edit is an orientable manifold of the kind that gproj_mesh_create accepts. A change
+   that would end that is refused: it returns -1, with an error that names the element, and the edit is as it was, as it
+   is when there is no memory. A refusal has no consequences for later changes. `error` may be NULL.
+   POLYLINES  Those of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new
+   vertex. */
+
+/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those
+   of gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
+   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge
+   h / 2. */
+typedef struct gproj_edit {
+    int32_t vertex_count; /* numbers given so far, those of removed elements included */
+    int32_t edge_count;
+    int32_t face_count;
+
+    double *position;               /* 3 * vertex_count */
+    const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1 */
+    const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
+    const int32_t *face_degree;     /* number of corners */
+    const int32_t *face_parent;     /* the face of the first mesh of which this one is a part */
+
+    const int32_t *next; /* of each of the 2 * edge_count half-edges, as in gproj_mesh */
+    const int32_t *prev;
+    const int32_t *origin;
+    const int32_t *face;
+
+    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: for merged
+       elements that of what they were merged into, -1 where nothing is left. NULL before. */
+    const int32_t *vertex_number;
+    const int32_t *edge_number;
+    const int32_t *face_number;
+} gproj_edit;
+
+/* The mesh is copied. */
+GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
+GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
+GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
+
+/* A mesh of what the edit is now, its elements in the order of their numbers (edges in that of all meshes: as they
+   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is
+   left is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
+GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
+
+/* The vertex that this number stands for: itself, or what it was merged into; -1 out of range. */
+GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex);
+/* The edge between two vertices; -1: none. */
+GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other);
+
+/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one
+   corner more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new
+   vertex. */
+GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part
+   is the last face. Refused where the corners have an edge already. Returns the new edge. */
+GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
+                                        gproj_error *error);
+
+/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes
+   from i to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be
+   pinched or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or
+   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a
+   component would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns
+   the vertex. */
+GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Of all ways to do so, one is taken whose
+   triangles are not turned over in the plane orthogonal to the face's vectorial area (if there is one: the face may be
+   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of (a^2 + b^2
+   + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are left
+   (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new faces. */
+GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
+
+/* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
+   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs;
+   all can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
+
+   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction
+   in which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads
+   stay quads; at the ends of the strip triangles are cut in two, and faces with 5 or more corners get one more. Refused
+   where no quad is at the edge, and where a closed strip has two quads only. Returns the new part of the edge, from the
+   new vertex to j: a rung of the new strip. */
+GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva,
+   Shepherd, Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish.
+   Refused where the mesh would be pinched or folded onto itself, as for a single edge. Takes time in the size of the
+   mesh. After gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for the numbers
+   of faces. Returns the number of rungs. */
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
+
+/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a
+   face whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces
+   come, in their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices;
+   then the corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face,
+   which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices
+   do. `vertex_face`: vertex_count numbers to be filled with the dual face of each vertex, -1 for those without a face;
+   may be NULL. The dual of the dual of a closed mesh has the combinatorics of the mesh. Refused where two faces have
+   more than one edge in common, for their vertices would have two edges. */
+GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
+                                      gproj_error *error);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
+
+   The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
+   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count +
+   edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face f,
+   at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
+       Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
+       Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
+   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its polylines
+   are refined in it, the rest of the polyline is kept.
+
+   Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
+       face            mean of its corners
+       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+                       Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
+       vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
+                       Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
+       vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
+       vertex, S > 2   v, as for corners
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and vertices
+   are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that become smooth
+   there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the boundary. */
+typedef enum gproj_scheme {
+    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
+    GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
+    GPROJ_SCHEME_FORCE_INT = 0x7fffffff
+} gproj_scheme;
+
+typedef struct gproj_subdivide_options {
+    gproj_scheme scheme;
+    int32_t levels;        /* 1 to 14; 0 means 1 */
+    int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
+       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    int32_t crease_count;
+    const int32_t *creases;
+    const double *sharpness;
+    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+       well, unless round_corners. */
+    int32_t corner_count;
+    const int32_t *corners;
+    bool round_corners;
+} gproj_subdivide_options;
+
+/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
+   the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
+   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
+   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
+   are owned by the stencil. */
+typedef struct gproj_stencil {
+    int32_t row_count;
+    int32_t column_count;
+    const int64_t *start; /* row_count + 1 */
+    const int32_t *column;
+    const double *weight;
+} gproj_stencil;
+
+/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil` may
+   be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Of
+   one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels take
+   the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level.
+   Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme
+   GPROJ_ERROR_ARGUMENT where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners;
+   GPROJ_ERROR_SIZE, before memory is taken, where a level would have more than a mesh can. */
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil);
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil);
+/* fine = stencil * coarse, for any data with `size` numbers a vertex: 3 for positions. coarse: size * column_count
+   numbers, fine: size * row_count others. */
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine);
+/* The stencil that leads through both: fine * coarse, where the columns of `fine` are the rows of `coarse`. */
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error);
+/* The transposed matrix: row j is what coarse vertex j moves. When that moves by d, fine vertex column[k] moves by
+   weight[k] * d. Its rows do not sum to 1. */
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error);
+
+/* ------------------------------------------------------------------------------------------------------------
    >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
 typedef struct gproj_curve gproj_curve;
 typedef struct gproj_surface gproj_surface;
@@ -791,6 +1001,54 @@ typedef struct gproj_offset_measures {
 
 /* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
+
+/* ------------------------------------------------------------------------------------------------------------
+   >>api-fill   From a closed curve to a mesh of quads that fills it.
+
+   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
+   numbers can be filled whose sum is even and at least 4: the boundary of a mesh of quads has an even number of edges.
+   Inside, vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite
+   sides of 4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
+
+   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not meet
+   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are
+   those of the curve at the boundary, and harmonic inside: each vertex is at the mean height of its neighbours. */
+typedef struct gproj_fill_options {
+    int32_t corner_count;        /* 0: where the curve turns by more than 45 degrees (see gproj_form_is_corner) */
+    const int32_t *corners;      /* numbers of points, ascending */
+    int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
+    const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
+    double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
+    bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
+    int32_t rings;               /* rows of quads that run around along the whole boundary */
+    int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
+} gproj_fill_options;
+
+/* What has been made. */
+typedef struct gproj_fill_info {
+    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
+    int32_t side_count;      /* polylines of the mesh: side j from its first to its last vertex */
+    int32_t patch_count;     /* patches of at most 6 sides that the curve was cut into */
+    int32_t irregular_count; /* inner vertices whose valence is not 4 */
+    int32_t min_valence;     /* of inner vertices; 0 where there are none */
+    int32_t max_valence;
+    double min_angle; /* of the quads' corners, in degrees, seen along the normal */
+    double max_angle;
+} gproj_fill_info;
+
+/* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
+   the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
+   its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
+   fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
+   A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
+   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where the
+   cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves
+   nothing better.
+   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
+   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
+   with an odd sum, with what to change, and curves for which no filling was found. */
+GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
+                                      gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
@@ -1871,6 +2129,51 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->allocations += part.allocations;
 }
 
+/* -- pools -- */
+
+/* A pool holds the blocks of one piece of work, all given back by one call. */
+enum {
+    GPROJI_POOL_BLOCKS = 48
+};
+typedef struct gproji_pool {
+    gproji_heap *heap;
+    int32_t count;
+    void *block[GPROJI_POOL_BLOCKS];
+    size_t bytes[GPROJI_POOL_BLOCKS];
+} gproji_pool;
+
+GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
+    pool->heap = heap;
+    pool->count = 0;
+}
+
+GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
+    while (pool->count > 0) {
+        pool->count--;
+        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
+    }
+}
+
+/* NULL when there is no memory, also where the count is negative or too large for the address space. */
+GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+    size_t bytes;
+    void *block;
+    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
+    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
+    bytes = gproji_bytes((size_t)count, size);
+    block = gproji_take(pool->heap, bytes, 1);
+    if (!block) return NULL;
+    pool->block[pool->count] = block;
+    pool->bytes[pool->count++] = bytes;
+    return block;
+}
+
+GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+    void *block = gproji_pool_take(pool, count, size);
+    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    return block;
+}
+
 /* ============================================================================================================
    >>error   One door for all failures. Uses platform, number. */
 
@@ -2794,57 +3097,13 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
 }
 
 /* ============================================================================================================
-   >>ordering   The order of elimination: minimum degree, nested dissection. Uses platform, memory.
+   >>ordering   The order of elimination: graphs of nodes, condensation, minimum degree. Uses platform, memory.
 
    A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
-   variables. First go nodes of small degree; what remains is cut by nested dissection, and the parts are ordered by
-   minimum degree. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
+   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
    ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
    mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
    are broken by the order in which nodes reach a degree list. */
-
-/* A pool holds the blocks of one piece of work, all given back by one call. */
-enum {
-    GPROJI_POOL_BLOCKS = 48
-};
-typedef struct gproji_pool {
-    gproji_heap *heap;
-    int32_t count;
-    void *block[GPROJI_POOL_BLOCKS];
-    size_t bytes[GPROJI_POOL_BLOCKS];
-} gproji_pool;
-
-GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
-    pool->heap = heap;
-    pool->count = 0;
-}
-
-GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
-    while (pool->count > 0) {
-        pool->count--;
-        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
-    }
-}
-
-/* NULL when there is no memory, also where the count is negative or too large for the address space. */
-GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes;
-    void *block;
-    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
-    bytes = gproji_bytes((size_t)count, size);
-    block = gproji_take(pool->heap, bytes, 1);
-    if (!block) return NULL;
-    pool->block[pool->count] = block;
-    pool->bytes[pool->count++] = bytes;
-    return block;
-}
-
-GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
-    void *block = gproji_pool_take(pool, count, size);
-    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
-    return block;
-}
 
 /* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
    a neighbour of each of them. */
@@ -2854,6 +3113,11 @@ typedef struct gproji_graph {
     const int32_t *adjacent;
     const int32_t *weight;
 } gproji_graph;
+
+/* sum over the columns of a front, or of a node, of (column count)^2 */
+GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
+    return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
+}
 
 /* The state of the elimination. Each of the graph's nodes is, at any time, one of
      variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; its list in `space` has first
@@ -2873,34 +3137,27 @@ typedef struct gproji_amd {
     int32_t nodes;
     int32_t total;  /* weight of all nodes that are not dense */
     int32_t left;   /* of it, not yet eliminated */
-    int32_t lowest; /* no variable in the lists has a smaller degree */
-    int32_t now;    /* the stage */
-    int32_t turn;   /* weight of the variables of this stage that are not yet eliminated */
-    int64_t free;   /* space[free..size-1] is unused */
+    int32_t lowest; /* no variable has a smaller degree */
+    double flops; /* of what is eliminated: sum of (column count)^2; the dense nodes are taken for neighbours of all */
+    int64_t free; /* space[free..size-1] is unused */
     int64_t size;
-    int64_t stamp;        /* marks below it are old */
-    int32_t *space;       /* size: all lists */
-    int64_t *list;        /* nodes: where the list begins */
-    int32_t *length;      /* nodes */
-    int32_t *elements;    /* nodes: of a variable, the elements at the head of its list */
-    int32_t *weight;      /* nodes */
-    int32_t *degree;      /* nodes: variable: bound of the external degree; element: weight of its list */
-    unsigned char *kind;  /* nodes */
-    int64_t *mark;        /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
-    int32_t *head;        /* buckets: first variable of a degree, or -1; used for hash values while comparing */
-    int32_t buckets;      /* total + 1 */
-    int32_t *next;        /* nodes: in a degree list, in a hash list */
-    int32_t *previous;    /* nodes: in a degree list; while comparing, the hash value */
-    int32_t *hash_head;   /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;        /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;       /* nodes: next node of that chain, or -1 */
-    const int32_t *stage; /* nodes: when it is its turn; NULL: all at once */
+    int64_t stamp;       /* marks below it are old */
+    int32_t *space;      /* size: all lists */
+    int64_t *list;       /* nodes: where the list begins */
+    int32_t *length;     /* nodes */
+    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
+    int32_t *weight;     /* nodes */
+    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
+    unsigned char *kind; /* nodes */
+    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t buckets;     /* total + 1 */
+    int32_t *next;       /* nodes: in a degree list, in a hash list */
+    int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
+    int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
+    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
+    int32_t *chain;      /* nodes: next node of that chain, or -1 */
 } gproji_amd;
-
-/* Is it the turn of variable i? Only then it is in a degree list. */
-GPROJI_INTERNAL bool gproji_amd_in_turn(const gproji_amd *amd, int32_t i) {
-    return !amd->stage || amd->stage[i] == amd->now;
-}
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
     int32_t d = amd->degree[i], first = amd->head[d];
@@ -2962,7 +3219,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
         amd->weight[i] = -weight;
         amd->degree[pivot] += weight;
         amd->space[amd->free++] = i;
-        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_remove(amd, i);
+        gproji_amd_list_remove(amd, i);
     }
 }
 
@@ -3009,7 +3266,7 @@ GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
 
 /* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
    not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
-   -1 when the variable can be eliminated with the pivot: it is its turn, and it has nothing outside the new element. */
+   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -3036,7 +3293,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
         hash += (uint32_t)j;
         list[to++] = j;
     }
-    if (degree == 0 && gproji_amd_in_turn(amd, i)) return -1;
+    if (degree == 0) return -1;
     /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
     GPROJ_ASSERT(to < own);
     moved = list[heads];
@@ -3055,7 +3312,6 @@ GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j
     const int32_t *list = amd->space + amd->list[j];
     int32_t k;
     if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
-    if (amd->stage && amd->stage[i] != amd->stage[j]) return false;
     for (k = 1; k < amd->length[j]; ++k)
         if (amd->mark[list[k]] != amd->stamp) return false;
     return true;
@@ -3083,7 +3339,6 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t k, to = 0, *element;
     amd->left -= amd->weight[pivot];
-    amd->turn -= amd->weight[pivot];
     gproji_amd_form_element(amd, pivot);
     element = amd->space + amd->list[pivot];
     gproji_amd_scan(amd, pivot);
@@ -3092,7 +3347,6 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         if (hash < 0) { /* mass elimination */
             int32_t weight = -amd->weight[i];
             amd->left -= weight;
-            amd->turn -= weight;
             amd->degree[pivot] -= weight;
             amd->weight[pivot] += weight;
             gproji_amd_absorb(amd, pivot, i);
@@ -3118,12 +3372,13 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         degree = (int64_t)amd->degree[i] + amd->degree[pivot] - weight;
         if (degree > amd->left - weight) degree = amd->left - weight;
         amd->degree[i] = (int32_t)degree;
-        if (gproji_amd_in_turn(amd, i)) gproji_amd_list_add(amd, i);
+        gproji_amd_list_add(amd, i);
         element[to++] = i;
     }
     if (amd->list[pivot] + amd->length[pivot] == amd->free) amd->free = amd->list[pivot] + to;
     amd->length[pivot] = to;
     if (to == 0) amd->kind[pivot] = GPROJI_AMD_GONE;
+    amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
 }
 
 GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph) {
@@ -3154,10 +3409,11 @@ GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t n
     return degree;
 }
 
-/* Dense nodes, more than 10 sqrt(n) variables next to them, are put last without looking at them: they would make every
-   degree meaningless and the search slow. */
+/* Dense nodes have more than 10 sqrt(n) variables next to them. They are put last without looking at them: they would
+   make every degree and distance meaningless and the search slow. */
 GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
 
+/* Fills the lists with all nodes that are not dense. */
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
     double dense = gproji_dense_degree(amd->buckets - 1);
     int32_t i;
@@ -3188,27 +3444,16 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->degree[i] = degree;
     }
     amd->left = amd->total;
-}
-
-/* The turn of the next stage, whose nodes are order[from..]: puts them into the degree lists. */
-GPROJI_INTERNAL void gproji_amd_next_stage(gproji_amd *amd, const int32_t *order, int32_t from) {
-    int32_t k, end = from;
-    if (amd->stage) amd->now = amd->stage[order[from]];
-    while (end < amd->nodes && gproji_amd_in_turn(amd, order[end])) ++end;
-    for (k = end - 1; k >= from; --k) {
-        int32_t i = order[k];
-        if (amd->kind[i] != GPROJI_AMD_VARIABLE) continue;
-        gproji_amd_list_add(amd, i);
-        amd->turn += amd->weight[i];
-    }
+    for (i = amd->nodes - 1; i >= 0; --i)
+        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
     amd->lowest = 0;
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes. With stages, all
-   nodes of a stage are eliminated before those of a later one; on entry they stand by ascending stages in `order`, with
-   dense nodes behind them. Without (NULL), on entry any permutation stands there. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, const int32_t *stage,
-                                      int32_t *order) {
+/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, how many flops a factorisation
+   takes at most: exactly so many without dense nodes. `total` is the weight of all nodes. False when there is no
+   memory. */
+GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
+                                      double *flops) {
     gproji_pool pool;
     gproji_amd amd;
     int32_t i, count = 0;
@@ -3216,7 +3461,6 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     memset(&amd, 0, sizeof amd);
     amd.nodes = graph->nodes;
     amd.buckets = total + 1;
-    amd.stage = stage;
     if (!gproji_amd_take(&amd, &pool, graph)) {
         gproji_pool_give_all(&pool);
         return false;
@@ -3224,7 +3468,6 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     gproji_amd_start(&amd, graph);
     while (amd.left > 0) {
         int32_t pivot, member;
-        if (amd.turn == 0) gproji_amd_next_stage(&amd, order, count);
         while (amd.head[amd.lowest] < 0) amd.lowest++;
         pivot = amd.head[amd.lowest];
         gproji_amd_list_remove(&amd, pivot);
@@ -3234,6 +3477,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
     for (i = 0; i < graph->nodes; ++i)
         if (amd.kind[i] == GPROJI_AMD_DENSE) order[count++] = i;
     GPROJ_ASSERT(count == graph->nodes);
+    if (flops) *flops = amd.flops + gproji_front_flops((double)total - amd.total, 0);
     gproji_pool_give_all(&pool);
     return true;
 }
@@ -3308,7 +3552,7 @@ GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x
 
 /* The graph without a first set of nodes, whose elimination is taken into account: the neighbours of each of them have
    become adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). What remains is half the size
-   where normals have gone, and shows the mesh to a dissection. False when there is no memory. */
+   where normals have gone, and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
     int64_t *start, room = 0, e;
@@ -3337,382 +3581,1008 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
     return true;
 }
 
-/* -- dissection -- */
+/* ============================================================================================================
+   >>dissection   The order of elimination by nested dissection. Uses platform, memory, ordering.
 
-/* Nested dissection (George 1973) of a graph by its distances. From two nodes a, b far from each other, and two others
-   c, d far from both, u = d_a - d_b and v = d_c - d_d are coordinates of the nodes: on a grid whose nodes have 8
-   neighbours exactly its diagonals, and u + v, u - v its axes. A part is cut where one of these four passes a threshold
-   near its middle; the separator is the smallest set of nodes that meets all edges across. Parts that are small enough
-   are left to the minimum degree ordering, which takes the separators into account and orders them, too. */
+   A separator is a set of nodes without which the rest falls into two sides that are not adjacent. It is eliminated
+   after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
+     coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
+                  c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
+                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
+     cut          The best of some thresholds of the four. A side's cost is estimated from its weight and that of its
+                  halo, the separators next to it, which become rows of all its fronts.
+     separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
+                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
+                  in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
+                  the two rims and the one next to the threshold are compared.
+   Small parts are ordered by exact minimum degree, halo included, with sets of bits.
+
+   Two kinds of nodes are not dissected. Dense ones (see gproji_dense_degree) come last. Light ones come right before the
+   first of their hosts, where they cause no fill: the forces in edges. A host is a heavier neighbour that has all their
+   neighbours. */
+
 enum {
-    GPROJI_PART_WEIGHT = 1500,  /* parts up to this weight are not cut */
-    GPROJI_WORTH_CUTTING = 2500 /* fewer nodes than that are left to minimum degree altogether */
+    GPROJI_ND_LEAF = 64,   /* nodes of a part that is not cut any more: bits of a word */
+    GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
+    GPROJI_ND_WORDS = 4,   /* for both */
+    GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
+    GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
 };
 
-typedef struct gproji_region {
-    int32_t first, count; /* its nodes are list[first .. first + count - 1] */
-    int32_t depth;        /* cuts above it */
-} gproji_region;
+/* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
+typedef struct gproji_nd_part {
+    int32_t first;
+    int32_t nodes;
+    int32_t place; /* its first place in the order */
+    int32_t copy;
+} gproji_nd_part;
 
-typedef struct gproji_separation {
+/* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
+   places: so no part is in the way of another one. */
+typedef struct gproji_nd_nodes {
+    int32_t *name;     /* the node in the graph that is dissected */
+    int32_t *weight;   /* its weight */
+    int64_t *from;     /* its neighbours begin at adjacent[from]: */
+    int32_t *inner;    /* so many in the same part, by their numbers in it, */
+    int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
+    int32_t *adjacent; /* not by node: as many as in the graph */
+} gproji_nd_nodes;
+
+/* A cut of a part: nodes with position < at, and the others. */
+typedef struct gproji_nd_cut {
     double cost;
-    int32_t a, b;      /* x = a u + b v */
-    int32_t threshold; /* x < threshold is the low side */
-    bool low;          /* the low side's boundary is lighter than the high side's, */
-    double weight;     /* and this is the lighter one's weight */
-} gproji_separation;
+    int32_t axis;
+    int32_t at;
+    int32_t range;  /* positions are 0..range-1 */
+    double below;   /* weight of the nodes with position < at */
+    int32_t weight; /* of a separator, not yet the smallest */
+} gproji_nd_cut;
 
-typedef struct gproji_dissection {
-    gproji_pool pool;
+/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1; what
+   passes between them is at most its weight. Arcs lead from the exit to the entries of its neighbours, without limit. */
+typedef struct gproji_band {
+    int32_t nodes;
+    int32_t *id;         /* nodes: number in the part */
+    int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
+    int32_t *weight;     /* nodes */
+    int32_t *through;    /* nodes: flow from entry to exit */
+    int32_t *turn;       /* states: the next step to try; see gproji_band_step */
+    int32_t *queue;      /* states; also the path that is looked for */
+    int32_t *to;         /* arcs: the neighbour */
+    int32_t *mate;       /* arcs: the same arc the other way */
+    int32_t *flow;       /* arcs */
+    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
+    unsigned char *mark; /* states: GPROJI_BAND_... */
+    void *block;         /* all of these arrays */
+    size_t block_size;
+} gproji_band;
+
+enum {
+    GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
+    GPROJI_BAND_SINK = 2,   /* reaches the sink */
+    GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
+};
+
+typedef struct gproji_nd {
     const gproji_graph *graph;
-    int32_t *list;  /* nodes, by parts */
-    int32_t *other; /* work: nodes */
-    int32_t *part;  /* nodes: where the part begins that they are in; -1: in a separator, dense */
-    int32_t *u, *v;
-    int32_t *distance[3]; /* nodes; of nodes of the part at work; -1: not reached. Later marks, see gproji_augment */
-    int32_t *x;           /* nodes: the coordinate at work */
-    int32_t *sum, *low, *high; /* 4 nodes + 8 each: sums over a coordinate */
-    gproji_region *stack;      /* nodes + 1 */
-    int32_t top;
-    int32_t *stage; /* out */
-    int32_t deepest;
-    double widest; /* the largest separator, in square roots of the nodes of its part */
-} gproji_dissection;
+    gproji_heap *heap;
+    bool failed;         /* there was no memory */
+    double unit;         /* sqrt(mean weight of a node): a separator of n nodes of a mesh has about sqrt(n) */
+    unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
+    int32_t light;       /* how many are light */
+    int32_t kept;        /* nodes that are dissected */
+    int32_t *order;      /* kept: the result */
+    gproji_nd_nodes copy[2];
+    gproji_nd_part stack[GPROJI_ND_STACK];
+    int32_t parts;
+    /* the part at work; arrays have room for all nodes */
+    gproji_nd_nodes here; /* its nodes alone */
+    int32_t nodes;
+    double weight, halo_weight;
+    int32_t rims, *rim;              /* its nodes with neighbours in the halo */
+    int32_t halos, *halo;            /* names */
+    int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
+    int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
+    int32_t *distance[4], *queue;    /* coordinates: x takes the place of the first, y of the third */
+    int32_t *number;                 /* in the band or in a side */
+    int32_t *position, *best_position;
+    unsigned char *side; /* 0, 1; 2: separator */
+    /* by position; how much more there is than at the position before */
+    int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
+    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
+    int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
+    unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    gproji_band band;
+} gproji_nd;
 
-GPROJI_INTERNAL bool gproji_dissection_take(gproji_dissection *d, int32_t nodes) {
-    int32_t **each[8], i;
-    each[0] = &d->list, each[1] = &d->other, each[2] = &d->part, each[3] = &d->u, each[4] = &d->v;
-    each[5] = &d->x, each[6] = &d->distance[0], each[7] = &d->distance[1];
-    for (i = 0; i < 8; ++i) {
-        *each[i] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
-        if (!*each[i]) return false;
+enum {
+    GPROJI_ND_KEPT,
+    GPROJI_ND_LIGHT,
+    GPROJI_ND_DENSE,
+    GPROJI_ND_PLACED
+};
+
+/* Arrays with an entry for each node, or position, and one more for the end of the positions. */
+GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
+    int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
+    int32_t **all[26], i, k = 0;
+    for (i = 0; i < 2; ++i) {
+        gproji_nd_nodes *c = &nd->copy[i];
+        all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
+        c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
+        if (!c->from || !c->adjacent) return false;
     }
-    d->distance[2] = (int32_t *)gproji_pool_take(&d->pool, nodes, sizeof(int32_t));
-    d->sum = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->low = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->high = (int32_t *)gproji_pool_take(&d->pool, 4 * (int64_t)nodes + 8, sizeof(int32_t));
-    d->stack = (gproji_region *)gproji_pool_take(&d->pool, (int64_t)nodes + 1, sizeof(gproji_region));
-    return d->distance[2] && d->sum && d->low && d->high && d->stack;
+    for (i = 0; i < 4; ++i) all[k++] = &nd->distance[i];
+    all[k++] = &nd->queue, all[k++] = &nd->number, all[k++] = &nd->order, all[k++] = &nd->rim;
+    all[k++] = &nd->halo_least, all[k++] = &nd->halo_most;
+    all[k++] = &nd->position, all[k++] = &nd->best_position, all[k++] = &nd->sum, all[k++] = &nd->best_sum;
+    all[k++] = &nd->low, all[k++] = &nd->high, all[k++] = &nd->halo_low, all[k++] = &nd->halo_high;
+    GPROJ_ASSERT(k == (int32_t)(sizeof all / sizeof all[0]));
+    for (i = 0; i < k; ++i) {
+        *all[i] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
+        if (!*all[i]) return false;
+    }
+    nd->halo = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    nd->halo_of = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
+    nd->near = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
+    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near;
 }
 
-/* Distances from `root` to what is connected with it in its part and has distance -1, by breadth-first search. `other`
-   gets these nodes from other[head] on, in the order in which they are reached. Returns where they end. */
-GPROJI_INTERNAL int32_t gproji_spread(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t *distance,
-                                      int32_t head) {
-    const gproji_graph *graph = d->graph;
-    int32_t *queue = d->other, tail = head + 1;
+/* -- nodes that are not dissected -- */
+
+/* Has b all neighbours of a, and a itself? mark: b where its neighbours, and itself, are. */
+GPROJI_INTERNAL bool gproji_nd_hosts(const gproji_graph *graph, const int32_t *mark, int32_t b, int32_t a) {
+    int64_t e;
+    for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
+        if (mark[graph->adjacent[e]] != b) return false;
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_t *mark, int32_t b) {
+    int64_t e;
+    if (mark[b] == b) return;
+    mark[b] = b;
+    for (e = graph->start[b]; e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
+}
+
+/* Finds the nodes that are not dissected. A light node's heaviest host is kept: hosts of hosts are hosts. */
+GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
+    const gproji_graph *graph = nd->graph;
+    double dense = gproji_dense_degree(total);
+    int32_t a, b, *mark = nd->number;
+    int64_t e;
+    for (a = 0; a < graph->nodes; ++a) {
+        mark[a] = -1;
+        if ((double)gproji_graph_degree(graph, a) > dense) nd->kind[a] = GPROJI_ND_DENSE;
+    }
+    for (b = 0; b < graph->nodes; ++b) {
+        if (nd->kind[b] == GPROJI_ND_DENSE) continue;
+        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
+            gproji_nd_mark_neighbours(graph, mark, b);
+            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_LIGHT;
+            nd->light++;
+        }
+    }
+}
+
+/* The order of all nodes from that of the kept ones. A light node is taken with its first host. */
+GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
+    const gproji_graph *graph = nd->graph;
+    int32_t a, b, k, count = 0, *mark = nd->number;
+    int64_t e;
+    for (b = 0; b < graph->nodes; ++b) mark[b] = -1;
+    for (k = 0; k < nd->kept; ++k) {
+        b = nd->order[k];
+        for (e = graph->start[b]; nd->light > 0 && e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_LIGHT) continue;
+            gproji_nd_mark_neighbours(graph, mark, b);
+            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_PLACED;
+            order[count++] = a;
+        }
+        order[count++] = b;
+    }
+    for (b = 0; b < graph->nodes; ++b)
+        if (nd->kind[b] == GPROJI_ND_DENSE) order[count++] = b;
+    GPROJ_ASSERT(count == graph->nodes);
+}
+
+/* -- parts -- */
+
+/* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
+   memory. */
+GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
+    const gproji_graph *graph = nd->graph;
+    gproji_nd_nodes *c = &nd->copy[0];
+    int32_t root, i, head = 0, tail = 0, *number = nd->number;
+    int64_t e, to = 0;
+    double weight = 0;
+    for (i = 0; i < graph->nodes; ++i) number[i] = -1;
+    for (root = 0; root < graph->nodes; ++root) {
+        if (nd->kind[root] != GPROJI_ND_KEPT || number[root] >= 0) continue;
+        number[root] = tail, c->name[tail++] = root;
+        while (head < tail) {
+            int32_t at = c->name[head++];
+            for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
+                i = graph->adjacent[e];
+                if (nd->kind[i] == GPROJI_ND_KEPT && number[i] < 0) number[i] = tail, c->name[tail++] = i;
+            }
+        }
+    }
+    for (i = 0; i < tail; ++i) {
+        int32_t at = c->name[i];
+        weight += c->weight[i] = graph->weight[at];
+        c->from[i] = to;
+        for (e = graph->start[at]; e < graph->start[at + 1]; ++e)
+            if (nd->kind[graph->adjacent[e]] == GPROJI_ND_KEPT) c->adjacent[to++] = number[graph->adjacent[e]];
+        c->inner[i] = (int32_t)(to - c->from[i]);
+        c->outer[i] = 0;
+    }
+    nd->kept = tail;
+    nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
+    memset(&nd->stack[0], 0, sizeof nd->stack[0]);
+    nd->stack[0].nodes = tail;
+    nd->parts = tail > 0;
+}
+
+/* Makes a part the one at work: its nodes, their weight and its halo. */
+GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
+    const gproji_nd_nodes *c = &nd->copy[part->copy];
+    gproji_nd_nodes *here = &nd->here;
+    int32_t i, k;
+    here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
+    here->inner = c->inner + part->first, here->outer = c->outer + part->first;
+    here->adjacent = c->adjacent;
+    nd->nodes = part->nodes;
+    nd->rims = nd->halos = 0;
+    nd->weight = nd->halo_weight = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
+        nd->weight += here->weight[i];
+        if (here->outer[i] > 0) nd->rim[nd->rims++] = i;
+        for (k = 0; k < here->outer[i]; ++k) {
+            int32_t name = list[k], at = nd->halo_of[name];
+            if (at >= nd->halos || nd->halo[at] != name) {
+                at = nd->halo_of[name] = nd->halos++;
+                nd->halo[at] = name;
+                nd->halo_weight += nd->graph->weight[name];
+            }
+            list[k] = at;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy) {
+    gproji_nd_part *part = &nd->stack[nd->parts++];
+    GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
+    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy;
+}
+
+/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
+   end. */
+GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
+    const gproji_nd_nodes *a = &nd->here;
+    int32_t i;
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list, *end;
+        int32_t all, *in, *out;
+        if (nd->side[i] != side) continue;
+        list = a->adjacent + a->from[i], end = list + a->inner[i];
+        all = a->inner[i] + a->outer[i];
+        in = b->adjacent + e, out = in + all;
+        b->name[to] = a->name[i], b->weight[to] = a->weight[i];
+        b->from[to] = e;
+        for (; list < end; ++list) {
+            if (nd->side[*list] == 2)
+                *--out = a->name[*list];
+            else
+                *in++ = nd->number[*list];
+        }
+        b->inner[to] = (int32_t)(in - (b->adjacent + e));
+        b->outer[to] = all - b->inner[to];
+        for (end += a->outer[i]; list < end; ++list) *in++ = nd->halo[*list];
+        e += all;
+        to++;
+    }
+    return e;
+}
+
+/* Divides the part by `side`: the separator gets its last places, the sides become parts. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part) {
+    gproji_nd_nodes *other = &nd->copy[!part->copy];
+    int32_t i, count[3] = {0, 0, 0}, at, small;
+    int64_t e;
+    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
+    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i)
+        if (nd->side[i] == 2) nd->order[at++] = nd->here.name[i];
+    e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
+    gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
+    small = count[1] < count[0];
+    for (i = 0; i < 2; ++i) {
+        int32_t side = i ? small : !small, skip = side ? count[0] : 0;
+        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy);
+    }
+}
+
+/* -- coordinates -- */
+
+/* Breadth-first search from a root over nodes without distance (-1). The queue has `tail` nodes before; returns how many
+   afterwards. */
+GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
+    const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
+    const int64_t *from = nd->here.from;
+    int32_t *queue = nd->queue, head = tail;
     distance[root] = 0;
-    queue[head] = root;
+    queue[tail++] = root;
     while (head < tail) {
         int32_t at = queue[head++], next = distance[at] + 1;
-        int64_t e;
-        for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] != p->first || distance[to] >= 0) continue;
-            distance[to] = next;
-            queue[tail++] = to;
+        const int32_t *list = adjacent + from[at], *end = list + inner[at];
+        for (; list < end; ++list) {
+            if (distance[*list] >= 0) continue;
+            distance[*list] = next;
+            queue[tail++] = *list;
         }
     }
     return tail;
 }
 
-GPROJI_INTERNAL void gproji_forget_distances(const gproji_dissection *d, const gproji_region *p, int32_t *distance) {
-    int32_t k;
-    for (k = p->first; k < p->first + p->count; ++k) distance[d->list[k]] = -1;
+/* The distances of all nodes from one of them. Returns how many it reaches. */
+GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance) {
+    int32_t i;
+    for (i = 0; i < nd->nodes; ++i) distance[i] = -1;
+    return gproji_nd_spread(nd, root, distance, 0);
 }
 
-/* Distances from `root` in its part. Returns how many nodes are reached. */
-GPROJI_INTERNAL int32_t gproji_find_distances(gproji_dissection *d, const gproji_region *p, int32_t root,
-                                              int32_t *distance) {
-    gproji_forget_distances(d, p, distance);
-    return gproji_spread(d, p, root, distance, 0);
+/* The node with the largest value; among equals one with few neighbours. */
+GPROJI_INTERNAL int32_t gproji_nd_most(const gproji_nd *nd, const int32_t *value) {
+    const int32_t *inner = nd->here.inner;
+    int32_t i, best = 0;
+    for (i = 1; i < nd->nodes; ++i)
+        if (value[i] > value[best] || (value[i] == value[best] && inner[i] < inner[best])) best = i;
+    return best;
 }
 
-/* Makes each connected component of a part a part. */
-GPROJI_INTERNAL void gproji_split_components(gproji_dissection *d, const gproji_region *p) {
-    int32_t *list = d->list + p->first, *distance = d->distance[0], begin = 0, top = d->top, k;
-    gproji_forget_distances(d, p, distance);
-    for (k = 0; k < p->count; ++k) {
-        gproji_region *piece = &d->stack[d->top];
-        int32_t end;
-        if (distance[list[k]] >= 0) continue;
-        end = gproji_spread(d, p, list[k], distance, begin);
-        piece->first = p->first + begin, piece->count = end - begin, piece->depth = p->depth;
-        d->top++;
-        begin = end;
+/* The node that a search has reached last, or another one as far that has fewer neighbours, which is a corner. */
+GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *distance) {
+    const int32_t *inner = nd->here.inner;
+    int32_t k = nd->nodes - 1, best = nd->queue[k];
+    for (; k >= 0 && distance[nd->queue[k]] == distance[best]; --k)
+        if (inner[nd->queue[k]] < inner[best]) best = nd->queue[k];
+    return best;
+}
+
+/* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
+   nodes a search reaches; when these are not all, there are none. */
+GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
+    int32_t *const *d = nd->distance, *value = nd->position;
+    int32_t i, reached = gproji_nd_search(nd, start, d[0]);
+    if (reached < nd->nodes) return reached;
+    if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
+    gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
+    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i];
+    gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
+    for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
+    gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
+    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[2][i] -= d[3][i];
+    return reached;
+}
+
+/* Sides of a part that is not connected, after a search that has reached `end` nodes: the components one after the other
+   up to half of the nodes, the last one only if it does not end the part. */
+GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
+    int32_t k, root = 0, before = end;
+    while (end < nd->nodes - end) {
+        while (nd->distance[0][root] >= 0) ++root;
+        before = end;
+        end = gproji_nd_spread(nd, root, nd->distance[0], end);
     }
-    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
-    for (; top < d->top; ++top)
-        for (k = 0; k < d->stack[top].count; ++k) d->part[d->list[d->stack[top].first + k]] = d->stack[top].first;
+    if (end == nd->nodes) end = before;
+    for (k = 0; k < nd->nodes; ++k) nd->side[k] = 1;
+    for (k = 0; k < end; ++k) nd->side[nd->queue[k]] = 0;
 }
 
-/* The coordinates of a part's nodes; a is where u, of the part that this one was cut from, is largest. False when it is
-   not connected. */
-GPROJI_INTERNAL bool gproji_find_coordinates(gproji_dissection *d, const gproji_region *p) {
-    const int32_t *list = d->list + p->first;
-    int32_t *a = d->distance[0], *b = d->distance[1], *c = d->distance[2], k, far_one = list[0];
-    for (k = 1; k < p->count; ++k)
-        if (d->u[list[k]] > d->u[far_one]) far_one = list[k];
-    if (gproji_find_distances(d, p, far_one, a) < p->count) return false;
-    if (p->depth == 0) gproji_find_distances(d, p, d->other[p->count - 1], a);
-    gproji_find_distances(d, p, d->other[p->count - 1], b);
-    for (k = 1, far_one = list[0]; k < p->count; ++k)
-        if (a[list[k]] + b[list[k]] > a[far_one] + b[far_one]) far_one = list[k];
-    for (k = 0; k < p->count; ++k) d->u[list[k]] = a[list[k]] - b[list[k]];
-    gproji_find_distances(d, p, far_one, c);
-    for (k = 1, far_one = list[0]; k < p->count; ++k)
-        if (a[list[k]] + b[list[k]] + 2 * c[list[k]] > a[far_one] + b[far_one] + 2 * c[far_one]) far_one = list[k];
-    gproji_find_distances(d, p, far_one, a);
-    for (k = 0; k < p->count; ++k) d->v[list[k]] = c[list[k]] - a[list[k]];
-    return true;
+/* -- cuts -- */
+
+/* What the elimination of a part is thought to cost in flops: the solution of
+     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
+   which is its separator's front, with the halo's rows, and twice a half. */
+GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
+    double c = nd->unit, r = sqrt(n);
+    return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* x = a u + b v of a part's nodes, from 1; returns one more than the largest. */
-GPROJI_INTERNAL int32_t gproji_set_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b) {
-    const int32_t *list = d->list + p->first;
-    int32_t least = INT32_MAX, most = INT32_MIN, k;
-    for (k = 0; k < p->count; ++k) {
-        int32_t x = a * d->u[list[k]] + b * d->v[list[k]];
-        d->x[list[k]] = x;
-        least = gproji_min(least, x);
-        most = gproji_max(most, x);
+/* The same for a part with these weights of its sides and its separator, and of the sides' halos without it. */
+GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
+    double s = weight[2], h = nd->halo_weight;
+    if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
+    return s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
+           gproji_nd_rest(nd, weight[1], halo[1] + s);
+}
+
+/* In a direction, 0 to 3: neighbours differ by at most that much. */
+GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
+
+/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many. */
+GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position) {
+    static const signed char factor[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    int32_t fx = factor[axis][0], fy = factor[axis][1], i, least = INT32_MAX, most = INT32_MIN, shift = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[2][i];
+        position[i] = p;
+        if (p < least) least = p;
+        if (p > most) most = p;
     }
-    for (k = 0; k < p->count; ++k) d->x[list[k]] -= least - 1;
-    return most - least + 2;
+    while ((most - least) >> shift >= nd->nodes) ++shift;
+    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> shift;
+    return ((most - least) >> shift) + 1;
 }
 
-/* Weights of the boundaries of both sides for all thresholds from `first` to `last`: sums of differences in low and
-   high. */
-GPROJI_INTERNAL void gproji_weigh_boundaries(gproji_dissection *d, const gproji_region *p, int32_t range, int32_t first,
-                                             int32_t last) {
-    const gproji_graph *graph = d->graph;
-    const int32_t *x = d->x;
-    int32_t k, jump = 4; /* distances differ by 1 along an edge, x by 4 at most */
-    memset(d->low, 0, ((size_t)range + 2) * sizeof(int32_t));
-    memset(d->high, 0, ((size_t)range + 2) * sizeof(int32_t));
-    for (k = p->first; k < p->first + p->count; ++k) {
-        int32_t i = d->list[k], own = x[i], least = own, most = own, weight = graph->weight[i];
-        int64_t e;
-        if (own < first - jump || own > last + jump) continue;
-        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] != p->first) continue;
-            least = gproji_min(least, x[to]);
-            most = gproji_max(most, x[to]);
+/* Chooses thresholds that leave 0.3 to 0.7 of the weight below, some tenth apart, and marks the positions near them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t range, int32_t jump) {
+    double below = 0, next = 0.3 * nd->weight;
+    int32_t t, r;
+    memset(nd->near, 0, (size_t)range + 1);
+    for (t = 1; t < range; ++t) {
+        below += nd->sum[t - 1];
+        if (below < next || below > 0.7 * nd->weight) continue;
+        next = below + 0.1 * nd->weight;
+        for (r = t > jump ? t - jump : 0; r < t + jump && r < range; ++r) nd->near[r] |= 1;
+        nd->near[t] = 3;
+    }
+}
+
+/* For all thresholds at once, what has neighbours across: in the part, ... */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->low, *high = nd->high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list = adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        if (!nd->near[p]) continue;
+        for (; list < end; ++list) {
+            int32_t q = position[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
         }
-        d->low[own + 1] += weight, d->low[most + 1] -= weight;    /* own < threshold <= most */
-        d->high[least + 1] += weight, d->high[own + 1] -= weight; /* least < threshold <= own */
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
     }
 }
 
-/* The best threshold of the coordinate a u + b v, if it is better than the best cut so far. */
-GPROJI_INTERNAL void gproji_try_coordinate(gproji_dissection *d, const gproji_region *p, int32_t a, int32_t b,
-                                           gproji_separation *best) {
-    int32_t range = gproji_set_coordinate(d, p, a, b), k, t, first = range, last = 0;
-    double all = 0, below = 0, low = 0, high = 0;
-    memset(d->sum, 0, ((size_t)range + 1) * sizeof(int32_t));
-    for (k = p->first; k < p->first + p->count; ++k) d->sum[d->x[d->list[k]]] += d->graph->weight[d->list[k]];
-    for (t = 0; t < range; ++t) all += d->sum[t];
-    for (t = 2; t < range; ++t) { /* thresholds near the middle; the median where none is */
-        below += d->sum[t - 1];
-        if (below < 0.36 * all && below + d->sum[t] < 0.5 * all) continue;
-        if (below > 0.64 * all && first < range) break;
-        first = gproji_min(first, t);
-        last = t;
+/* ... and in the halo. */
+GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
+    int32_t k, *least = nd->halo_least, *most = nd->halo_most;
+    for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
+    for (k = 0; k < nd->rims; ++k) {
+        int32_t i = nd->rim[k], p = position[i];
+        const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
+        for (; list < end; ++list) {
+            if (p < least[*list]) least[*list] = p;
+            if (p > most[*list]) most[*list] = p;
+        }
     }
-    if (first == range) return;
-    gproji_weigh_boundaries(d, p, range, first, last);
-    for (t = 1, below = 0; t <= last; ++t) {
-        double separator, cost, above;
-        below += d->sum[t - 1];
-        low += d->low[t];
-        high += d->high[t];
-        above = all - below;
-        if (t < first || below < 0.1 * all || above < 0.1 * all) continue; /* so cuts are few: log(nodes) deep */
-        separator = gproji_fmin(low, high);
-        cost = separator * separator * all * all / (below * above);
+    for (k = 0; k < nd->halos; ++k) {
+        int32_t w = nd->graph->weight[nd->halo[k]];
+        nd->halo_low[least[k] + 1] += w;
+        nd->halo_high[most[k] + 1] += w;
+    }
+}
+
+/* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
+GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
+    int32_t *position = nd->position, *sum = nd->sum, range = gproji_nd_project(nd, axis, position), i, t;
+    double below = 0, low = 0, high = 0, halo[2];
+    size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
+    bool better = false;
+    memset(sum, 0, bytes);
+    memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
+    memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
+    for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
+    gproji_nd_choose_thresholds(nd, range, gproji_nd_jump(axis));
+    gproji_nd_count_inner(nd, position);
+    gproji_nd_count_halo(nd, position);
+    halo[0] = 0, halo[1] = nd->halo_weight;
+    for (t = 1; t < range; ++t) {
+        double weight[3], cost;
+        below += sum[t - 1];
+        low += nd->low[t], high += nd->high[t];
+        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
+        if (nd->near[t] != 3) continue;
+        weight[0] = below, weight[1] = nd->weight - below, weight[2] = low < high ? low : high;
+        weight[low < high ? 0 : 1] -= weight[2];
+        cost = gproji_nd_cost(nd, weight, halo);
         if (cost >= best->cost) continue;
-        best->cost = cost, best->a = a, best->b = b, best->threshold = t, best->low = low <= high;
-        best->weight = separator;
+        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
+        best->weight = (int32_t)weight[2];
+        better = true;
     }
+    if (!better) return;
+    nd->position = nd->best_position, nd->best_position = position;
+    nd->sum = nd->best_sum, nd->best_sum = sum;
 }
 
-/* Cuts a part: its nodes are those with mark 0, those with mark 1, and those of the separator, mark 2. */
-GPROJI_INTERNAL void gproji_divide(gproji_dissection *d, const gproji_region *p, const int32_t *mark) {
-    int32_t *list = d->list + p->first, k, side, at = 0;
-    for (side = 0; side < 3; ++side) {
-        int32_t begin = at;
-        for (k = 0; k < p->count; ++k)
-            if (mark[list[k]] == side) d->other[at++] = list[k];
-        if (side == 2) {
-            for (k = begin; k < at; ++k) {
-                d->part[d->other[k]] = -1;
-                d->stage[d->other[k]] = p->depth + 1; /* see gproji_dissect */
-            }
-            d->deepest = at > begin ? gproji_max(d->deepest, p->depth + 1) : d->deepest;
-            d->widest = gproji_fmax(d->widest, (at - begin) / sqrt((double)p->count));
-        } else if (at > begin) {
-            gproji_region *piece = &d->stack[d->top++];
-            for (k = begin; k < at; ++k) d->part[d->other[k]] = p->first + begin;
-            piece->first = p->first + begin, piece->count = at - begin;
-            piece->depth = p->depth + 1;
-        }
+/* -- the smallest separator in a band -- */
+
+/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than a quarter of
+   the part's; and each rim keeps about a quarter of the weight behind it. */
+GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
+    const int32_t *sum = nd->best_sum;
+    int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
+    double most = gproji_fmin(12.0 * cut->weight, 0.25 * nd->weight), band = 0, below = 0, above;
+    for (i = 0; i < low; ++i) below += sum[i];
+    for (; i < high; ++i) band += sum[i];
+    above = nd->weight - below - band;
+    for (;;) {
+        bool down = below > above;
+        int32_t more;
+        if (down ? low <= 1 : high >= cut->range - 1) break;
+        more = sum[down ? low - 1 : high];
+        if (band + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
+        band += more;
+        if (down)
+            below -= more, --low;
+        else
+            above -= more, ++high;
     }
-    memcpy(list, d->other, (size_t)p->count * sizeof(int32_t));
+    from[0] = low, from[1] = high;
 }
 
-/* Where a cut's edges are a bipartite graph, the fewest nodes that meet all of them are as many as a largest matching has
-   edges (Koenig 1931). mark: 0 and 1 are the sides; mate: partners, or -1; seen: by whose search, or -1. Looks for a path
-   of edges out of and in the matching, in turn, from a low node without a partner to a high one, and flips it. A search
-   for nobody (root -2, from all of queue[0..tail)) only marks what it reaches. */
-GPROJI_INTERNAL bool gproji_augment(gproji_dissection *d, const gproji_region *p, int32_t root, int32_t tail) {
-    const gproji_graph *graph = d->graph;
-    const int32_t *mark = d->distance[0];
-    int32_t *mate = d->distance[1], *seen = d->distance[2], *before = d->x, *queue = d->other, head = 0;
-    while (head < tail) {
-        int32_t low = queue[head++];
-        int64_t e;
-        for (e = graph->start[low]; e < graph->start[low + 1]; ++e) {
-            int32_t high = graph->adjacent[e];
-            if (d->part[high] != p->first || mark[high] != 1 || seen[high] == root) continue;
-            seen[high] = root;
-            before[high] = low;
-            if (mate[high] >= 0) {
-                queue[tail++] = mate[high];
-                if (root < 0) seen[mate[high]] = root;
-                continue;
-            }
-            for (; root >= 0;) {
-                int32_t next = mate[before[high]];
-                mate[high] = before[high];
-                mate[before[high]] = high;
-                if (before[high] == root) return true;
-                high = next;
-            }
-        }
-    }
+/* Is node i in the band? So are nodes below it with neighbours above it. */
+GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                       int32_t i) {
+    const int32_t *position = nd->best_position, *list = nd->here.adjacent + nd->here.from[i];
+    const int32_t *end = list + nd->here.inner[i];
+    if (position[i] >= from[0]) return position[i] < from[1];
+    if (position[i] < from[0] - gproji_nd_jump(cut->axis)) return false;
+    for (; list < end; ++list)
+        if (position[*list] >= from[1]) return true;
     return false;
 }
 
-/* The separator of the sides marked in distance[0] with the fewest nodes, as mark 2. Returns its weight. */
-GPROJI_INTERNAL double gproji_mark_cover(gproji_dissection *d, const gproji_region *p) {
-    int32_t *mark = d->distance[0], *mate = d->distance[1], *seen = d->distance[2], k, tail = 0;
-    const int32_t *list = d->list + p->first;
-    double weight = 0;
-    for (k = 0; k < p->count; ++k) mate[list[k]] = seen[list[k]] = -1;
-    for (k = 0; k < p->count; ++k) {
-        if (mark[list[k]] != 0) continue;
-        d->other[0] = list[k];
-        gproji_augment(d, p, list[k], 1);
-    }
-    for (k = 0; k < p->count; ++k) {
-        if (mark[list[k]] != 0 || mate[list[k]] >= 0) continue;
-        d->other[tail++] = list[k];
-        seen[list[k]] = -2;
-    }
-    gproji_augment(d, p, -2, tail);
-    for (k = 0; k < p->count; ++k) {
-        int32_t i = list[k];
-        if (mark[i] == 0 ? mate[i] < 0 || seen[i] == -2 : seen[i] != -2) continue;
-        mark[i] = 2;
-        weight += d->graph->weight[i];
-    }
-    return weight;
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs) {
+    size_t ints = (size_t)nodes * 8 + 1 + (size_t)arcs * 3;
+    int32_t *at;
+    if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
+        return false;
+    at = (int32_t *)band->block;
+    band->id = at, at += nodes;
+    band->start = at, at += nodes + 1;
+    band->weight = at, at += nodes;
+    band->through = at, at += nodes;
+    band->turn = at, at += 2 * nodes;
+    band->queue = at, at += 2 * nodes;
+    band->to = at, at += arcs;
+    band->mate = at, at += arcs;
+    band->flow = at, at += arcs;
+    band->ends = (unsigned char *)at;
+    band->mark = band->ends + nodes;
+    return true;
 }
 
-/* The sides of a cut as marks 0 and 1 in distance[0]; boundary: and of the lighter boundary as mark 2. */
-GPROJI_INTERNAL void gproji_mark_sides(gproji_dissection *d, const gproji_region *p, const gproji_separation *cut,
-                                       bool boundary) {
-    const gproji_graph *graph = d->graph;
-    int32_t *mark = d->distance[0], k;
-    gproji_set_coordinate(d, p, cut->a, cut->b);
-    for (k = p->first; k < p->first + p->count; ++k) {
-        int32_t i = d->list[k], side = d->x[i] >= cut->threshold;
-        int64_t e;
-        mark[i] = side;
-        if (!boundary || (side == 0) != cut->low) continue;
-        for (e = graph->start[i]; e < graph->start[i + 1] && mark[i] != 2; ++e) {
-            int32_t to = graph->adjacent[e];
-            if (d->part[to] == p->first && (d->x[to] >= cut->threshold) != side) mark[i] = 2;
+/* The arcs of band node i from number e on, those that lead upwards first: a search then goes ahead first. Returns where
+   they end. */
+GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
+    gproji_band *band = &nd->band;
+    const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
+    const int32_t *end = list + nd->here.inner[v];
+    int32_t stop = e + nd->here.inner[v], back = stop, k;
+    band->start[i] = e;
+    for (; list < end; ++list) {
+        int32_t u = nd->number[*list];
+        if (u < 0)
+            band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
+        else if (position[*list] > position[v])
+            band->to[e++] = u;
+        else
+            band->to[--back] = u;
+    }
+    while (back < stop) band->to[e++] = band->to[back++];
+    for (k = band->start[i]; k < e; ++k) {
+        int32_t u = band->to[k], mate = u < i ? band->start[u] : k;
+        band->flow[k] = 0;
+        if (u >= i) continue;
+        while (band->to[mate] != i) ++mate;
+        band->mate[k] = mate, band->mate[mate] = k;
+    }
+    return e;
+}
+
+/* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
+GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
+    gproji_band *band = &nd->band;
+    int32_t i, nodes = 0, e = 0;
+    int64_t arcs = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        nd->number[i] = -1;
+        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
+        nd->number[i] = nodes;
+        nd->queue[nodes++] = i;
+        arcs += nd->here.inner[i];
+    }
+    if (arcs > INT32_MAX) return false;
+    if (!gproji_band_take(nd->heap, band, nodes, arcs)) {
+        nd->failed = true;
+        return false;
+    }
+    band->nodes = nodes;
+    memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
+    memset(band->ends, 0, (size_t)nodes);
+    for (i = 0; i < nodes; ++i) {
+        band->weight[i] = nd->here.weight[band->id[i]];
+        band->through[i] = 0;
+        e = gproji_nd_band_arcs(nd, from, i, e);
+    }
+    band->start[nodes] = e;
+    return true;
+}
+
+/* How much more can flow from state s by its step c, and where to: along an arc, or backwards against the flow of one;
+   or to the node's other state, which is the step before its arcs and the one behind them. `back`: how much can come from
+   there. */
+GPROJI_INTERNAL int32_t gproji_band_step(const gproji_band *band, int32_t s, int32_t c, bool back, int32_t *to) {
+    int32_t v = s >> 1;
+    bool leaves = ((s & 1) != 0) != back; /* at an exit ahead, or at an entry back */
+    if (c < band->start[v] || c == band->start[v + 1]) {
+        *to = s ^ 1;
+        return leaves ? band->through[v] : band->weight[v] - band->through[v];
+    }
+    *to = 2 * band->to[c] + !(s & 1);
+    if (leaves) return INT32_MAX;
+    return band->flow[back ? c : band->mate[c]];
+}
+
+/* The end of a state's steps. Along arcs nothing can go back from an entry, or come back to an exit, without flow. */
+GPROJI_INTERNAL int32_t gproji_band_end(const gproji_band *band, int32_t s, bool back) {
+    int32_t v = s >> 1;
+    if (((s & 1) != 0) == back && band->through[v] == 0) return band->start[v];
+    return band->start[v + 1];
+}
+
+/* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
+GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
+    int32_t *path = band->queue, *turn = band->turn, depth = 0;
+    path[0] = source;
+    band->mark[source] = GPROJI_BAND_SOURCE;
+    while (depth >= 0) {
+        int32_t s = path[depth], end = gproji_band_end(band, s, false) + (s & 1), next = -1;
+        if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
+        for (; turn[s] < end; ++turn[s])
+            if (gproji_band_step(band, s, turn[s], false, &next) > 0 && !band->mark[next]) break;
+        if (turn[s] < end) {
+            band->mark[next] = GPROJI_BAND_SOURCE;
+            path[++depth] = next;
+        } else {
+            --depth;
+        }
+    }
+    return -1;
+}
+
+/* Sends as much as possible along the path; its states may be seen again. */
+GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
+    const int32_t *path = band->queue;
+    int32_t k, amount = INT32_MAX, to;
+    for (k = 0; k < depth; ++k) {
+        int32_t room = gproji_band_step(band, path[k], band->turn[path[k]], false, &to);
+        if (room < amount) amount = room;
+    }
+    for (k = 0; k < depth; ++k) {
+        int32_t s = path[k], c = band->turn[s];
+        if ((path[k + 1] ^ s) == 1)
+            band->through[s >> 1] += s & 1 ? -amount : amount;
+        else if (s & 1)
+            band->flow[c] += amount;
+        else
+            band->flow[band->mate[c]] -= amount;
+        band->mark[s] = 0;
+    }
+    band->mark[path[depth]] = 0;
+}
+
+/* A round: paths from all sources, none through states from which the sink was not reached before. False when there was
+   none; then all that is reached from the source is marked. */
+GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
+    int32_t i, depth;
+    bool found = false;
+    memset(band->mark, 0, 2 * (size_t)band->nodes);
+    for (i = 0; i < band->nodes; ++i) {
+        band->turn[2 * i] = band->start[i] - 1; /* at an entry the own exit first, at an exit the own entry last */
+        band->turn[2 * i + 1] = band->start[i];
+    }
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
+        while (!band->mark[2 * i] && (depth = gproji_band_find_path(band, 2 * i)) >= 0) {
+            gproji_band_push(band, depth);
+            found = true;
+        }
+    }
+    return found;
+}
+
+/* Marks what the states in the queue reach, or what reaches them. */
+GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark, bool back) {
+    int32_t head = 0, c, to;
+    while (head < tail) {
+        int32_t s = band->queue[head++], end = gproji_band_end(band, s, back);
+        for (c = band->start[s >> 1] - 1; c < end; ++c) {
+            if (gproji_band_step(band, s, c, back, &to) <= 0 || (band->mark[to] & mark)) continue;
+            band->mark[to] |= mark;
+            band->queue[tail++] = to;
         }
     }
 }
 
-/* Cuts a part, or leaves it whole. */
-GPROJI_INTERNAL void gproji_dissect_part(gproji_dissection *d, gproji_region part) {
-    static const int32_t direction[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    gproji_separation best = {HUGE_VAL, 0, 0, 0, false, 0};
-    int64_t weight = 0;
-    double lines;
-    int32_t k;
-    for (k = part.first; k < part.first + part.count; ++k) weight += d->graph->weight[d->list[k]];
-    if (weight <= GPROJI_PART_WEIGHT) return;
-    if (!gproji_find_coordinates(d, &part)) {
-        gproji_split_components(d, &part);
+/* Marks for the cuts next to the sink and next to the threshold. Returns how many cuts there are: 1 when all are one. */
+GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *cut) {
+    gproji_band *band = &nd->band;
+    int32_t i, tail = 0, states = 2 * band->nodes, open = 0;
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SINK)) continue;
+        band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
+        band->queue[tail++] = 2 * i + 1;
+    }
+    gproji_band_spread(band, tail, GPROJI_BAND_SINK, true);
+    for (i = tail = 0; i < states; ++i) {
+        bool below = nd->best_position[band->id[i >> 1]] < cut->at;
+        if (!band->mark[i]) ++open;
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (below && !band->mark[i])) {
+            band->mark[i] |= GPROJI_BAND_MIDDLE;
+            band->queue[tail++] = i;
+        }
+    }
+    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE, false);
+    return open > 0 ? 3 : 1;
+}
+
+/* The side of a band node by one of the cuts: above when the lower side does not reach its entry, separator when it does
+   not reach its exit. */
+GPROJI_INTERNAL int32_t gproji_band_side(const gproji_band *band, int32_t i, unsigned char mark) {
+    bool in = (band->mark[2 * i] & mark) != 0, out = (band->mark[2 * i + 1] & mark) != 0;
+    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
+    return out ? 0 : in ? 2 : 1;
+}
+
+/* The side of any node of the part. */
+GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const int32_t from[2], int32_t i, unsigned char mark) {
+    if (nd->number[i] >= 0) return gproji_band_side(&nd->band, nd->number[i], mark);
+    return nd->best_position[i] >= from[1];
+}
+
+/* What the part costs when cut there. */
+GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                         unsigned char mark) {
+    double weight[3] = {0, 0, 0}, halo[2] = {0, 0};
+    const gproji_band *band = &nd->band;
+    int32_t i, k;
+    for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
+    for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
+    for (i = 0; i < band->nodes; ++i) {
+        weight[gproji_band_side(band, i, mark)] += band->weight[i];
+        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= band->weight[i]; /* counted among those below */
+    }
+    for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
+    for (k = 0; k < nd->rims; ++k) {
+        int32_t v = nd->rim[k], side = gproji_nd_side(nd, from, v, mark);
+        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
+        if (side == 2) continue;
+        for (; list < end; ++list) nd->halo_least[*list] |= 1 << side;
+    }
+    for (k = 0; k < nd->halos; ++k) {
+        if (nd->halo_least[k] & 1) halo[0] += nd->graph->weight[nd->halo[k]];
+        if (nd->halo_least[k] & 2) halo[1] += nd->graph->weight[nd->halo[k]];
+    }
+    return gproji_nd_cost(nd, weight, halo);
+}
+
+/* Finds the separator of a cut: `side`. False where there is none, or no memory. */
+GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
+    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
+    int32_t from[2], i, cuts, rounds = 0, use = 0;
+    double best;
+    gproji_nd_band_limits(nd, cut, from);
+    if (!gproji_nd_build_band(nd, cut, from)) return false;
+    while (gproji_band_round(&nd->band))
+        if (++rounds == GPROJI_ND_ROUNDS) return false;
+    cuts = gproji_nd_mark_cuts(nd, cut);
+    best = gproji_nd_measure(nd, cut, from, marks[0]);
+    for (i = 1; i < cuts; ++i) {
+        double cost = gproji_nd_measure(nd, cut, from, marks[i]);
+        if (cost < best) best = cost, use = i;
+    }
+    for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
+    return best < HUGE_VAL;
+}
+
+/* -- parts that are not cut any more -- */
+
+/* A small part: sets of neighbours as bits; first those of its own nodes, then of its halo's. `plane` p has the nodes
+   whose weights contain unit[p]. */
+typedef struct gproji_nd_leaf {
+    int32_t words, planes;
+    uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
+    uint64_t plane[32][GPROJI_ND_WORDS];
+    int32_t unit[32];
+    int32_t degree[GPROJI_ND_LEAF];
+} gproji_nd_leaf;
+
+/* How many bits are set. */
+GPROJI_INTERNAL int32_t gproji_bits(uint64_t x) {
+    x -= (x >> 1) & 0x5555555555555555u;
+    x = (x & 0x3333333333333333u) + ((x >> 2) & 0x3333333333333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (int32_t)((x * 0x0101010101010101u) >> 56);
+}
+
+/* The number of the lowest bit of x > 0. */
+GPROJI_INTERNAL int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
+
+GPROJI_INTERNAL int32_t gproji_nd_leaf_degree(const gproji_nd_leaf *leaf, const uint64_t *set) {
+    int32_t degree = 0, p, k;
+    for (p = 0; p < leaf->planes; ++p) {
+        int32_t count = 0;
+        for (k = 0; k < leaf->words; ++k) count += gproji_bits(set[k] & leaf->plane[p][k]);
+        degree += count * leaf->unit[p];
+    }
+    return degree;
+}
+
+/* The planes of the weights; equal ones are one. */
+GPROJI_INTERNAL void gproji_nd_leaf_weigh(const gproji_nd *nd, gproji_nd_leaf *leaf, int32_t halos) {
+    int32_t bit, i, all = 0, p = 0;
+    for (i = 0; i < nd->nodes; ++i) all |= nd->here.weight[i];
+    for (i = 0; i < halos; ++i) all |= nd->graph->weight[nd->halo[i]];
+    for (bit = 0; bit < 31; ++bit) {
+        uint64_t *plane = leaf->plane[p];
+        if (!(all >> bit & 1)) continue;
+        memset(plane, 0, sizeof leaf->plane[0]);
+        for (i = 0; i < nd->nodes; ++i) plane[0] |= (uint64_t)(nd->here.weight[i] >> bit & 1) << i;
+        for (i = 0; i < halos; ++i)
+            plane[1 + i / 64] |= (uint64_t)(nd->graph->weight[nd->halo[i]] >> bit & 1) << i % 64;
+        if (p > 0 && memcmp(plane, leaf->plane[p - 1], sizeof leaf->plane[0]) == 0)
+            leaf->unit[p - 1] += (int32_t)1 << bit;
+        else
+            leaf->unit[p++] = (int32_t)1 << bit;
+    }
+    leaf->planes = p;
+}
+
+GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *leaf) {
+    int32_t i, halos = gproji_min(nd->halos, GPROJI_ND_HALO);
+    leaf->words = 1 + (halos + 63) / 64;
+    gproji_nd_leaf_weigh(nd, leaf, halos);
+    memset(leaf->set, 0, (size_t)nd->nodes * sizeof leaf->set[0]);
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        uint64_t *set = leaf->set[i];
+        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
+        for (end += nd->here.outer[i]; list < end; ++list)
+            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
+        leaf->degree[i] = gproji_nd_leaf_degree(leaf, set);
+    }
+}
+
+/* Orders a small part by minimum degree. */
+GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
+    gproji_nd_leaf leaf;
+    uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
+    int32_t i, k;
+    gproji_nd_leaf_start(nd, &leaf);
+    while (alive) {
+        int32_t pivot = 0;
+        for (i = 1; i < nd->nodes; ++i)
+            if (leaf.degree[i] < leaf.degree[pivot]) pivot = i;
+        nd->order[place++] = nd->here.name[pivot];
+        leaf.degree[pivot] = INT32_MAX;
+        alive &= ~((uint64_t)1 << pivot);
+        for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
+            uint64_t *set;
+            i = gproji_lowest_bit(todo);
+            set = leaf.set[i];
+            for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
+            set[0] &= alive & ~((uint64_t)1 << i);
+            leaf.degree[i] = gproji_nd_leaf_degree(&leaf, set);
+        }
+    }
+}
+
+/* Orders a part without a good separator by approximate minimum degree. */
+GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
+    const gproji_nd_nodes *here = &nd->here;
+    int64_t *start, to = 0;
+    int32_t *adjacent, *order, i, k;
+    gproji_graph graph;
+    gproji_pool pool;
+    gproji_pool_start(&pool, nd->heap);
+    for (i = 0; i < nd->nodes; ++i) to += here->inner[i];
+    start = (int64_t *)gproji_pool_take(&pool, (int64_t)nd->nodes + 1, sizeof(int64_t));
+    adjacent = (int32_t *)gproji_pool_take(&pool, to, sizeof(int32_t));
+    order = (int32_t *)gproji_pool_take(&pool, nd->nodes, sizeof(int32_t));
+    if (start && adjacent && order) {
+        for (i = 0, to = 0; i < nd->nodes; ++i) {
+            start[i] = to;
+            for (k = 0; k < here->inner[i]; ++k) adjacent[to++] = here->adjacent[here->from[i] + k];
+        }
+        start[nd->nodes] = to;
+        graph.nodes = nd->nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = here->weight;
+        if (!gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL)) nd->failed = true;
+        for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[place + i] = here->name[order[i]];
+    } else {
+        nd->failed = true;
+    }
+    gproji_pool_give_all(&pool);
+}
+
+/* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
+   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   nodes are connected; when these are not all, there is no cut. */
+GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
+    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    memset(best, 0, sizeof *best);
+    best->cost = HUGE_VAL;
+    for (k = 0; k < starts; ++k) {
+        reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
+        if (reached < nd->nodes) break;
+        for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+    }
+    return reached;
+}
+
+/* Orders the part on top of the stack or cuts it. */
+GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
+    gproji_nd_part part = nd->stack[--nd->parts];
+    gproji_nd_cut best;
+    int32_t reached;
+    gproji_nd_enter(nd, &part);
+    if (part.nodes <= GPROJI_ND_LEAF) {
+        gproji_nd_order_leaf(nd, part.place);
         return;
     }
-    for (k = 0; k < 4; ++k) gproji_try_coordinate(d, &part, direction[k][0], direction[k][1], &best);
-    if (!(best.cost < HUGE_VAL)) return;
-    gproji_mark_sides(d, &part, &best, false);
-    /* (boundaries of many lines, which no mesh has, would take long to match) */
-    lines = best.weight * sqrt((double)part.count) / (double)weight;
-    if (lines > 8 || gproji_mark_cover(d, &part) > best.weight) gproji_mark_sides(d, &part, &best, true);
-    gproji_divide(d, &part, d->distance[0]);
-}
-
-/* stage[i] = 0 for nodes in parts, and a number for each node of a separator that is larger than those of the parts and
-   separators it separates. False when nothing was cut. */
-GPROJI_INTERNAL bool gproji_dissect(gproji_dissection *d, double dense) {
-    int32_t i, count = 0;
-    for (i = 0; i < d->graph->nodes; ++i) {
-        bool apart = (double)gproji_graph_degree(d->graph, i) > dense;
-        d->part[i] = apart ? -1 : 0;
-        d->stage[i] = d->u[i] = 0;
-        if (!apart) d->list[count++] = i;
+    reached = gproji_nd_find_cut(nd, &best);
+    if (reached < part.nodes) {
+        gproji_nd_split_components(nd, reached);
+        gproji_nd_divide(nd, &part);
+        return;
     }
-    d->stack[0].first = 0, d->stack[0].count = count, d->stack[0].depth = 0;
-    d->top = count > 0;
-    while (d->top > 0) gproji_dissect_part(d, d->stack[--d->top]);
-    for (i = 0; i < d->graph->nodes; ++i)
-        if (d->stage[i] > 0) d->stage[i] = d->deepest + 1 - d->stage[i];
-    return d->deepest > 0;
-}
-
-/* The nodes by ascending stages, dense ones last: what gproji_amd_order begins with. */
-GPROJI_INTERNAL void gproji_sort_stages(const gproji_dissection *d, double dense, int32_t *order) {
-    int32_t *count = d->sum, n = d->graph->nodes, i, s; /* at most nodes + 1 stages */
-    memset(count, 0, ((size_t)d->deepest + 3) * sizeof(int32_t));
-    for (i = 0; i < n; ++i) d->x[i] = (double)gproji_graph_degree(d->graph, i) > dense ? d->deepest + 1 : d->stage[i];
-    for (i = 0; i < n; ++i) count[d->x[i] + 1]++;
-    for (s = 0; s <= d->deepest; ++s) count[s + 1] += count[s];
-    for (i = 0; i < n; ++i) order[count[d->x[i]]++] = i;
-}
-
-/* An order by dissection above and minimum degree below. `total`: the weight of all nodes. *quality: 0 when nothing was
-   cut and there is no order; 2 when the graph looks like that of a mesh, with separators of a line or two of nodes and
-   no less than 5 neighbours on average; else 1. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
-                                            int32_t *quality) {
-    gproji_dissection d;
-    double dense = gproji_dense_degree(total);
-    bool done;
-    memset(&d, 0, sizeof d);
-    d.graph = graph;
-    gproji_pool_start(&d.pool, heap);
-    d.stage = (int32_t *)gproji_pool_take(&d.pool, graph->nodes, sizeof(int32_t));
-    done = d.stage && gproji_dissection_take(&d, graph->nodes);
-    *quality = 0;
-    if (done && gproji_dissect(&d, dense)) {
-        *quality = d.widest <= 4 && graph->start[graph->nodes] > 5 * (int64_t)graph->nodes ? 2 : 1;
-        gproji_sort_stages(&d, dense, order);
-        done = gproji_amd_order(heap, graph, total, d.stage, order);
+    if (best.cost < HUGE_VAL && gproji_nd_separate(nd, &best)) {
+        gproji_nd_divide(nd, &part);
+    } else {
+        gproji_nd_order_whole(nd, part.place);
     }
-    gproji_pool_give_all(&d.pool);
-    return done;
+}
+
+/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
+   than 2^29. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+    gproji_pool pool;
+    gproji_nd nd;
+    gproji_pool_start(&pool, heap);
+    memset(&nd, 0, sizeof nd);
+    nd.heap = heap;
+    nd.graph = graph;
+    nd.failed = !gproji_nd_take(&nd, &pool);
+    if (!nd.failed) {
+        gproji_nd_sort_out(&nd, total);
+        gproji_nd_begin(&nd);
+    }
+    while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
+    if (!nd.failed) gproji_nd_put_back(&nd, order);
+    gproji_give(heap, nd.band.block, nd.band.block_size, 1);
+    gproji_pool_give_all(&pool);
+    return !nd.failed;
 }
 
 /* ============================================================================================================
-   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering.
+   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering,
+   dissection.
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
@@ -4128,11 +4998,6 @@ GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
     }
 }
 
-/* sum over the columns of a front, or of a node, of (column count)^2 */
-GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
-    return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
-}
-
 /* Strides, offsets and children of the fronts; sums. */
 GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
     int32_t f;
@@ -4260,6 +5125,8 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
 GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t k;
+    out->exact_entries = 0;
+    out->flops = 0;
     for (k = 0; k < out->nodes; ++k) {
         int64_t w = an->graph->weight[out->order[k]], below = an->count[k] - w;
         out->exact_entries += w * (w + 1) / 2 + w * below;
@@ -4282,71 +5149,61 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
     gproji_sum_counts(an);
 }
 
-/* What a factorisation in this order costs. The order becomes a postorder of its elimination tree. */
-GPROJI_INTERNAL bool gproji_order_flops(gproji_heap *heap, const gproji_graph *graph, int32_t *order, double *flops) {
-    gproji_symbolic out;
-    gproji_analysis an;
-    bool done;
-    memset(&an, 0, sizeof an);
-    memset(&out, 0, sizeof out);
-    an.graph = graph, an.out = &out;
-    gproji_pool_start(&an.pool, heap);
-    out.nodes = graph->nodes, out.order = order;
-    out.place = (int32_t *)gproji_pool_take(&an.pool, graph->nodes, sizeof(int32_t));
-    done = out.place && gproji_analysis_take(&an);
-    if (done) {
-        gproji_count_factor(&an, false);
-        *flops = out.flops;
-    }
-    gproji_pool_give_all(&an.pool);
-    return done;
-}
+enum {
+    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
+    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
+};
 
-/* Dissection where the graph is one of a mesh, minimum degree where it is small; else the better one of both. total: the
-   weight of all nodes; other: work, nodes entries. */
-GPROJI_INTERNAL bool gproji_better_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
-                                         int32_t *other) {
-    double flops = 0, least = 0;
-    int32_t quality = 0, k;
-    if (graph->nodes >= GPROJI_WORTH_CUTTING && !gproji_dissected_order(heap, graph, total, order, &quality))
-        return false;
-    if (quality == 2) return true;
-    for (k = 0; k < graph->nodes; ++k) other[k] = k;
-    if (!gproji_amd_order(heap, graph, total, NULL, other)) return false;
-    if (quality == 1) {
-        if (!gproji_order_flops(heap, graph, order, &flops) || !gproji_order_flops(heap, graph, other, &least))
-            return false;
-        if (flops <= least) return true;
-    }
-    if (graph->nodes > 0) memcpy(order, other, (size_t)graph->nodes * sizeof(int32_t));
-    return true;
-}
-
-/* An order that keeps the factor small: condensed nodes, then the rest. */
-GPROJI_INTERNAL bool gproji_find_order(gproji_analysis *an) {
-    int32_t *order = an->out->order, *rest, *other, k, total = an->out->columns;
+/* Condensed nodes, then the others by dissection. */
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
+    gproji_heap *heap = an->keep->heap;
     gproji_condensation condensed;
-    bool done = gproji_condense(&condensed, an->keep->heap, an->graph);
+    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
+    bool done = gproji_condense(&condensed, heap, an->graph);
     for (k = 0; done && k < condensed.count; ++k) {
         order[k] = condensed.first[k];
         total -= an->graph->weight[order[k]];
     }
     rest = order + condensed.count;
-    other = (int32_t *)gproji_pool_take(&condensed.pool, an->graph->nodes, sizeof(int32_t));
-    done = done && other && gproji_better_order(an->keep->heap, &condensed.rest, total, rest, other);
+    done = done && gproji_dissect(heap, &condensed.rest, total, rest);
     for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
     gproji_pool_give_all(&condensed.pool);
     return done;
 }
 
-/* The order of elimination asked for. permutation: of nodes. */
-GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, gproj_ordering ordering, const int32_t *permutation) {
+/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
+   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
+GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
     gproji_symbolic *out = an->out;
+    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    double flops;
+    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
+    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_dissected_order(an)) return false;
+        gproji_count_factor(an, keep_order);
+        if (out->flops < flops) return true;
+    }
+    if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
+    gproji_count_factor(an, keep_order);
+    return true;
+}
+
+/* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
+GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_cholesky_options *options,
+                                         const int32_t *permutation) {
+    gproji_symbolic *out = an->out;
+    gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_DISSECTION) return gproji_find_order(an);
-    for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
-    if (ordering == GPROJ_ORDERING_AMD)
-        return gproji_amd_order(an->keep->heap, an->graph, out->columns, NULL, out->order);
+    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
+    if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
+    if (ordering == GPROJ_ORDERING_DISSECTION) {
+        if (!gproji_dissected_order(an)) return false;
+    } else if (ordering == GPROJ_ORDERING_AMD) {
+        if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
+    } else {
+        for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
+    }
+    gproji_count_factor(an, options->disable_postorder);
     return true;
 }
 
@@ -4358,8 +5215,7 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     out->column = (int32_t *)gproji_pool_take(an->keep, (int64_t)out->nodes + 1, sizeof(int32_t));
     out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
     if (!out->order || !out->place || !out->column || !out->front_of) return false;
-    if (!gproji_choose_order(an, options->ordering, permutation) || !gproji_analysis_take(an)) return false;
-    gproji_count_factor(an, options->disable_postorder);
+    if (!gproji_analysis_take(an) || !gproji_choose_order(an, options, permutation)) return false;
     gproji_find_supernodes(an);
     if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
     if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
@@ -4385,15 +5241,6 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     done = gproji_analyse_steps(&an, options, permutation);
     gproji_pool_give_all(&an.pool);
     return done;
-}
-
-/* The storage rows of a front's nodes in its panel: at[node] is that of the node's first variable. */
-GPROJI_INTERNAL void gproji_map_front(const gproji_symbolic *sy, int32_t f, int32_t *at) {
-    const gproji_front *front = &sy->front[f];
-    int32_t shift = gproji_panel_shift(front->width), k;
-    int64_t r;
-    for (k = front->first_place; k < front->end_place; ++k) at[sy->order[k]] = sy->column[k] - front->first + shift;
-    for (r = front->rows; r < front->rows + front->row_nodes; ++r) at[sy->order[sy->row_node[r]]] = sy->row_at[r];
 }
 
 /* ============================================================================================================
@@ -4549,6 +5396,19 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
     return true;
+}
+
+/* The storage rows of a front in its panel: at[variable] for the variables that have one. */
+GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
+    int64_t r;
+    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+        const int32_t *column = sy->column + sy->row_node[r];
+        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
+    }
 }
 
 /* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
@@ -5063,11 +5923,34 @@ GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
         for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
-/* Solves for up to c->batch right-hand sides. */
-GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+/* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
+GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
     gproji_cholesky_take_sides(c, count, b);
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
     gproji_forward_group(c, c->symbolic.tasks);
+}
+
+/* Solves for up to c->batch right-hand sides. */
+GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
+    gproji_cholesky_start(c, count, b);
+    gproji_cholesky_finish(c, x);
+}
+
+/* L y = b for any number of right-hand sides, y in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, const double *b, double *y) {
+    size_t n = (size_t)c->symbolic.columns;
+    int32_t r, sides;
+    for (r = 0; r < count; r += sides) {
+        sides = gproji_min(count - r, c->batch);
+        gproji_cholesky_start(c, sides, b + (size_t)r * n);
+        memcpy(y + (size_t)r * n, c->solution, (size_t)sides * n * sizeof *y);
+    }
+}
+
+/* L' x = y for one right-hand side in the order of L; may be in place. */
+GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
+    memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
+    c->sides = 1;
     gproji_cholesky_finish(c, x);
 }
 
@@ -5198,7 +6081,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 }
 
 /* ============================================================================================================
-   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, ordering (pools), cholesky.
+   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, cholesky.
 
    An interior-point method finds which variables are at their bounds; then Newton steps on the others, with exchanges
    of the few that were mistaken, make it exact. All matrices are
@@ -5959,20 +6842,23 @@ typedef struct gproji_row {
     int64_t term;
     int64_t local; /* compiled: its variables and its gradient */
     double constant;
-    double weight;           /* own * factor, times the group's; 0: the row is left out of everything */
-    double own;              /* what the row itself asks for */
-    double factor;           /* the weight of its element */
-    double phi;              /* the value at the last evaluation */
-    double multiplier, rise; /* nearest: y of what must hold, and what a step adds to it */
+    double weight; /* times the group's; 0: the row is left out of everything */
+    double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
 } gproji_row;
 
-/* Where a term's variables stand among the row's locals. */
-typedef struct gproji_term_local {
-    int32_t i, j;
-} gproji_term_local;
+/* What a row's weight is the product of, in a group whose elements have weights. */
+typedef struct gproji_share {
+    double own;    /* what the row itself asks for */
+    double factor; /* the weight of its element */
+} gproji_share;
+
+/* Nearest: y of a row that must hold, and what a step adds to it. */
+typedef struct gproji_multiplier {
+    double y, rise;
+} gproji_multiplier;
 
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
@@ -5989,13 +6875,15 @@ typedef struct gproji_group {
     int32_t row_count;
     gproji_row *row;
     gproj_term *term;
-    size_t row_capacity, term_capacity;
+    gproji_share *share; /* of each row; NULL: all factors are 1 */
+    size_t row_capacity, term_capacity, share_capacity;
 
-    gproji_term_local *term_local; /* one per term; as many as term_local_count */
-    int32_t *local_variable;       /* of every row, one row after the other */
-    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
-    double *local_gradient;        /* at the last evaluation */
-    size_t term_local_count, local_count;
+    bool placed;             /* i and j of its terms are not variables but places among the locals of their row */
+    int32_t *local_variable; /* of every row, one row after the other */
+    int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
+    double *local_gradient;  /* at the last evaluation */
+    size_t local_count;
+    gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
 
 typedef struct gproji_row_name {
@@ -6041,17 +6929,18 @@ struct gproj_system {
     int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
     gproji_row_name *front_row; /* all narrow rows */
     size_t front_count, front_row_count, front_row_room;
-    double *gradient;      /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;          /* dx */
-    double *saved;         /* x before the step */
-    double *residual;      /* work of refinement and of the low-rank update; nearest: the sum of steps */
-    double *correction;    /* the same */
-    double *wide_response; /* wide_count columns A^-1 (w g), and one for the right-hand side */
-    double *wide_matrix;   /* wide_count x wide_count: I + w G A^-1 G' w and its Cholesky factor */
-    double *wide_vector;   /* wide_count */
-    size_t wide_taken;     /* wide_count when the three were taken */
-    gproji_hinge *hinge;   /* the bounds' rows that a step may violate */
-    size_t hinge_taken;    /* as many as all bounds have rows */
+    double *gradient;    /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;        /* dx: the first column of `sides` */
+    double *saved;       /* x before the step */
+    double *sum;         /* nearest: of the steps of a slide; NULL before */
+    double *residual;    /* with wide rows: work of refinement */
+    double *balance;     /* the same */
+    double *sides;       /* 1 + wide_count columns: the right-hand sides -gradient and U of a step, then it and Y */
+    double *wide_matrix; /* wide_count x wide_count: I + Y'Y and its Cholesky factor */
+    double *wide_vector; /* wide_count */
+    size_t wide_taken;   /* wide_count when the three were taken */
+    gproji_hinge *hinge; /* the bounds' rows that a step may violate */
+    size_t hinge_taken;  /* as many as all bounds have rows */
 };
 
 /* -- life and building -- */
@@ -6069,16 +6958,30 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
+/* Lets a group's terms name variables again. */
+GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
+    int32_t r;
+    int64_t t;
+    for (r = 0; r < g->row_count; ++r)
+        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+            const int32_t *variable = g->local_variable + g->row[r].local;
+            g->term[t].i = variable[g->term[t].i];
+            if (g->term[t].j >= 0) g->term[t].j = variable[g->term[t].j];
+        }
+    g->placed = false;
+}
+
 /* Gives back what compilation made of a group. */
 GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
-    gproji_give(heap, g->term_local, g->term_local_count, sizeof *g->term_local);
+    if (g->placed) gproji_unplace_terms(g);
     gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
     gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
-    g->term_local = NULL;
+    gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
+    g->multiplier = NULL;
 }
 
 /* Ends the compiled state and gives its memory back. */
@@ -6091,19 +6994,19 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
     gproji_give(&s->own, s->front_row, s->front_row_room, sizeof *s->front_row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
-    gproji_give(&s->own, s->step, n, sizeof *s->step);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
+    gproji_give(&s->own, s->sum, n, sizeof *s->sum);
     gproji_give(&s->own, s->residual, n, sizeof *s->residual);
-    gproji_give(&s->own, s->correction, n, sizeof *s->correction);
-    gproji_give(&s->own, s->wide_response, (s->wide_taken + 1) * n, sizeof *s->wide_response);
+    gproji_give(&s->own, s->balance, n, sizeof *s->balance);
+    gproji_give(&s->own, s->sides, (s->wide_taken + 1) * n, sizeof *s->sides);
     gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
     gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
     gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
     s->node = s->node_first = NULL;
     s->front_start = NULL;
     s->front_row = NULL;
-    s->gradient = s->step = s->saved = s->residual = s->correction = NULL;
-    s->wide_response = s->wide_matrix = s->wide_vector = NULL;
+    s->gradient = s->step = s->saved = s->sum = s->residual = s->balance = NULL;
+    s->sides = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
     s->compiled = false;
@@ -6112,9 +7015,11 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
     int32_t i;
     if (!s) return;
+    for (i = 0; i < s->group_count; ++i) s->group[i].placed = false; /* nobody reads its terms any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
+        gproji_give(&s->own, s->group[i].share, s->group[i].share_capacity, sizeof *s->group[i].share);
         gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
     }
     gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
@@ -6153,9 +7058,19 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     return sum;
 }
 
+/* Makes room for so many more variables. */
+GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
+    size_t wanted = (size_t)s->variable_count + count;
+    void *x = s->x, *block = s->block;
+    bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
+    s->x = (double *)x;
+    enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
+    s->block = (int32_t *)block;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
-    size_t needed;
     if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -6174,17 +7089,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    needed = (size_t)first + (size_t)count;
-    {
-        void *x = s->x, *blocks = s->block;
-        bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, needed, sizeof *s->x);
-        s->x = (double *)x;
-        enough = enough && gproji_reserve(&s->own, &blocks, &s->block_capacity, needed, sizeof *s->block);
-        s->block = (int32_t *)blocks;
-        if (!enough) {
-            gproji_fail_memory(&s->error);
-            return -1;
-        }
+    if (!gproji_reserve_variables(s, (size_t)count)) {
+        gproji_fail_memory(&s->error);
+        return -1;
     }
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
@@ -6346,12 +7253,24 @@ GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group 
     return finite;
 }
 
+/* Makes room for so many more rows and terms. */
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms) {
+    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
+    void *row = g->row, *term = g->term, *share = g->share;
+    bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
+    g->row = (gproji_row *)row;
+    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, (size_t)g->row[g->row_count].term + terms,
+                                      sizeof *g->term);
+    g->term = (gproj_term *)term;
+    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->share_capacity, wanted, sizeof *g->share));
+    g->share = (gproji_share *)share;
+    return enough;
+}
+
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     gproji_group *g;
     gproji_row *row;
-    void *rows, *all_terms;
-    bool enough;
     if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -6364,25 +7283,19 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, group, "group '%s' has too many rows", g->name);
         return -1;
     }
-    rows = g->row;
-    all_terms = g->term;
-    enough = gproji_reserve(&s->own, &rows, &g->row_capacity, (size_t)g->row_count + 2, sizeof *g->row);
-    g->row = (gproji_row *)rows;
-    enough = enough && gproji_reserve(&s->own, &all_terms, &g->term_capacity,
-                                      (size_t)g->row[g->row_count].term + (size_t)count, sizeof *g->term);
-    g->term = (gproj_term *)all_terms;
-    if (!enough) {
+    if (s->compiled) gproji_system_forget(s);
+    if (!gproji_reserve_rows(s, g, 1, (size_t)count)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
     row = &g->row[g->row_count];
     row->constant = constant;
-    row->weight = row->own = row->factor = 1;
+    row->weight = 1;
     row->element = element;
+    if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
     if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memset(row + 1, 0, sizeof row[1]);
     row[1].term = row->term + count;
-    if (s->compiled) gproji_system_forget(s);
     return g->row_count++;
 }
 
@@ -6414,127 +7327,153 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
 }
 
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group, int32_t row, double weight) {
+    gproji_group *g;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= 1e50))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
                            "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
                            weight, row, group);
-    s->group[group].row[row].own = weight;
-    s->group[group].row[row].weight = weight * s->group[group].row[row].factor;
+    g = &s->group[group];
+    g->row[row].weight = weight;
+    if (g->share) {
+        g->share[row].own = weight;
+        g->row[row].weight *= g->share[row].factor;
+    }
     s->changed = true;
     return GPROJ_OK;
 }
 
-/* phi at x without the compiled state; adds grad phi to `gradient` unless it is NULL. */
-GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t row, const double *x, double *gradient) {
-    double phi = g->row[row].constant;
-    int64_t t;
-    for (t = g->row[row].term; t < g->row[row + 1].term; ++t) {
-        const gproj_term *term = &g->term[t];
-        if (term->j < 0) {
-            phi += term->a * x[term->i];
-            if (gradient) gradient[term->i] += term->a;
-        } else {
-            phi += term->a * x[term->i] * x[term->j];
-            if (!gradient) continue;
-            gradient[term->i] += term->a * x[term->j];
-            gradient[term->j] += term->a * x[term->i];
-        }
+/* The weight of a row, without that of its element. */
+GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
+    return g->share ? g->share[row].own : g->row[row].weight;
+}
+
+/* Lets the group's elements have weights: all 1. */
+GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
+    int32_t r;
+    if (g->share) return true;
+    g->share = (gproji_share *)gproji_take(&s->own, g->row_capacity, sizeof *g->share);
+    if (!g->share) return false;
+    g->share_capacity = g->row_capacity;
+    for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
+    return true;
+}
+
+/* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
+GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
+    return g->placed && i >= 0 ? g->local_variable[row->local + i] : i;
+}
+
+/* phi at x. variable: the variables that the terms' i and j stand for; NULL: i and j themselves. */
+GPROJI_INLINED double gproji_terms_value(const gproji_group *g, const gproji_row *row, const double *x,
+                                         const int32_t *variable) {
+    const gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
+    double phi = row->constant;
+    for (; term < end; ++term) {
+        double value = term->a * x[variable ? variable[term->i] : term->i];
+        phi += term->j < 0 ? value : value * x[variable ? variable[term->j] : term->j];
     }
     return phi;
 }
 
+/* phi at x, whether compiled or not. */
+GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
+    const gproji_row *row = &g->row[r];
+    return g->placed ? gproji_terms_value(g, row, x, g->local_variable + row->local)
+                     : gproji_terms_value(g, row, x, NULL);
+}
+
+/* gradient += grad phi at x, whether compiled or not. */
+GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
+    const gproji_row *row = &g->row[r];
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        double a = g->term[t].a;
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        gradient[i] += j < 0 ? a : a * x[j];
+        if (j >= 0) gradient[j] += a * x[i];
+    }
+}
+
 GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, int32_t row, double *gradient) {
     if (!gproji_system_has_row(s, group, row)) return 0;
-    if (gradient) memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
-    return gproji_row_value(&s->group[group], row, s->x, gradient);
+    if (gradient) {
+        memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
+        gproji_row_gradient(&s->group[group], row, s->x, gradient);
+    }
+    return gproji_row_value(&s->group[group], row, s->x);
 }
 
 /* -- compilation -- */
 
-/* A mark on a variable: the row that named it last, and its place among that row's locals. */
+/* Marks on a variable: the row that named it last; and, on the first of a block, the row that met the block last. */
 typedef struct gproji_named {
-    int32_t row, local;
+    int32_t row, block;
 } gproji_named;
 
-/* The place of a variable among the `count` locals of row r; a new one where the row has not named it before. */
-GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *count) {
-    gproji_named *mark = &named[variable];
-    if (mark->row != r) {
-        mark->row = r;
-        mark->local = (*count)++;
+/* Appends a variable to the `count` locals of row r, unless the row has named it already. */
+GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *local,
+                                        int32_t count) {
+    if (named[variable].row == r) return count;
+    named[variable].row = r;
+    local[count] = variable;
+    return count + 1;
+}
+
+/* The variables of a row, in the order in which its terms name them; returns how many they are. */
+GPROJI_INTERNAL int32_t gproji_name_locals(const gproji_group *g, int32_t r, gproji_named *named, int32_t *local) {
+    int32_t count = 0;
+    int64_t t;
+    for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+        count = gproji_name_local(named, r, g->term[t].i, local, count);
+        if (g->term[t].j >= 0) count = gproji_name_local(named, r, g->term[t].j, local, count);
     }
-    return mark->local;
+    return count;
 }
 
-/* Takes all marks off. */
-GPROJI_INTERNAL void gproji_unname(const gproj_system *s, gproji_named *named) {
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) named[v].row = -1;
+/* Notes the blocks of which a narrow row has more than one variable: coupled[first of block]. */
+GPROJI_INTERNAL void gproji_couple_blocks(const gproj_system *s, int32_t r, gproji_named *named, int32_t count,
+                                          const int32_t *local, int32_t *coupled) {
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        int32_t block = s->block[local[i]];
+        if (named[block].block == r) coupled[block] = 1;
+        named[block].block = r;
+    }
 }
 
-/* Step 1: where the terms' variables are among the variables of their rows, in the order in which they are named; how
-   many each row has; which rows are wide. */
-GPROJI_INTERNAL bool gproji_compile_terms(gproj_system *s, gproji_group *g, gproji_named *named) {
-    int64_t filled = 0, t;
-    int32_t r;
-    g->term_local_count = (size_t)g->row[g->row_count].term;
-    g->term_local = (gproji_term_local *)gproji_take(&s->own, g->term_local_count, sizeof *g->term_local);
-    if (!g->term_local) return false;
-    gproji_unname(s, named);
+/* Step 1: the variables of all rows; which rows are wide; which blocks are coupled, for which `node` serves as marks. */
+GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gproji_named *named) {
+    size_t most = 2 * (size_t)g->row[g->row_count].term;
+    int64_t filled = 0;
+    int32_t r, v, count;
+    void *trimmed;
+    g->local_variable = (int32_t *)gproji_take(&s->own, most, sizeof *g->local_variable);
+    g->local_count = most;
+    if (!g->local_variable) return false;
+    for (v = 0; v < s->variable_count; ++v) named[v].row = named[v].block = -1;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t count = 0;
-        for (t = row->term; t < row[1].term; ++t) {
-            g->term_local[t].i = gproji_name_local(named, r, g->term[t].i, &count);
-            g->term_local[t].j = g->term[t].j < 0 ? -1 : gproji_name_local(named, r, g->term[t].j, &count);
-        }
+        row->local = filled;
+        count = gproji_name_locals(g, r, named, g->local_variable + filled);
         row->wide = g->global || count > GPROJI_WIDE_ROW;
         s->wide_count += row->wide;
-        row->local = filled;
+        if (!row->wide) gproji_couple_blocks(s, r, named, count, g->local_variable + filled, s->node);
         filled += count;
     }
     g->row[g->row_count].local = filled;
+    trimmed = gproji_retake(&s->own, g->local_variable, most, (size_t)filled, sizeof *g->local_variable);
+    if (!trimmed) return false;
+    g->local_variable = (int32_t *)trimmed;
+    g->local_count = (size_t)filled;
     return true;
 }
 
-/* Step 2: the variables of all rows. */
-GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g) {
-    int64_t t;
-    int32_t r;
-    g->local_count = (size_t)g->row[g->row_count].local;
-    g->local_variable = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_variable);
-    g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
-    g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
-    if (!g->local_variable || !g->local_at || !g->local_gradient) return false;
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            const gproji_term_local *place = &g->term_local[t];
-            g->local_variable[g->row[r].local + place->i] = g->term[t].i;
-            if (place->j >= 0) g->local_variable[g->row[r].local + place->j] = g->term[t].j;
-        }
-    return true;
-}
-
-/* Step 3: joins the variables of coupled blocks to nodes. Uses `node` as marks: coupled[first of block]. */
-GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s, gproji_named *named) {
-    int32_t *coupled = s->node;
-    int32_t i, r, v;
-    int64_t l;
-    memset(coupled, 0, (size_t)s->variable_count * sizeof *coupled);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        gproji_unname(s, named);
-        for (r = 0; r < g->row_count; ++r) {
-            if (g->row[r].wide) continue;
-            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
-                int32_t block = s->block[g->local_variable[l]];
-                if (named[block].row == r) coupled[block] = 1;
-                named[block].row = r;
-            }
-        }
-    }
+/* Step 2: joins the variables of coupled blocks to nodes. `node` has the marks of step 1. */
+GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+    const int32_t *coupled = s->node;
+    int32_t i, v;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
         if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
@@ -6561,7 +7500,8 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
 }
 
-/* The nodes of each row, without rows that have the nodes of the row before. mark: node_count entries. */
+/* The nodes of each row, without rows that join nothing: those of one node, or with the nodes of the row before.
+   mark: node_count entries. */
 GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int32_t i, r, v;
     int64_t l, entries = 0, before = 0; /* where the nodes of the row before begin */
@@ -6577,8 +7517,9 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
                 mark[node] = begin;
                 in->row_node[entries++] = node;
             }
-            if (entries - begin == begin - before &&
-                memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) == 0) {
+            if (entries - begin < 2 ||
+                (entries - begin == begin - before && memcmp(in->row_node + begin, in->row_node + before,
+                                                             (size_t)(entries - begin) * sizeof(int32_t)) == 0)) {
                 for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
                 entries = begin;
                 continue;
@@ -6592,7 +7533,6 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, int64_t *mark) {
     int64_t r, e;
     int32_t v, i;
-    memset(in, 0, sizeof *in);
     in->node_count = s->node_count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
@@ -6615,94 +7555,77 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     return true;
 }
 
-/* Step 4: the graph of the nodes (two are adjacent when they meet in a narrow row), analysed for the factorisation. */
-GPROJI_INTERNAL gproj_code gproji_compile_graph(gproj_system *s) {
-    gproji_incidence in;
-    int64_t *start = NULL;
-    int64_t *mark = NULL;
-    int32_t *adjacent = NULL, *size = NULL;
-    size_t capacity = 0, nodes = (size_t)s->node_count;
+/* The graph of the nodes: two are adjacent when they meet in a narrow row. */
+typedef struct gproji_meetings {
+    int64_t *start;    /* node_count + 1 */
+    int32_t *adjacent; /* of all nodes */
+    int32_t *size;     /* variables of each node */
+    size_t room;       /* of `adjacent` */
+} gproji_meetings;
+
+/* The graph from the incidence. mark: node_count entries. */
+GPROJI_INTERNAL bool gproji_find_meetings(gproj_system *s, const gproji_incidence *in, int64_t *mark,
+                                          gproji_meetings *graph) {
     int64_t filled = 0, e, f;
     int32_t v;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    memset(&in, 0, sizeof in);
-    start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
-    size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size);
-    mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
-    if (!start || !size || !mark || !gproji_incidence_take(s, &in, mark)) goto done;
+    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
     for (v = 0; v < s->node_count; ++v) {
-        mark[v] = -1;
-        size[v] = s->node_first[v + 1] - s->node_first[v];
-    }
-    for (v = 0; v < s->node_count; ++v) {
-        start[v] = filled;
+        size_t most = (size_t)filled; /* with all of the node's rows, as if they had nothing in common */
+        void *room = graph->adjacent;
+        bool enough;
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            most += (size_t)(in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]]);
+        enough = gproji_reserve(&s->own, &room, &graph->room, most, sizeof *graph->adjacent);
+        graph->adjacent = (int32_t *)room;
+        if (!enough) return false;
+        graph->start[v] = filled;
+        graph->size[v] = s->node_first[v + 1] - s->node_first[v];
         mark[v] = v;
-        for (e = in.node_start[v]; e < in.node_start[v + 1]; ++e) {
-            int64_t row = in.node_row[e];
-            void *room = adjacent;
-            bool enough =
-                gproji_reserve(&s->own, &room, &capacity, (size_t)(filled + in.row_start[row + 1] - in.row_start[row]),
-                               sizeof *adjacent);
-            adjacent = (int32_t *)room;
-            if (!enough) goto done;
-            for (f = in.row_start[row]; f < in.row_start[row + 1]; ++f) {
-                int32_t other = in.row_node[f];
+        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
+            for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
+                int32_t other = in->row_node[f];
                 if (mark[other] == v) continue;
                 mark[other] = v;
-                adjacent[filled++] = other;
+                graph->adjacent[filled++] = other;
             }
-        }
     }
-    start[s->node_count] = filled;
-    code = gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, size, start, adjacent, NULL);
-done:
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, start, nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, nodes, sizeof *size);
-    gproji_give(&s->own, mark, nodes, sizeof *mark);
-    gproji_give(&s->own, adjacent, capacity, sizeof *adjacent);
-    return code;
-}
-
-/* Step 5: all that the fronts need. */
-
-/* The front of a narrow row; -1 where it has no variables. */
-GPROJI_INTERNAL int32_t gproji_front_of_row(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t first = INT32_MAX;
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l) first = gproji_min(first, sy->place[s->node[g->local_variable[l]]]);
-    return first == INT32_MAX ? -1 : sy->front_of[first];
-}
-
-/* Sorts the narrow rows by their fronts. */
-GPROJI_INTERNAL bool gproji_compile_fronts(gproj_system *s) {
-    int32_t i, r, f, pass;
-    s->front_count = (size_t)s->cholesky->symbolic.fronts;
-    s->front_row_room = 0;
-    for (i = 0; i < s->group_count; ++i) s->front_row_room += (size_t)s->group[i].row_count;
-    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
-    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
-    if (!s->front_start || !s->front_row) return false;
-    for (pass = 0; pass < 2; ++pass) { /* count, fill */
-        for (i = 0; i < s->group_count; ++i) {
-            const gproji_group *g = &s->group[i];
-            for (r = 0; r < g->row_count; ++r) {
-                f = g->row[r].wide ? -1 : gproji_front_of_row(s, g, &g->row[r]);
-                if (f >= 0 && pass == 0) s->front_start[f + 2]++;
-                if (f < 0 || pass == 0) continue;
-                s->front_row[s->front_start[f + 1]].group = i;
-                s->front_row[s->front_start[f + 1]++].row = r;
-            }
-        }
-        for (f = 0; pass == 0 && f < (int32_t)s->front_count; ++f) s->front_start[f + 2] += s->front_start[f + 1];
-    }
-    s->front_row_count = (size_t)s->front_start[s->front_count];
+    graph->start[s->node_count] = filled;
     return true;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th, with what their places are made
-   of, or with their gradients. */
+/* Step 3: the graph of the nodes. */
+GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
+    gproji_incidence in;
+    size_t nodes = (size_t)s->node_count;
+    int64_t *mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    bool done;
+    memset(&in, 0, sizeof in);
+    graph->start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *graph->start);
+    graph->size = (int32_t *)gproji_take(&s->own, nodes, sizeof *graph->size);
+    done = mark && graph->start && graph->size && gproji_incidence_take(s, &in, mark) &&
+           gproji_find_meetings(s, &in, mark, graph);
+    gproji_incidence_give(&s->own, &in);
+    gproji_give(&s->own, mark, nodes, sizeof *mark);
+    return done;
+}
+
+/* Step 4: its analysis for the factorisation. */
+GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproji_meetings graph;
+    size_t nodes = (size_t)s->node_count;
+    memset(&graph, 0, sizeof graph);
+    if (gproji_compile_graph(s, &graph))
+        code =
+            gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, graph.size, graph.start, graph.adjacent, NULL);
+    gproji_give(&s->own, graph.start, nodes + 1, sizeof *graph.start);
+    gproji_give(&s->own, graph.size, nodes, sizeof *graph.size);
+    gproji_give(&s->own, graph.adjacent, graph.room, sizeof *graph.adjacent);
+    return code;
+}
+
+/* A front's rows come from all over the memory: asks for those that follow the k-th, with their variables or with their
+   gradients. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
@@ -6713,72 +7636,164 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool pl
         GPROJI_PREFETCH(row + 1);
         GPROJI_PREFETCH(g->local_at + next->local);
         GPROJI_PREFETCH(placing ? (const void *)(g->local_variable + next->local) : g->local_gradient + next->local);
-        GPROJI_PREFETCH(placing ? (const void *)(g->term_local + next->term) : g->local_gradient + next->local + 8);
+        if (!placing) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
     }
 }
 
-/* The storage rows of a narrow row's locals, ascending, and its locals in their order. at: of the front's nodes;
-   moved: work, where each local goes. */
-GPROJI_INTERNAL void gproji_place_row(const gproj_system *s, gproji_group *g, const gproji_row *row, const int32_t *at,
-                                      int32_t moved[GPROJI_WIDE_ROW]) {
-    int32_t *local = g->local_variable + row->local, *key = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), i, j, from[GPROJI_WIDE_ROW];
-    int64_t t;
+/* Step 5: all that the fronts need. */
+
+/* What the places of all rows are found with. */
+typedef struct gproji_placing {
+    int32_t *column; /* of each variable, its column of L */
+    int32_t
+        *where; /* of each variable of a row, its place among the locals; of each node, its storage row in a front */
+    int32_t *front; /* of all rows, group by group, the front; -1: none */
+    size_t rows;
+} gproji_placing;
+
+/* Sorts a narrow row's variables by their columns. By insertion: rows are short, and their terms name the variables of a
+   node in order. */
+GPROJI_INTERNAL void gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local) {
+    int32_t key[GPROJI_WIDE_ROW], i, j;
     for (i = 0; i < count; ++i) {
-        int32_t variable = local[i], node = s->node[variable];
-        int32_t own = at[node] + variable - s->node_first[node];
-        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1], from[j] = from[j - 1];
+        int32_t variable = local[i], own = column[variable];
+        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
         key[j] = own;
         local[j] = variable;
-        from[j] = i;
-    }
-    for (i = 0; i < count; ++i) moved[from[i]] = i;
-    for (t = row->term; t < row[1].term; ++t) {
-        gproji_term_local *place = &g->term_local[t];
-        place->i = moved[place->i];
-        if (place->j >= 0) place->j = moved[place->j];
     }
 }
 
-/* Gives all narrow rows their places in their fronts. */
-GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
-    int32_t *at = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *at), f;
-    int32_t moved[GPROJI_WIDE_ROW];
-    int64_t k;
-    if (!at) return false;
+/* Lets the terms of a row name places among its locals. */
+GPROJI_INTERNAL void gproji_place_terms(gproji_group *g, const gproji_row *row, int32_t *where) {
+    const int32_t *local = g->local_variable + row->local;
+    int32_t count = (int32_t)(row[1].local - row->local), i;
+    int64_t t;
+    for (i = 0; i < count; ++i) where[local[i]] = i;
+    for (t = row->term; t < row[1].term; ++t) {
+        g->term[t].i = where[g->term[t].i];
+        if (g->term[t].j >= 0) g->term[t].j = where[g->term[t].j];
+    }
+}
+
+/* Gives the locals of a group's rows their order. front: of each row, the front of the variable that is eliminated
+   first; -1 where there is none. */
+GPROJI_INTERNAL void gproji_place_group(gproj_system *s, gproji_group *g, const gproji_placing *placing,
+                                        int32_t *front) {
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) {
+        const gproji_row *row = &g->row[r];
+        int32_t *local = g->local_variable + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        if (!row->wide) gproji_sort_locals(placing->column, count, local);
+        front[r] = row->wide || count == 0 ? -1 : sy->front_of[sy->place[s->node[local[0]]]];
+        gproji_place_terms(g, row, placing->where);
+    }
+    g->placed = true;
+}
+
+/* Sorts the narrow rows by their fronts: front_start has been cleared. */
+GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
+    int64_t *start = s->front_start, row = 0;
+    int32_t i, r, f;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row)
+            if (front[row] >= 0) start[front[row] + 2]++;
+    for (f = 0; f < (int32_t)s->front_count; ++f) start[f + 2] += start[f + 1];
+    for (row = 0, i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row) {
+            if (front[row] < 0) continue;
+            s->front_row[start[front[row] + 1]].group = i;
+            s->front_row[start[front[row] + 1]++].row = r;
+        }
+    s->front_row_count = (size_t)start[s->front_count];
+}
+
+/* The storage rows of all narrow rows' locals, front by front. at: work, of each variable. */
+GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
+    int32_t f;
+    int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
-        gproji_map_front(&s->cholesky->symbolic, f, at);
+        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
+            const gproji_row *row = &g->row[s->front_row[k].row];
             gproji_expect_rows(s, k, true);
-            gproji_place_row(s, g, &g->row[s->front_row[k].row], at, moved);
+            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_variable[l]];
         }
     }
-    gproji_give(&s->own, at, (size_t)s->node_count, sizeof *at);
-    return true;
 }
 
+GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
+    const int32_t *permutation = s->cholesky->permutation;
+    size_t n = (size_t)s->variable_count;
+    int32_t i;
+    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
+    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
+    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
+    if (!placing->column || !placing->where || !placing->front) return false;
+    gproji_invert(s->variable_count, permutation, placing->column);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
+        if (!g->local_at) return false;
+    }
+    s->front_count = (size_t)s->cholesky->symbolic.fronts;
+    s->front_row_room = placing->rows;
+    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
+    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
+    return s->front_start && s->front_row;
+}
+
+/* Places of all rows in their fronts. */
+GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
+    gproji_placing placing;
+    size_t n = (size_t)s->variable_count, row = 0;
+    int32_t i;
+    bool done;
+    memset(&placing, 0, sizeof placing);
+    for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
+    done = gproji_take_placing(s, &placing);
+    for (i = 0; done && i < s->group_count; ++i) {
+        gproji_place_group(s, &s->group[i], &placing, placing.front + row);
+        row += (size_t)s->group[i].row_count;
+    }
+    if (done) {
+        gproji_sort_rows(s, placing.front);
+        gproji_place_locals(s, placing.where);
+    }
+    gproji_give(&s->own, placing.column, n, sizeof *placing.column);
+    gproji_give(&s->own, placing.where, n, sizeof *placing.where);
+    gproji_give(&s->own, placing.front, placing.rows, sizeof *placing.front);
+    return done;
+}
+
+/* Step 6: what iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
-    s->compiled_variables = s->variable_count;
-    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
+        if (!g->local_gradient) return false;
+    }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
-    s->step = (double *)gproji_take(&s->own, n, sizeof *s->step);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
-    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
-    s->correction = (double *)gproji_take(&s->own, n, sizeof *s->correction);
-    return s->node && s->node_first && s->gradient && s->step && s->saved && s->residual && s->correction;
+    return s->gradient && s->saved;
 }
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
     if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
     s->wide_taken = k;
-    s->wide_response = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->wide_response);
+    s->sides = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->sides);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
     s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
-    return s->wide_response && s->wide_matrix && s->wide_vector;
+    if (!s->sides || !s->wide_matrix || !s->wide_vector) return false;
+    if (k == 0) return true;
+    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
+    s->balance = (double *)gproji_take(&s->own, n, sizeof *s->balance);
+    return s->residual && s->balance;
 }
 
 GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
@@ -6803,34 +7818,42 @@ GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
     return true;
 }
 
-/* All steps; `named`: work, one for each variable. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, gproji_named *named) {
-    gproj_code code;
+/* Steps 1 and 2. */
+GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
+    gproji_named *named = (gproji_named *)gproji_take(&s->own, n, sizeof *named);
+    bool done;
     int32_t i;
+    s->compiled_variables = s->variable_count;
     s->wide_count = 0;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_compile_terms(s, &s->group[i], named)) return GPROJ_ERROR_MEMORY;
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_trim_rows(s, &s->group[i]) || !gproji_compile_locals(s, &s->group[i])) return GPROJ_ERROR_MEMORY;
-    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s))
-        return GPROJ_ERROR_MEMORY;
-    gproji_compile_nodes(s, named);
-    code = gproji_compile_graph(s);
+    s->node = (int32_t *)gproji_take_zeroed(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    done = named && s->node && s->node_first;
+    for (i = 0; done && i < s->group_count; ++i)
+        done = gproji_trim_rows(s, &s->group[i]) && gproji_compile_locals(s, &s->group[i], named);
+    if (done) gproji_compile_nodes(s);
+    gproji_give(&s->own, named, n, sizeof *named);
+    return done;
+}
+
+/* All steps. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s) {
+    gproj_code code;
+    if (!gproji_compile_variables(s)) return GPROJ_ERROR_MEMORY;
+    code = gproji_compile_analysis(s);
     if (code) return code;
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-    if (!gproji_cholesky_take_numeric(s->cholesky)) return GPROJ_ERROR_MEMORY;
-    return gproji_compile_fronts(s) && gproji_compile_places(s) ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+    if (!gproji_compile_places(s) || !gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) ||
+        !gproji_take_hinges(s) || !gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_ERROR_MEMORY;
+    return GPROJ_OK;
 }
 
 /* Makes the rows ready for iterations; nothing to do when they are. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
-    size_t variables = (size_t)s->variable_count;
-    gproji_named *named;
-    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_code code;
     if (s->compiled) return GPROJ_OK;
-    named = (gproji_named *)gproji_take(&s->own, variables, sizeof *named);
-    if (named) code = gproji_compile_steps(s, named);
-    gproji_give(&s->own, named, variables, sizeof *named);
+    code = gproji_compile_steps(s);
     if (code == GPROJ_OK) {
         s->compiled = true;
         return code;
@@ -6855,22 +7878,47 @@ typedef struct gproji_evaluation {
 /* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
+    const int32_t *variable = g->local_variable + row->local;
     gproji_sum sum = {0, 0};
     int64_t t;
     sum.high = row->constant;
     for (t = row->term; t < row[1].term; ++t) {
         const gproj_term *term = &g->term[t];
         gproji_sum product = {0, 0};
-        gproji_sum_add_product(&product, term->a, x[term->i]);
+        gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
         if (term->j < 0) {
             gproji_sum_add(&sum, product.high);
             sum.low += product.low;
         } else {
-            gproji_sum_add_product(&sum, product.high, x[term->j]);
-            sum.low += product.low * x[term->j];
+            gproji_sum_add_product(&sum, product.high, x[variable[term->j]]);
+            sum.low += product.low * x[variable[term->j]];
         }
     }
     return gproji_sum_value(&sum);
+}
+
+/* phi of a row at x; `size` becomes the sum of its terms' absolute values, and grad phi is added to `gradient`. */
+GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
+                                          double *gradient, double *size) {
+    const int32_t *variable = g->local_variable + row->local;
+    double phi = row->constant, sum = fabs(row->constant);
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        const gproj_term *term = &g->term[t];
+        double value = term->a * x[variable[term->i]], other;
+        if (term->j < 0) {
+            gradient[term->i] += term->a;
+        } else {
+            other = x[variable[term->j]];
+            gradient[term->i] += term->a * other;
+            gradient[term->j] += value;
+            value *= other;
+        }
+        phi += value;
+        sum += fabs(value);
+    }
+    *size = sum;
+    return phi;
 }
 
 /* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
@@ -6882,28 +7930,12 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
             end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
     for (; r < end; ++r) {
         gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local, phi = row->constant, size = fabs(row->constant);
-        int64_t t;
+        double *gradient = g->local_gradient + row->local, phi, size;
         memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
         if (!(row->weight > 0)) row->active = false;
         if (!(row->weight > 0)) continue;
-        for (t = row->term; t < row[1].term; ++t) {
-            const gproj_term *term = &g->term[t];
-            const gproji_term_local *place = &g->term_local[t];
-            if (term->j < 0) {
-                double value = term->a * e->x[term->i];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a;
-            } else {
-                double value = term->a * e->x[term->i] * e->x[term->j];
-                phi += value;
-                size += fabs(value);
-                gradient[place->i] += term->a * e->x[term->j];
-                gradient[place->j] += term->a * e->x[term->i];
-            }
-        }
+        phi = gproji_linearise_row(g, row, e->x, gradient, &size);
         if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
         row->phi = phi;
         row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -6991,10 +8023,10 @@ GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row 
 /* w^2 y (Hessian of phi), lower triangle */
 GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
     const int32_t *at = g->local_at + row->local;
-    double w2y = gproji_weight2(g, row) * (g->kind == GPROJ_WISH ? row->phi : row->multiplier);
+    double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
     int64_t t;
     for (t = row->term; t < row[1].term; ++t) {
-        int32_t i = g->term_local[t].i, j = g->term_local[t].j;
+        int32_t i = g->term[t].i, j = g->term[t].j;
         if (j < 0) continue;
         gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
     }
@@ -7049,8 +8081,12 @@ GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, 
 /* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
    (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
-   an approximation dx, with r = -gradient - A dx and c = A^-1 r, the correction is
-       c - A^-1 U m,    (I + U'A^-1 U) m = w phi + U'(dx + c). */
+   an approximation dx, at first 0, with A = L L', Y = L^-1 U and z = L^-1 (-gradient - A dx), a better one is
+       dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
+   so that U costs half a solution. */
+
+/* The parts of a step that may cancel to it without a check: see gproji_refine_step. */
+static const double gproji_parts_most = 1e3;
 
 /* Calls `visit` for the wide rows that act in a fixed order; returns how many there are. */
 typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
@@ -7066,25 +8102,25 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     return index;
 }
 
-/* Column `index` of U. */
+/* Column `index` of U, or of Y. */
+GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
+    return s->sides + (int64_t)s->variable_count * (index + 1);
+}
+
 GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double *column = s->wide_response + (int64_t)s->variable_count * index;
+    double *column = gproji_wide_side(s, index);
     memset(column, 0, (size_t)s->variable_count * sizeof *column);
     gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
 
-/* Row `index` of I + U'A^-1 U, up to the diagonal. */
-GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          int32_t index) {
-    double *out = s->wide_matrix + (int64_t)index * s->wide_count, weight = sqrt(gproji_weight2(g, row));
-    int32_t k;
-    for (k = 0; k <= index; ++k)
-        out[k] = weight * gproji_row_times(g, row, s->wide_response + (int64_t)s->variable_count * k) + (k == index);
+/* w phi */
+GPROJI_INTERNAL void gproji_wide_value(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * row->phi;
 }
 
-GPROJI_INTERNAL void gproji_wide_project(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double ahead = gproji_row_times(g, row, s->step) + gproji_row_times(g, row, s->correction);
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + ahead);
+/* w phi + U'dx */
+GPROJI_INTERNAL void gproji_wide_ahead(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
+    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
 }
 
 /* Factors the small matrix in place by rows: L L' = M. No pivot is less than `floor`, which is 1 for I plus a positive
@@ -7115,48 +8151,78 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* correction = c - A^-1 U m from correction = c: see above. `wide`: columns of U. */
-GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide) {
-    int64_t n = s->variable_count, i;
-    int32_t k;
-    if (wide == 0) return;
-    gproji_for_wide_rows(s, gproji_wide_project);
-    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
-    for (k = 0; k < wide; ++k)
-        for (i = 0; i < n; ++i) s->correction[i] -= s->wide_vector[k] * s->wide_response[n * k + i];
+/* a'b; four sums, so that none has to wait for the one before. */
+GPROJI_INTERNAL double gproji_wide_dot(int64_t count, const double *a, const double *b) {
+    double sum[4] = {0, 0, 0, 0};
+    int64_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* The right-hand sides of a step: the columns of U, and -gradient. Returns the number of wide rows. */
-GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
-    size_t n = (size_t)s->variable_count, v;
-    int32_t wide = gproji_for_wide_rows(s, gproji_wide_column);
-    double *last = s->wide_response + n * (size_t)wide;
-    for (v = 0; v < n; ++v) last[v] = -s->gradient[v];
-    return wide;
-}
-
-/* The step from what A^-1 makes of its right-hand sides. */
-GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide) {
-    size_t n = (size_t)s->variable_count;
-    gproji_for_wide_rows(s, gproji_wide_products);
+/* I + Y'Y, factored. `wide`: columns of Y. */
+GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
+    int32_t i, k;
+    for (i = 0; i < wide; ++i)
+        for (k = 0; k <= i; ++k)
+            s->wide_matrix[(int64_t)i * s->wide_count + k] =
+                gproji_wide_dot(s->variable_count, gproji_wide_side(s, i), gproji_wide_side(s, k)) + (k == i);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count, 1);
-    memset(s->step, 0, n * sizeof *s->step);
-    memcpy(s->correction, s->wide_response + n * (size_t)wide, n * sizeof *s->step);
-    gproji_wide_correct(s, wide);
-    memcpy(s->step, s->correction, n * sizeof *s->step);
+}
+
+/* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
+GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
+    int64_t n = s->variable_count, i;
+    double parts = sqrt(gproji_wide_dot(n, z, z));
+    int32_t k;
+    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_wide_dot(n, gproji_wide_side(s, k), z);
+    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < wide; ++k) {
+        const double *side = gproji_wide_side(s, k);
+        double m = s->wide_vector[k];
+        for (i = 0; i < n; ++i) z[i] -= m * side[i];
+        parts += fabs(m) * sqrt(gproji_wide_dot(n, side, side));
+    }
+    return parts / gproji_fmax(sqrt(gproji_wide_dot(n, z, z)), DBL_MIN);
+}
+
+/* The right-hand sides of a step: -gradient, and U. Returns the number of wide rows. */
+GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
+    return gproji_for_wide_rows(s, gproji_wide_column);
+}
+
+/* The step from its right-hand sides, of which the factorisation has made z and Y already if it has taken them along.
+   Returns how large the parts of L'dx are to it. */
+GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
+    gproj_cholesky *c = s->cholesky;
+    double parts = 1;
+    if (taken && wide == 0) {
+        gproji_cholesky_finish(c, s->step);
+        return parts;
+    }
+    if (taken)
+        memcpy(s->sides, c->solution, ((size_t)wide + 1) * (size_t)s->variable_count * sizeof *s->sides);
+    else
+        gproji_cholesky_forward(c, wide + 1, s->sides, s->sides);
+    if (wide > 0) {
+        gproji_wide_products(s, wide);
+        gproji_for_wide_rows(s, gproji_wide_value);
+        parts = gproji_wide_correct(s, wide, s->step);
+    }
+    gproji_cholesky_backward(c, s->step, s->step);
+    return parts;
 }
 
 /* The step with the factor of A. */
-GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) {
-    int32_t wide = gproji_step_sides(s);
-    gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-}
+GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* correction += U m at this step. */
+/* balance += U m at this step. */
 GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
     (void)index;
-    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->correction);
+    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->balance);
 }
 
 /* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
@@ -7164,23 +8230,32 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
     double left = 0, size = 0;
     int32_t v;
     gproji_matrix_times(s, epsilon, s->step, s->residual);
-    memset(s->correction, 0, (size_t)s->variable_count * sizeof *s->correction);
+    memset(s->balance, 0, (size_t)s->variable_count * sizeof *s->balance);
     gproji_for_wide_rows(s, gproji_wide_pull);
     for (v = 0; v < s->variable_count; ++v) {
         s->residual[v] = -s->gradient[v] - s->residual[v];
-        left = gproji_fmax(left, fabs(s->residual[v] - s->correction[v]));
-        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->correction[v]));
+        left = gproji_fmax(left, fabs(s->residual[v] - s->balance[v]));
+        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->balance[v]));
     }
     return left <= 1e-9 * size;
 }
 
-/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. */
-GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, int32_t rounds) {
+/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
+   costs a product with all rows, and is left out where the answer is known. `parts`: what z and the Y_k m_k are to their
+   sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
+   as many of |L||Y_k|, and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
+   misses its equations by `parts` times what one without wide rows would, by some roundings of |L||L'dx|, which is not
+   looked at either; besides that by roundings of |U U'||dx|, as U'dx has them, however exact dx is. What must be looked
+   at are large parts that cancel: wide rows that say what narrow ones say already, or other wide ones. */
+GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     int32_t v;
-    while (wide > 0 && rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
-        gproj_cholesky_solve(s->cholesky, 1, s->residual, s->correction);
-        gproji_wide_correct(s, wide);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->correction[v];
+    if (wide == 0 || parts <= gproji_parts_most) return;
+    while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+        gproji_for_wide_rows(s, gproji_wide_ahead);
+        gproji_cholesky_forward(s->cholesky, 1, s->residual, s->residual);
+        gproji_wide_correct(s, wide, s->residual);
+        gproji_cholesky_backward(s->cholesky, s->residual, s->residual);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->residual[v];
     }
 }
 
@@ -7247,7 +8322,7 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, to change their coefficients in place. */
+/* The terms of a row, to change their coefficients in place; for what they name see gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
@@ -7348,7 +8423,7 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     double sum = 0;
     int64_t t;
     for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[g->term[t].i]);
+        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[gproji_variable_of(g, &g->row[row], g->term[t].i)]);
     return 16 * DBL_EPSILON * sum;
 }
 
@@ -7390,16 +8465,11 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     wide = gproji_step_sides(s);
     fused = wide < s->cholesky->batch;
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->wide_response);
+    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
-    if (fused)
-        gproji_cholesky_finish(s->cholesky, s->wide_response);
-    else
-        gproj_cholesky_solve(s->cholesky, wide + 1, s->wide_response, s->wide_response);
-    gproji_finish_step(s, wide);
-    gproji_refine_step(s, wide, epsilon, GPROJI_REFINEMENTS);
+    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -7453,7 +8523,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_value(g, r, s->x, NULL) - along.phi - along.h;
+            along.q = gproji_row_value(g, r, s->x) - along.phi - along.h;
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
@@ -7514,16 +8584,19 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
-GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop, const gproji_course *m) {
-    double none = gproji_merit_at(m, 0), full = gproji_merit_at(m, 1), t;
-    if (!(full <= DBL_MAX)) return 0;
+GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop) {
+    gproji_course merit;
+    double none, full, t;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
+    gproji_merit_along(loop->system, &merit);
+    none = gproji_merit_at(&merit, 0), full = gproji_merit_at(&merit, 1);
+    if (!(full <= DBL_MAX)) return 0;
     if (full > none) {
-        t = gproji_minimise_merit(m, 0.05, 1);
-        return gproji_merit_at(m, t) < none ? t : 0;
+        t = gproji_minimise_merit(&merit, 0.05, 1);
+        return gproji_merit_at(&merit, t) < none ? t : 0;
     }
     if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_merit(m, 0.1, 2);
+    t = gproji_minimise_merit(&merit, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
 
@@ -7543,9 +8616,9 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     const gproji_row *row = &g->row[r];
     double ahead;
     if (!(row->weight > 0)) return false;
-    if (g->guard) return row->active || gproji_row_value(g, r, s->x, NULL) < -g->slack;
+    if (g->guard) return row->active || gproji_row_value(g, r, s->x) < -g->slack;
     ahead = row->phi + gproji_row_times(g, row, s->step);
-    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x, NULL) < -slack;
+    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
 }
 
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
@@ -7581,15 +8654,13 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    gproji_course merit;
     loop->iteration.epsilon = epsilon;
     if (!gproji_find_bounded_step(loop, epsilon)) {
         gproji_step_back(s);
         return false;
     }
-    gproji_merit_along(s, &merit);
-    loop->iteration.length = gproji_step_length(loop, &merit);
-    loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+    loop->iteration.length = gproji_step_length(loop);
+    if (loop->iteration.length != 1) loop->iteration.step = gproji_take_step(s, loop->iteration.length);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
 }
@@ -7610,12 +8681,17 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
-        if (gproji_try_step(loop, epsilon)) {
-            double before = loop->standing.residual;
-            gproji_linearise(loop);
+        double before = loop->standing.residual;
+        bool stepped = gproji_try_step(loop, epsilon);
+        if (stepped) gproji_linearise(loop);
+        if (stepped && loop->standing.merit <= DBL_MAX) {
             if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
                 loop->epsilon_least = gproji_fmax(0.1 * loop->epsilon_least, gproji_epsilon_least);
             return true;
+        }
+        if (stepped) { /* beyond all numbers */
+            gproji_step_back(s);
+            gproji_linearise(loop);
         }
         gproji_start_bounds(s);
     }
@@ -7840,6 +8916,21 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     }
 }
 
+/* All multipliers are 0. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    int32_t i;
+    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
+    if (!s->sum) return false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier) return false;
+        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return true;
+}
+
 /* Does the row have a multiplier now? */
 GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_row *row) {
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
@@ -7853,9 +8944,10 @@ GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
         gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            if (!gproji_is_multiplied(g, row)) row->multiplier = 0;
-            row->rise = row->active ? 0 : -row->multiplier;
-            row->phi += row->multiplier;
+            gproji_multiplier *multiplier = &g->multiplier[r];
+            if (!gproji_is_multiplied(g, row)) multiplier->y = 0;
+            multiplier->rise = row->active ? 0 : -multiplier->y;
+            row->phi += multiplier->y;
         }
     }
 }
@@ -7873,8 +8965,8 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
                 row->phi = 0;
                 continue;
             }
-            row->phi += gproji_row_times(g, row, s->step) - (first ? row->multiplier : 0);
-            row->rise += row->phi;
+            row->phi += gproji_row_times(g, row, s->step) - (first ? g->multiplier[r].y : 0);
+            g->multiplier[r].rise += row->phi;
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -7885,7 +8977,7 @@ GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
    definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
-    double *sum = s->residual, first = 0, left = HUGE_VAL;
+    double *sum = s->sum, first = 0, left = HUGE_VAL;
     int32_t round, v;
     bool factored;
     double follows = gproji_epsilon_max;
@@ -7921,8 +9013,8 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             gproji_row *row = &g->row[r];
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
-                double phi = gproji_row_value(g, r, s->saved, NULL) + gproji_row_times(g, row, s->step);
-                active = row->active ? row->multiplier + row->rise < 0 : !g->guard && phi < -1e-12;
+                double phi = gproji_row_value(g, r, s->saved) + gproji_row_times(g, row, s->step);
+                active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0 : !g->guard && phi < -1e-12;
             }
             changed = changed || active != row->active;
             row->active = active;
@@ -7938,7 +9030,7 @@ GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            row->active = gproji_is_multiplied(g, row) && row->phi + row->multiplier < 0;
+            row->active = gproji_is_multiplied(g, row) && row->phi + g->multiplier[r].y < 0;
         }
     }
 }
@@ -7948,8 +9040,8 @@ GPROJI_INTERNAL void gproji_limit_multipliers(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
-            gproji_row *row = &s->group[i].row[r];
-            row->rise = gproji_fmin(row->rise, -row->multiplier);
+            gproji_multiplier *multiplier = &s->group[i].multiplier[r];
+            multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
         }
 }
 
@@ -7958,7 +9050,7 @@ GPROJI_INTERNAL void gproji_evaluate_slide(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x, NULL);
+            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
 }
 
 /* Finds a slide, again where it meets bounds. */
@@ -7987,9 +9079,9 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            double w2 = gproji_weight2(g, row), y = row->multiplier + row->rise, phi;
+            double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi;
             if (!(w2 > 0)) continue;
-            phi = gproji_row_value(g, r, x, NULL);
+            phi = gproji_row_value(g, r, x);
             if (g->kind == GPROJ_BOUND && phi + y >= 0) {
                 value -= w2 * y * y;
                 continue;
@@ -8010,8 +9102,7 @@ GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             row->phi = 0;
-            if (row->active && gproji_is_multiplied(g, row))
-                row->phi = gproji_counted(g, gproji_row_value(g, r, s->x, NULL));
+            if (row->active && gproji_is_multiplied(g, row)) row->phi = gproji_counted(g, gproji_row_value(g, r, s->x));
             sum += gproji_weight2(g, row) * row->phi * row->phi;
         }
     }
@@ -8030,7 +9121,7 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
         now = gproji_evaluate_constraints(s);
         for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->step[v];
     }
-    memcpy(s->step, s->residual, (size_t)s->variable_count * sizeof *s->step);
+    memcpy(s->step, s->sum, (size_t)s->variable_count * sizeof *s->step);
 }
 
 /* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
@@ -8049,7 +9140,8 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
         if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
-            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier += t * s->group[i].row[r].rise;
+            for (r = 0; r < s->group[i].row_count; ++r)
+                s->group[i].multiplier[r].y += t * s->group[i].multiplier[r].rise;
         return true;
     }
     gproji_step_back(s);
@@ -8101,7 +9193,7 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             bool wish = g->kind == GPROJ_WISH;
-            double pull = gproji_weight2(g, row) * (wish ? row->phi : row->multiplier);
+            double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
             gproji_row_add(g, row, pull, s->gradient);
             rows += wish;
             for (l = row->local; wish && l < row[1].local; ++l)
@@ -8235,11 +9327,12 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
 /* The first run begins. */
 GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t i, r;
     s->late = 0;
     if (loop->options.nearest) {
-        for (i = 0; i < s->group_count; ++i)
-            for (r = 0; r < s->group[i].row_count; ++r) s->group[i].row[r].multiplier = 0;
+        if (!gproji_start_multipliers(s)) {
+            gproji_fail_memory(&s->error);
+            return;
+        }
         gproji_see_nearest(loop);
     } else {
         gproji_set_weights(s, 1);
@@ -8297,8 +9390,8 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
 }
 
 /* The v-th of the variables that a row names, two a term; -1 where a linear term has no second one. */
-GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
-    return v % 2 ? g->term[v / 2].j : g->term[v / 2].i;
+GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
+    return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
 }
 
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
@@ -8306,27 +9399,27 @@ GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int64_t v) {
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
     int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
     double size = 1, worst = 0;
-    gproji_row_value(g, r, s->x, gradient);
+    gproji_row_gradient(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
     }
     for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, k);
+        int32_t v = gproji_named_variable(g, r, k);
         double x, h, up, down, difference;
         if (v < 0) continue;
         x = s->x[v];
         h = 1e-5 * gproji_fmax(1, fabs(x));
         s->x[v] = x + h;
-        up = gproji_row_value(g, r, s->x, NULL);
+        up = gproji_row_value(g, r, s->x);
         s->x[v] = x - h;
-        down = gproji_row_value(g, r, s->x, NULL);
+        down = gproji_row_value(g, r, s->x);
         s->x[v] = x;
         difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
     for (k = first; k < end; ++k)
-        if (gproji_named_variable(g, k) >= 0) gradient[gproji_named_variable(g, k)] = 0;
+        if (gproji_named_variable(g, r, k) >= 0) gradient[gproji_named_variable(g, r, k)] = 0;
     return worst;
 }
 
@@ -9005,6 +10098,23 @@ GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, in
 
 GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
+}
+
+/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex
+   are h and prev[h]. */
+GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
+    static const double none[3] = {0, 0, 0};
+    const double *p;
+    double in[3], out[3];
+    int32_t h;
+    if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
+    if (gproj_mesh_valence(mesh, vertex) == 2) return true;
+    h = mesh->vertex_halfedge[vertex];
+    p = position + 3 * (size_t)vertex;
+    gproji_sub3(p, position + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
+    gproji_sub3(position + 3 * (size_t)mesh->origin[h ^ 1], p, out);
+    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
 }
 
 /* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
@@ -9792,6 +10902,699 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 #endif /* GPROJ_NO_STDIO */
 
 /* ============================================================================================================
+   >>subdivide   Subdivision by stencils. Uses platform, memory, error, mesh.
+
+   Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
+   subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
+   for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Products and transposition of
+   matrices are Gustavson's (1978).
+
+   A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
+   coarse ones, and the faces go to the mesh builder as any others do.
+   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+
+enum {
+    GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
+    GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
+};
+
+/* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
+typedef struct gproji_stencil_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_stencil stencil;
+    int64_t *start;
+    int32_t *column;
+    double *weight;
+    size_t column_capacity, weight_capacity;
+} gproji_stencil_object;
+
+GPROJI_INLINE gproji_stencil_object *gproji_stencil_owner(gproj_stencil *stencil) {
+    return (gproji_stencil_object *)(void *)((char *)stencil - offsetof(gproji_stencil_object, stencil));
+}
+
+GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
+    gproji_stencil_object *object;
+    if (!stencil) return;
+    object = gproji_stencil_owner(stencil);
+    gproji_give(&object->heap, object->start, (size_t)stencil->row_count + 1, sizeof *object->start);
+    gproji_give(&object->heap, object->column, object->column_capacity, sizeof *object->column);
+    gproji_give(&object->heap, object->weight, object->weight_capacity, sizeof *object->weight);
+    gproji_destroy_object(object, sizeof *object);
+}
+
+GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!stencil) return none;
+    return ((const gproji_stencil_object *)(const void *)((const char *)stencil -
+                                                          offsetof(gproji_stencil_object, stencil)))
+        ->heap.account;
+}
+
+/* Makes room for `entries` entries; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
+    void *column = object->column, *weight = object->weight;
+    bool enough = gproji_reserve(&object->heap, &column, &object->column_capacity, entries, sizeof(int32_t)) &&
+                  gproji_reserve(&object->heap, &weight, &object->weight_capacity, entries, sizeof(double));
+    object->stencil.column = object->column = (int32_t *)column;
+    object->stencil.weight = object->weight = (double *)weight;
+    return enough;
+}
+
+/* A stencil of zeros with room for `entries` entries; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
+                                                    const gproj_host *host) {
+    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
+    gproj_stencil *stencil;
+    if (!object) return NULL;
+    stencil = &object->stencil;
+    stencil->row_count = rows, stencil->column_count = columns;
+    stencil->start = object->start = (int64_t *)gproji_take_zeroed(&object->heap, (size_t)rows + 1, sizeof(int64_t));
+    if (object->start && gproji_stencil_reserve(object, entries)) return stencil;
+    gproj_stencil_destroy(stencil);
+    return NULL;
+}
+
+/* The transposed matrix, with its columns in ascending order; NULL when there is no memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
+    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, count;
+    gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
+    gproji_stencil_object *object;
+    int32_t i;
+    if (!out) return NULL;
+    object = gproji_stencil_owner(out);
+    /* start[j] counts, then is where row j begins, then, as row j fills, where it ends; which is start[j + 1] */
+    for (k = 0; k < entries; ++k) object->start[stencil->column[k]]++;
+    for (i = 0; i <= out->row_count; ++i) {
+        count = object->start[i];
+        object->start[i] = sum;
+        sum += count;
+    }
+    for (i = 0; i < stencil->row_count; ++i) {
+        for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k) {
+            int64_t to = object->start[stencil->column[k]]++;
+            object->column[to] = i;
+            object->weight[to] = stencil->weight[k];
+        }
+    }
+    memmove(object->start + 1, object->start, (size_t)out->row_count * sizeof *object->start);
+    object->start[0] = 0;
+    return out;
+}
+
+GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine) {
+    int32_t i, d;
+    int64_t k;
+    for (i = 0; stencil && i < stencil->row_count; ++i) {
+        for (d = 0; d < size; ++d) {
+            double sum = 0;
+            for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k)
+                sum += stencil->weight[k] * coarse[(size_t)size * (size_t)stencil->column[k] + (size_t)d];
+            *fine++ = sum;
+        }
+    }
+}
+
+/* -- rows -- */
+
+/* A stencil that is made row by row. Memory that is missing is noticed at the end. */
+typedef struct gproji_rows {
+    gproji_heap *heap; /* of `place` */
+    const gproj_host *host;
+    gproj_stencil *stencil; /* NULL: no memory */
+    int32_t column_count;
+    int32_t row;    /* the one that is being made */
+    int64_t count;  /* of all entries so far */
+    int64_t *place; /* of each column, its entry in this row; one of an earlier row, or -1: it has none */
+} gproji_rows;
+
+GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
+    gproj_stencil_destroy(rows->stencil);
+    rows->stencil = NULL;
+}
+
+GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
+                                       const gproj_host *host) {
+    int32_t j;
+    rows->heap = heap, rows->host = host;
+    rows->column_count = column_count, rows->row = 0, rows->count = 0;
+    rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
+    rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
+    if (!rows->place) gproji_rows_drop(rows);
+    for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
+}
+
+/* Adds a weight to an entry of the row. */
+GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
+    gproji_stencil_object *object;
+    if (!rows->stencil) return;
+    object = gproji_stencil_owner(rows->stencil);
+    if (rows->place[column] < object->start[rows->row]) {
+        if (!gproji_stencil_reserve(object, (size_t)rows->count + 1)) {
+            gproji_rows_drop(rows);
+            return;
+        }
+        object->column[rows->count] = column;
+        object->weight[rows->count] = 0;
+        rows->place[column] = rows->count++;
+    }
+    object->weight[rows->place[column]] += weight;
+}
+
+GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
+    rows->row++;
+    if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+}
+
+/* The finished stencil with its columns in ascending order: the transposed of the transposed. NULL without memory. */
+GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
+    gproj_stencil *turned = NULL, *sorted = NULL;
+    gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
+    gproji_rows_drop(rows);
+    if (turned) sorted = gproji_transposed(turned, rows->host);
+    gproj_stencil_destroy(turned);
+    if (!sorted) gproji_fail_memory(error);
+    return sorted;
+}
+
+/* -- the rules -- */
+
+/* The mesh of a level and what the rules need besides it. */
+typedef struct gproji_level {
+    const gproj_mesh *mesh;
+    gproj_scheme scheme;
+    double *sharpness;  /* of each edge, > 1 at the boundary */
+    const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
+    int32_t corner_count;
+} gproji_level;
+
+/* The mean of a face's corners. */
+GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
+    int32_t h = mesh->face_halfedge[face], k;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
+}
+
+/* An edge: the smooth rule and the sharp one, blended by its sharpness. */
+GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    bool loop = level->scheme == GPROJ_LOOP;
+    double sharp = gproji_fmin(level->sharpness[edge], 1), smooth = 1 - sharp;
+    double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
+    int32_t h;
+    for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
+    for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
+        if (loop)
+            gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
+        else
+            gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, rows);
+    }
+}
+
+/* A vertex without a corner or crease, inside. */
+GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t vertex, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    double n = gproj_mesh_valence(mesh, vertex), ring;
+    if (level->scheme == GPROJ_LOOP) {
+        double c = 0.375 + 0.25 * cos(6.283185307179586 / n);
+        ring = share * (0.625 - c * c) / n;
+        gproji_rows_add(rows, vertex, share - n * ring);
+    } else {
+        ring = share / (n * n);
+        gproji_rows_add(rows, vertex, share * (n - 2) / n);
+    }
+    do {
+        gproji_rows_add(rows, mesh->origin[h ^ 1], ring);
+        if (level->scheme != GPROJ_LOOP) gproji_add_face_rule(mesh, mesh->face[h], ring, rows);
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+}
+
+/* A vertex whose edges of more than this sharpness are sharp: smooth, on a crease, or a corner. */
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
+                                            gproji_rows *rows) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
+    do {
+        if (level->sharpness[h / 2] > least) {
+            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
+            ++sharp;
+        }
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    if (sharp < 2) {
+        gproji_add_smooth_rule(level, vertex, share, rows);
+    } else if (sharp == 2) {
+        gproji_rows_add(rows, end[0], 0.125 * share);
+        gproji_rows_add(rows, vertex, 0.75 * share);
+        gproji_rows_add(rows, end[1], 0.125 * share);
+    } else {
+        gproji_rows_add(rows, vertex, share);
+    }
+}
+
+/* The mean sharpness of the edges at a vertex that are sharp on this level and smooth on the next; 1 without any. */
+GPROJI_INTERNAL double gproji_ending_sharpness(const gproji_level *level, int32_t vertex) {
+    int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double sum = 0;
+    do {
+        double s = level->sharpness[h / 2];
+        if (s > 0 && s <= 1) sum += s, ++count;
+        h = gproji_rotate(level->mesh, h);
+    } while (h != start);
+    return count ? sum / count : 1;
+}
+
+GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
+    double now;
+    if (level->mesh->vertex_halfedge[vertex] < 0 || (vertex < level->corner_count && level->corner[vertex])) {
+        gproji_rows_add(rows, vertex, 1);
+        return;
+    }
+    now = gproji_ending_sharpness(level, vertex);
+    gproji_add_vertex_rule(level, vertex, 0, now, rows);
+    if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
+}
+
+/* -- one level -- */
+
+/* How large a level is. */
+typedef struct gproji_counts {
+    int64_t vertices, edges, faces, corners;
+    int64_t polyline_vertices; /* at most: if all polylines run along edges */
+} gproji_counts;
+
+GPROJI_INTERNAL gproji_counts gproji_count(const gproj_mesh *mesh) {
+    gproji_counts counts = {0, 0, 0, 0, 0};
+    int32_t f;
+    counts.vertices = mesh->vertex_count;
+    counts.edges = mesh->edge_count;
+    counts.faces = mesh->face_count;
+    for (f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    counts.polyline_vertices = mesh->polyline_start[mesh->polyline_count];
+    return counts;
+}
+
+GPROJI_INTERNAL gproji_counts gproji_count_next(gproji_counts counts, gproj_scheme scheme) {
+    gproji_counts next;
+    next.vertices = counts.vertices + counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
+    next.edges = 2 * counts.edges + counts.corners;
+    next.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
+    next.corners = 4 * counts.corners;
+    next.polyline_vertices = 2 * counts.polyline_vertices;
+    return next;
+}
+
+GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
+                                                    const gproj_host *host, gproj_error *error) {
+    const gproj_mesh *mesh = level->mesh;
+    gproji_rows rows;
+    int32_t i;
+    gproji_counts next = gproji_count_next(gproji_count(mesh), level->scheme);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
+    for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
+        gproji_add_vertex_row(level, i, &rows);
+    for (i = 0; rows.stencil && i < mesh->edge_count; ++i, gproji_rows_next(&rows))
+        gproji_add_edge_rule(level, i, &rows);
+    for (i = 0; rows.stencil && level->scheme != GPROJ_LOOP && i < mesh->face_count; ++i, gproji_rows_next(&rows))
+        gproji_add_face_rule(mesh, i, 1, &rows);
+    return gproji_rows_end(&rows, error);
+}
+
+/* The faces of the next level: their degrees and corners, one after the other. */
+GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degree, int32_t *corner) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    bool loop = level->scheme == GPROJ_LOOP;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            *corner++ = mesh->origin[h];
+            *corner++ = edges + h / 2;
+            if (!loop) *corner++ = faces + f;
+            *corner++ = edges + mesh->prev[h] / 2;
+            *degree++ = loop ? 3 : 4;
+        }
+        if (!loop) continue;
+        for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
+        *degree++ = 3;
+    }
+}
+
+/* The half-edge from vertex a to vertex b; -1: they have no edge. */
+GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
+    int32_t start = mesh->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (mesh->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return -1;
+}
+
+/* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
+   number of their vertices. */
+GPROJI_INTERNAL int32_t gproji_level_polylines(const gproj_mesh *mesh, int32_t *start, int32_t *vertex) {
+    int32_t p, i, h, count = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        start[p] = count;
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            int32_t v = mesh->polyline_vertex[i];
+            bool last = i + 1 == mesh->polyline_start[p + 1];
+            if (vertex) vertex[count] = v;
+            ++count;
+            h = last ? -1 : gproji_halfedge_between(mesh, v, mesh->polyline_vertex[i + 1]);
+            if (h < 0) continue;
+            if (vertex) vertex[count] = mesh->vertex_count + h / 2;
+            ++count;
+        }
+    }
+    start[p] = count;
+    return count;
+}
+
+GPROJI_INTERNAL gproj_code gproji_set_level_polylines(gproji_mesh_object *object, const gproj_mesh *mesh,
+                                                      gproji_heap *heap, gproj_error *error) {
+    size_t starts = (size_t)mesh->polyline_count + 1, vertices = 0;
+    int32_t *start = (int32_t *)gproji_take(heap, starts, sizeof *start), *vertex = NULL;
+    gproj_code code;
+    if (start) {
+        vertices = (size_t)gproji_level_polylines(mesh, start, NULL);
+        vertex = (int32_t *)gproji_take(heap, vertices, sizeof *vertex);
+    }
+    if (vertex) {
+        gproji_level_polylines(mesh, start, vertex);
+        code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    } else {
+        code = gproji_fail_memory(error);
+    }
+    gproji_give(heap, vertex, vertices, sizeof *vertex);
+    gproji_give(heap, start, starts, sizeof *start);
+    return code;
+}
+
+/* The mesh of the next level. */
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
+                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
+    gproji_counts next = gproji_count_next(gproji_count(level->mesh), level->scheme);
+    size_t vertices = (size_t)next.vertices, faces = (size_t)next.faces, corners = (size_t)next.corners;
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    double *position = (double *)gproji_take(heap, vertices, 3 * sizeof *position);
+    int32_t *degree = (int32_t *)gproji_take(heap, faces, sizeof *degree);
+    int32_t *corner = (int32_t *)gproji_take(heap, corners, sizeof *corner);
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (object && position && degree && corner) {
+        gproji_soup soup;
+        gproj_stencil_apply(stencil, 3, level->mesh->position, position);
+        gproji_level_faces(level, degree, corner);
+        soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
+        soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
+        code = gproji_mesh_build(object, &soup, error);
+        if (!code) code = gproji_set_level_polylines(object, level->mesh, heap, error);
+    } else {
+        gproji_fail_memory(error);
+    }
+    gproji_give(heap, position, vertices, 3 * sizeof *position);
+    gproji_give(heap, degree, faces, sizeof *degree);
+    gproji_give(heap, corner, corners, sizeof *corner);
+    return object ? gproji_mesh_done(object, code) : NULL;
+}
+
+/* What is left of the sharpness on the next level: of each half of an edge one less, of new edges nothing. Each coarse
+   corner's face there begins with the halves of two edges, the last one and the first one of its corner. */
+GPROJI_INTERNAL void gproji_level_creases(const gproji_level *level, const gproj_mesh *fine, double *sharpness) {
+    const gproj_mesh *mesh = level->mesh;
+    int32_t f, k, e, at = 0;
+    for (e = 0; e < fine->edge_count; ++e) sharpness[e] = 0;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
+            int32_t half = fine->face_halfedge[at];
+            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+        }
+        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+    }
+}
+
+/* -- the stencil's functions -- */
+
+GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
+                                                 gproj_error *error) {
+    gproj_stencil *transposed;
+    gproji_error_clear(error);
+    if (!stencil) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the stencil to transpose is NULL");
+        return NULL;
+    }
+    transposed = gproji_transposed(stencil, host);
+    if (!transposed) gproji_fail_memory(error);
+    return transposed;
+}
+
+GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
+                                                const gproj_host *host, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproji_rows rows;
+    int64_t k, l;
+    int32_t i;
+    gproji_error_clear(error);
+    if (!fine || !coarse) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a stencil to multiply is NULL");
+        return NULL;
+    }
+    if (fine->column_count != coarse->row_count) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
+                    fine->column_count, coarse->row_count);
+        return NULL;
+    }
+    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
+    for (i = 0; rows.stencil && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+        for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
+            int32_t middle = fine->column[k];
+            for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
+                gproji_rows_add(&rows, coarse->column[l], fine->weight[k] * coarse->weight[l]);
+        }
+    }
+    return gproji_rows_end(&rows, error);
+}
+
+/* -- all levels -- */
+
+/* The state between two levels. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* of the work arrays */
+    const gproj_host *host;
+    gproj_error *error;
+    const gproj_subdivide_options *options;
+    gproji_level level;
+    bool *corner;           /* of each vertex of the first mesh */
+    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
+
+GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                     gproj_error *error) {
+    gproji_counts counts = gproji_count(mesh);
+    int32_t level;
+    for (level = 1; level <= options->levels; ++level) {
+        counts = gproji_count_next(counts, options->scheme);
+        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
+            counts.polyline_vertices > INT32_MAX) {
+            return gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* Loop's scheme takes triangles, no two of them with the same corners: those of the next level would share edges. */
+GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_error *error) {
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3) {
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        }
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
+    double x = GPROJI_SHARP;
+    uint64_t bits;
+    if (options->sharpness) x = options->sharpness[crease];
+    memcpy(&bits, &x, sizeof bits);
+    if (bits == UINT64_C(0x7ff0000000000000)) return GPROJI_SHARP; /* infinite */
+    return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                gproj_error *error) {
+    int32_t k;
+    if (options->crease_count < 0 || options->corner_count < 0) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: %d creases and %d corners",
+                           options->crease_count, options->corner_count);
+    }
+    for (k = 0; k < options->crease_count; ++k) {
+        int32_t e = options->creases ? options->creases[k] : k;
+        if (e < 0 || e >= mesh->edge_count) {
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
+                               "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
+                               mesh->edge_count);
+        }
+        if (gproji_crease_sharpness(options, k) < 0) {
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
+                               options->sharpness[k]);
+        }
+    }
+    for (k = 0; k < options->corner_count; ++k) {
+        int32_t v = options->corners ? options->corners[k] : k;
+        if (v >= 0 && v < mesh->vertex_count) continue;
+        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
+                           "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
+                           mesh->vertex_count);
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                    gproj_error *error) {
+    gproj_code code;
+    if (options->scheme != GPROJ_CATMULL_CLARK && options->scheme != GPROJ_LOOP) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
+                           (int32_t)options->scheme);
+    }
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                           (int32_t)GPROJI_LEVELS_MAX);
+    }
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "subdivide: a stencil from level %d to level %d; take 0 to %d", options->stencil_level,
+                           options->levels, options->levels - 1);
+    }
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (!code && options->scheme == GPROJ_LOOP) code = gproji_check_triangles(mesh, error);
+    if (!code) code = gproji_check_creases(mesh, options, error);
+    return code ? code : gproji_check_level_counts(mesh, options, error);
+}
+
+/* The first level: corners, and the sharpness of the edges. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const gproj_mesh *mesh) {
+    const gproj_subdivide_options *options = s->options;
+    double *sharpness = (double *)gproji_take(&s->heap, (size_t)mesh->edge_count, sizeof *sharpness);
+    int32_t k;
+    s->level.mesh = mesh, s->level.scheme = options->scheme, s->level.sharpness = sharpness;
+    s->level.corner_count = mesh->vertex_count;
+    s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
+    if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
+    for (k = 0; k < mesh->edge_count; ++k)
+        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
+    for (k = 0; k < options->crease_count; ++k) {
+        double *edge = sharpness + (options->creases ? options->creases[k] : k);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
+    }
+    for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
+    for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
+        if (gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2) s->corner[k] = true;
+    return GPROJ_OK;
+}
+
+/* Takes a level's stencil into that of all levels; it is given away. */
+GPROJI_INTERNAL gproj_code gproji_take_stencil(gproji_subdivision *s, gproj_stencil *step) {
+    gproj_stencil *both = step;
+    if (s->stencil) {
+        both = gproj_stencil_multiply(step, s->stencil, s->host, s->error);
+        gproj_stencil_destroy(step);
+        gproj_stencil_destroy(s->stencil);
+    }
+    s->stencil = both;
+    return both ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+}
+
+/* From a level to the next one. */
+GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
+    gproji_level *level = &s->level;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error);
+    gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
+    double *sharpness = NULL;
+    if (fine) {
+        sharpness = (double *)gproji_take(&s->heap, (size_t)fine->edge_count, sizeof *sharpness);
+        code = sharpness ? GPROJ_OK : gproji_fail_memory(s->error);
+    }
+    if (code) {
+        gproj_mesh_destroy(fine);
+        gproj_stencil_destroy(step);
+        return code;
+    }
+    gproji_level_creases(level, fine, sharpness);
+    gproji_give(&s->heap, level->sharpness, (size_t)level->mesh->edge_count, sizeof *level->sharpness);
+    gproj_mesh_destroy(s->own);
+    level->sharpness = sharpness;
+    level->mesh = s->own = fine;
+    if (keep_stencil) return gproji_take_stencil(s, step);
+    gproj_stencil_destroy(step);
+    return GPROJ_OK;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                           gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
+    gproj_subdivide_options given;
+    gproji_subdivision s;
+    gproj_code code;
+    int32_t level;
+    gproji_error_clear(error);
+    if (stencil) *stencil = NULL;
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to subdivide is NULL");
+        return NULL;
+    }
+    memset(&given, 0, sizeof given);
+    if (options) given = *options;
+    if (given.levels == 0) given.levels = 1;
+    if (gproji_check_subdivision(mesh, &given, error)) return NULL;
+    memset(&s, 0, sizeof s);
+    s.heap = gproji_heap_of(host);
+    s.host = host, s.error = error, s.options = &given;
+    code = gproji_subdivision_begin(&s, mesh);
+    for (level = 0; !code && level < given.levels; ++level)
+        code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
+    gproji_give(&s.heap, s.corner, (size_t)mesh->vertex_count, sizeof *s.corner);
+    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof *s.level.sharpness);
+    if (code) {
+        gproj_mesh_destroy(s.own);
+        gproj_stencil_destroy(s.stencil);
+        return NULL;
+    }
+    if (stencil) *stencil = s.stencil;
+    return s.own;
+}
+
+/* ============================================================================================================
    >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory, vector.
 
    A binary tree of axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median of the box centres
@@ -10563,6 +12366,1365 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
     hit.distance = gproji_distance3(hit.point, point);
     hit.face = surface->triangle_face[item];
     return hit;
+}
+
+/* ============================================================================================================
+   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh,
+   surface (polygons).
+
+   Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them
+   Euler operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and
+   triangulations are sequences of them; those that may be refused midway work with a copy to go back to.
+   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into
+   lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
+typedef enum gproji_edit_kind {
+    GPROJI_EDIT_VERTEX,
+    GPROJI_EDIT_HALFEDGE,
+    GPROJI_EDIT_EDGE,
+    GPROJI_EDIT_FACE,
+    GPROJI_EDIT_KINDS
+} gproji_edit_kind;
+
+/* How many integers an element has: each is an array below. */
+static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
+
+/* The state of an edit: what a copy to go back to must have. */
+typedef struct gproji_edit_store {
+    int32_t count[GPROJI_EDIT_KINDS];
+    int32_t room[GPROJI_EDIT_KINDS];
+    int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
+    double *position;                  /* 3 * room of vertices */
+    int32_t polyline_count;
+    int32_t polyline_room;
+    int32_t *polyline_start;  /* polyline_count + 1 */
+    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for what they were merged into */
+
+    int32_t *vertex_halfedge;
+    int32_t *vertex_into; /* itself, or what it was merged into */
+    int32_t *vertex_mark; /* the last stamp that met it */
+    int32_t *on_polyline; /* is it a vertex of a polyline? */
+    int32_t *next, *prev, *origin, *face;
+    int32_t *edge_into; /* itself, what it was merged into, or -1: collapsed */
+    int32_t *face_halfedge, *face_degree, *face_parent;
+    int32_t *face_mark;
+} gproji_edit_store;
+
+/* The owner of a gproj_edit. */
+typedef struct gproji_edit_object {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproj_edit edit;
+    gproj_mesh view; /* the same arrays for the functions of >>mesh that go round a vertex or a face */
+    gproji_edit_store now;
+    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
+    int32_t number_count[GPROJI_EDIT_KINDS];
+    int32_t stamp;
+} gproji_edit_object;
+
+/* -- memory -- */
+
+/* The arrays within the blocks. */
+GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
+    size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
+           faces = (size_t)s->room[GPROJI_EDIT_FACE];
+    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX];
+    s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_mark = s->vertex_into + vertices;
+    s->on_polyline = s->vertex_mark + vertices;
+    s->next = s->block[GPROJI_EDIT_HALFEDGE];
+    s->prev = s->next + halfedges;
+    s->origin = s->prev + halfedges;
+    s->face = s->origin + halfedges;
+    s->edge_into = s->block[GPROJI_EDIT_EDGE];
+    s->face_halfedge = s->block[GPROJI_EDIT_FACE];
+    s->face_degree = s->face_halfedge + faces;
+    s->face_parent = s->face_degree + faces;
+    s->face_mark = s->face_parent + faces;
+}
+
+/* Shows the arrays in the public struct and in the view. */
+GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
+    gproji_edit_store *s = &object->now;
+    gproj_edit *edit = &object->edit;
+    gproj_mesh *view = &object->view;
+    gproji_edit_point(s);
+    edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
+    edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
+    edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
+    edit->position = view->position = s->position;
+    edit->vertex_halfedge = view->vertex_halfedge = s->vertex_halfedge;
+    edit->face_halfedge = view->face_halfedge = s->face_halfedge;
+    edit->face_degree = view->face_degree = s->face_degree;
+    edit->face_parent = s->face_parent;
+    edit->next = view->next = s->next;
+    edit->prev = view->prev = s->prev;
+    edit->origin = view->origin = s->origin;
+    edit->face = view->face = s->face;
+    edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
+    edit->edge_number = object->number[GPROJI_EDIT_EDGE];
+    edit->face_number = object->number[GPROJI_EDIT_FACE];
+}
+
+GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(heap, s->block[kind], (size_t)s->room[kind], (size_t)gproji_edit_rows[kind] * sizeof(int32_t));
+    gproji_give(heap, s->position, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    gproji_give(heap, s->polyline_start, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
+}
+
+/* Takes the arrays for the counts and rooms of a store; after a failure what there is can be given back. */
+GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
+    bool complete = true;
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        s->block[kind] = (int32_t *)gproji_take_zeroed(heap, (size_t)s->room[kind], size);
+        complete = complete && s->block[kind];
+    }
+    s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
+    s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
+    if (!complete || !s->position || !s->polyline_start || !s->polyline_vertex) return false;
+    gproji_edit_point(s);
+    return true;
+}
+
+/* A copy to go back to; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
+    const gproji_edit_store *s = &object->now;
+    int32_t kind;
+    *copy = *s;
+    if (!gproji_edit_take(&object->heap, copy)) {
+        gproji_edit_give(&object->heap, copy);
+        return false;
+    }
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        memcpy(copy->block[kind], s->block[kind],
+               (size_t)gproji_edit_rows[kind] * (size_t)s->room[kind] * sizeof(int32_t));
+    memcpy(copy->position, s->position, (size_t)s->count[GPROJI_EDIT_VERTEX] * 3 * sizeof(double));
+    memcpy(copy->polyline_start, s->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(copy->polyline_vertex, s->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    return true;
+}
+
+/* The end of what began with gproji_edit_save: back to the copy after an error. Returns the error. */
+GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
+    gproji_edit_give(&object->heap, code ? &object->now : copy);
+    if (code) object->now = *copy;
+    gproji_edit_publish(object);
+    return code;
+}
+
+/* Makes room for `more` elements of a kind, at least doubling it. */
+GPROJI_INTERNAL bool gproji_edit_grow(gproji_edit_object *object, int32_t kind, int32_t more) {
+    gproji_edit_store *s = &object->now;
+    int32_t rows = gproji_edit_rows[kind], old_room = s->room[kind], room, r, *block;
+    int32_t needed = s->count[kind] + more;
+    double *position = NULL;
+    if (needed <= old_room) return true;
+    room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old_room) : needed;
+    block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, (size_t)rows * sizeof(int32_t));
+    if (!block) return false;
+    if (kind == GPROJI_EDIT_VERTEX) {
+        position =
+            (double *)gproji_retake(&object->heap, s->position, (size_t)old_room, (size_t)room, 3 * sizeof(double));
+        if (!position) {
+            gproji_give(&object->heap, block, (size_t)room, (size_t)rows * sizeof(int32_t));
+            return false;
+        }
+        s->position = position;
+    }
+    for (r = 0; r < rows; ++r)
+        memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old_room,
+               (size_t)s->count[kind] * sizeof(int32_t));
+    gproji_give(&object->heap, s->block[kind], (size_t)old_room, (size_t)rows * sizeof(int32_t));
+    s->block[kind] = block;
+    s->room[kind] = room;
+    gproji_edit_publish(object);
+    return true;
+}
+
+/* Makes room for new elements, so that those who add them cannot fail. */
+GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
+                                               int64_t faces, gproj_error *error) {
+    const int32_t *count = object->now.count;
+    if (count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
+        count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2) {
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
+                           (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
+    }
+    if (!gproji_edit_grow(object, GPROJI_EDIT_VERTEX, (int32_t)vertices) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_HALFEDGE, (int32_t)(2 * edges)) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_EDGE, (int32_t)edges) ||
+        !gproji_edit_grow(object, GPROJI_EDIT_FACE, (int32_t)faces)) {
+        return gproji_fail_memory(error);
+    }
+    return GPROJ_OK;
+}
+
+/* -- elements -- */
+
+GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
+    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
+    s->vertex_into[v] = v;
+    return v;
+}
+
+/* Its half-edges are 2e and 2e + 1. */
+GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
+    int32_t e = s->count[GPROJI_EDIT_EDGE]++;
+    s->count[GPROJI_EDIT_HALFEDGE] += 2;
+    s->edge_into[e] = e;
+    return e;
+}
+
+/* A part of face `whole`. */
+GPROJI_INTERNAL int32_t gproji_edit_add_face(gproji_edit_store *s, int32_t whole) {
+    int32_t f = s->count[GPROJI_EDIT_FACE]++;
+    s->face_parent[f] = s->face_parent[whole];
+    return f;
+}
+
+/* What a number stands for, by the chain of merges, which is shortened on the way; -1: nothing. */
+GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
+    while (number >= 0 && into[number] != number) {
+        if (into[number] >= 0) into[number] = into[into[number]];
+        number = into[number];
+    }
+    return number;
+}
+
+GPROJI_INLINE void gproji_edit_link(gproji_edit_store *s, int32_t h, int32_t following) {
+    s->next[h] = following;
+    s->prev[following] = h;
+}
+
+/* Chooses vertex_halfedge, given an outgoing half-edge. */
+GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
+    gproji_edit_store *s = &object->now;
+    int32_t h = outgoing;
+    while (s->face[h] >= 0) {
+        h = gproji_rotate(&object->view, h);
+        if (h == outgoing) break;
+    }
+    s->vertex_halfedge[s->origin[h]] = h;
+}
+
+/* The half-edge of a face that starts at a vertex; -1: it is no corner. */
+GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t face, int32_t vertex) {
+    int32_t start = s->face_halfedge[face], h = start;
+    do {
+        if (s->origin[h] == vertex) return h;
+        h = s->next[h];
+    } while (h != start);
+    return -1;
+}
+
+/* The half-edge from vertex a to vertex b; -1: none. */
+GPROJI_INTERNAL int32_t gproji_edit_joined(const gproji_edit_object *object, int32_t a, int32_t b) {
+    const gproj_mesh *view = &object->view;
+    int32_t start = view->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (view->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(view, h);
+    } while (h != start);
+    return -1;
+}
+
+/* A new stamp for marks, greater than all that are in use. */
+GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
+    gproji_edit_store *s = &object->now;
+    if (object->stamp == INT32_MAX) {
+        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
+        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
+        object->stamp = 0;
+    }
+    return ++object->stamp;
+}
+
+/* out = (1 - t) v_a + t v_b, bit for bit one of them at t = 0 and 1. `out` may be one of them. */
+GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, int32_t b, double t, int32_t out) {
+    const double *p = s->position + 3 * (size_t)a, *q = s->position + 3 * (size_t)b;
+    double *x = s->position + 3 * (size_t)out;
+    int32_t k;
+    if (t <= 0 || t >= 1) {
+        gproji_copy3(t <= 0 ? p : q, x);
+        return;
+    }
+    for (k = 0; k < 3; ++k) x[k] = p[k] + t * (q[k] - p[k]);
+}
+
+/* -- what calls give -- */
+
+GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
+    gproji_error_clear(error);
+    if (!edit) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the edit is NULL");
+        return NULL;
+    }
+    return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
+}
+
+/* Is a number in the range of its kind? */
+GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
+                                     gproj_place place, int32_t number, gproj_error *error) {
+    int32_t count = object->now.count[kind];
+    if (number >= 0 && number < count) return true;
+    gproji_fail(error, GPROJ_ERROR_INDEX, place, number, "%s %d does not exist: they are 0 to %d", what, number,
+                count - 1);
+    return false;
+}
+
+/* Half-edge 2e of the edge e that a number stands for; -1 and an error where there is none. */
+GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
+    int32_t root;
+    if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    root = gproji_edit_root(object->now.edge_into, edge);
+    if (root < 0) {
+        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+        return -1;
+    }
+    if (!(t >= 0 && t <= 1)) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                    "the parameter %g on edge %d is not from 0 to 1", t, edge);
+        return -1;
+    }
+    return 2 * root;
+}
+
+GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
+    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, "face", GPROJ_PLACE_FACE, face, error)) return false;
+    if (object->now.face_halfedge[face] >= 0) return true;
+    gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face);
+    return false;
+}
+
+/* The half-edge of a face at the corner that a vertex number stands for; -1 and an error where there is none. */
+GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
+                                                 gproj_error *error) {
+    int32_t h;
+    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, "vertex", GPROJ_PLACE_VERTEX, vertex, error)) return -1;
+    h = gproji_edit_corner(&object->now, face, gproji_edit_root(object->now.vertex_into, vertex));
+    if (h < 0)
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face, "face %d has no corner at vertex %d", face,
+                    vertex);
+    return h;
+}
+
+/* -- polylines -- */
+
+/* Do vertices at `i` and `i + 1` of the polylines run along the edge between a and b? */
+GPROJI_INLINE bool gproji_polyline_runs(const gproji_edit_store *s, int32_t i, int32_t a, int32_t b) {
+    int32_t u = s->polyline_vertex[i], v = s->polyline_vertex[i + 1];
+    return (u == a && v == b) || (u == b && v == a);
+}
+
+/* How often polylines run along a half-edge's edge. */
+GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, int32_t h) {
+    int32_t a = s->origin[h], b = s->origin[h ^ 1], p, i, count = 0;
+    if (!s->on_polyline[a] || !s->on_polyline[b]) return 0;
+    for (p = 0; p < s->polyline_count; ++p)
+        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) count += gproji_polyline_runs(s, i, a, b);
+    return count;
+}
+
+/* Makes room for `more` vertices of polylines. */
+GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
+    gproji_edit_store *s = &object->now;
+    int64_t needed = s->polyline_start[s->polyline_count] + more;
+    int32_t *moved, room;
+    if (needed <= s->polyline_room) return GPROJ_OK;
+    if (needed > INT32_MAX / 2) {
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
+    }
+    room = 2 * (int32_t)needed;
+    moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
+                                     sizeof(int32_t));
+    if (!moved) return gproji_fail_memory(error);
+    s->polyline_vertex = moved;
+    s->polyline_room = room;
+    return GPROJ_OK;
+}
+
+/* Puts vertex x, new between a and b, into polylines that run along their edge. There is room. */
+GPROJI_INTERNAL void gproji_polyline_split(gproji_edit_store *s, int32_t a, int32_t b, int32_t x) {
+    int32_t p, q, i;
+    if (!s->on_polyline[a] || !s->on_polyline[b]) return;
+    for (p = 0; p < s->polyline_count; ++p) {
+        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
+            int32_t *place = s->polyline_vertex + i + 1;
+            if (!gproji_polyline_runs(s, i, a, b)) continue;
+            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
+            *place = x;
+            s->on_polyline[x] = 1;
+            for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
+            ++i;
+        }
+    }
+}
+
+GPROJI_INTERNAL void gproji_polyline_merge(gproji_edit_store *s, int32_t gone, int32_t kept) {
+    int32_t i;
+    if (!s->on_polyline[gone]) return;
+    s->on_polyline[kept] = 1;
+    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
+}
+
+/* -- the three operators; there is room -- */
+
+/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on,
+   of the new edge, is returned. */
+GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
+    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1;
+    gproji_edit_between(s, a, b, t, x);
+    s->origin[onward] = s->origin[g] = x;
+    s->origin[back] = b;
+    s->face[onward] = s->face[h];
+    s->face[back] = s->face[g];
+    gproji_edit_link(s, onward, s->next[h]);
+    gproji_edit_link(s, h, onward);
+    gproji_edit_link(s, s->prev[g], back);
+    gproji_edit_link(s, back, g);
+    if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
+    if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
+    if (s->face[g] >= 0 && s->face_halfedge[s->face[g]] == g) s->face_halfedge[s->face[g]] = back;
+    if (s->vertex_halfedge[b] == g) s->vertex_halfedge[b] = back;
+    s->vertex_halfedge[x] = s->face[g] < 0 ? g : onward;
+    gproji_polyline_split(s, a, b, x);
+    gproji_edit_publish(object);
+    return onward;
+}
+
+/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin:
+   it is in the part with `to`, its twin in the part with `from`. */
+GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+    gproji_edit_store *s = &object->now;
+    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = gproji_edit_add_face(s, whole);
+    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
+    bool first = false; /* is the first corner of the whole in the part with `from`? */
+    s->origin[d] = s->origin[from];
+    s->origin[o] = s->origin[to];
+    gproji_edit_link(s, before_from, d);
+    gproji_edit_link(s, d, to);
+    gproji_edit_link(s, before_to, o);
+    gproji_edit_link(s, o, from);
+    for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
+    s->face[d] = s->face[o] = whole;
+    start = h = first ? d : o;
+    do {
+        s->face[h] = part;
+        ++count;
+        h = s->next[h];
+    } while (h != start);
+    s->face_halfedge[part] = start;
+    s->face_degree[part] = count;
+    s->face_degree[whole] += 2 - count;
+    gproji_edit_publish(object);
+    return d;
+}
+
+/* Half-edge h takes the place of half-edge `other`, which has the same ends, and their edges become one, that of h. */
+GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
+    int32_t f = s->face[other];
+    gproji_edit_link(s, s->prev[other], h);
+    gproji_edit_link(s, h, s->next[other]);
+    s->face[h] = f;
+    if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
+    s->origin[other] = s->origin[other ^ 1] = -1;
+    s->edge_into[other / 2] = h / 2;
+}
+
+/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are
+   left, whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of
+   the triangle, or -1. */
+GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
+    int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
+    *apex = -1;
+    gproji_edit_link(s, y, x);
+    if (f < 0) return x;
+    if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
+    if (--s->face_degree[f] > 2) return x;
+    s->face_halfedge[f] = -1;
+    if (x < y) {
+        gproji_edit_replace(s, x, y ^ 1);
+        *apex = x ^ 1;
+        return x;
+    }
+    gproji_edit_replace(s, y, x ^ 1);
+    *apex = y;
+    return y ^ 1;
+}
+
+/* Collapses the edge of half-edge h to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
+GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
+    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing, apex[2];
+    gproji_edit_between(s, a, b, t, kept);
+    do {
+        s->origin[i] = kept;
+        i = gproji_rotate(&object->view, i);
+    } while (i != start);
+    gproji_edit_unlink(s, h, &apex[0]);
+    outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
+    s->origin[h] = s->origin[h ^ 1] = -1;
+    s->edge_into[h / 2] = -1;
+    s->vertex_into[gone] = kept;
+    s->vertex_halfedge[gone] = -1;
+    gproji_edit_anchor(object, outgoing);
+    for (i = 0; i < 2; ++i)
+        if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
+    gproji_polyline_merge(s, gone, kept);
+    return kept;
+}
+
+/* -- may an edge be collapsed? -- */
+
+GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
+}
+
+/* A triangle at half-edge h would become an edge without a face. */
+GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
+    int32_t x, y;
+    if (!gproji_is_triangle(s, h)) return GPROJ_OK;
+    x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
+    if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                       "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its edges",
+                       h / 2, s->face[h]);
+}
+
+/* Marks the neighbours of the origin of h, and its faces. */
+GPROJI_INTERNAL int32_t gproji_edit_mark_star(gproji_edit_object *object, int32_t h) {
+    gproji_edit_store *s = &object->now;
+    int32_t stamp = gproji_edit_stamp(object), i = h;
+    do {
+        s->vertex_mark[s->origin[i ^ 1]] = stamp;
+        if (s->face[i] >= 0) s->face_mark[s->face[i]] = stamp;
+        i = gproji_rotate(&object->view, i);
+    } while (i != h);
+    return stamp;
+}
+
+/* The ends of h have no neighbour in common but the third vertices of triangles at h, and no face but those at h. */
+GPROJI_INTERNAL gproj_code gproji_check_link(gproji_edit_object *object, int32_t h, gproj_error *error) {
+    const gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, stamp = gproji_edit_mark_star(object, h), i;
+    int32_t left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
+    int32_t right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
+        int32_t v = s->origin[i ^ 1], f = s->face[i];
+        if (s->vertex_mark[v] == stamp && v != left && v != right) {
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
+                               "triangle is between",
+                               h / 2, s->origin[h], s->origin[g], v);
+        }
+        if (f >= 0 && s->face_mark[f] == stamp && f != s->face[h] && f != s->face[g]) {
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2,
+                               s->origin[h], s->origin[g], f);
+        }
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
+    const gproji_edit_store *s = &object->now;
+    int32_t a = s->origin[h], b = s->origin[h ^ 1];
+    gproj_code code = gproji_check_vanishing(s, h, error);
+    if (!code) code = gproji_check_vanishing(s, h ^ 1, error);
+    if (code) return code;
+    if (s->face[h] >= 0 && s->face[h ^ 1] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
+        gproj_mesh_is_boundary_vertex(&object->view, b)) {
+        return gproji_fail(
+            error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
+            "and the mesh would be pinched there",
+            h / 2, a, b);
+    }
+    return gproji_check_link(object, h, error);
+}
+
+/* -- life -- */
+
+GPROJI_INTERNAL void gproji_edit_load(gproji_edit_object *object, const gproj_mesh *mesh) {
+    gproji_edit_store *s = &object->now;
+    size_t vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count,
+           faces = (size_t)mesh->face_count;
+    int32_t i;
+    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
+    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
+    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
+    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
+    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
+    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
+    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
+    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
+    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
+    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
+    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
+    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
+}
+
+GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
+    gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
+    int32_t kind;
+    if (!object) return;
+    gproji_edit_give(&object->heap, &object->now);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+    gproji_destroy_object(object, sizeof *object);
+}
+
+GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    gproji_edit_object *object;
+    gproji_edit_store *s;
+    int32_t kind;
+    gproji_error_clear(error);
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
+        return NULL;
+    }
+    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object);
+    if (!object) {
+        gproji_fail_memory(error);
+        return NULL;
+    }
+    s = &object->now;
+    s->count[GPROJI_EDIT_VERTEX] = mesh->vertex_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
+    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_FACE] = mesh->face_count;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) s->room[kind] = s->count[kind];
+    s->polyline_count = mesh->polyline_count;
+    s->polyline_room = mesh->polyline_start[mesh->polyline_count];
+    if (!gproji_edit_take(&object->heap, s)) {
+        gproji_fail_memory(error);
+        gproj_edit_destroy(&object->edit);
+        return NULL;
+    }
+    gproji_edit_load(object, mesh);
+    gproji_edit_publish(object);
+    return &object->edit;
+}
+
+GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
+    gproj_memory none;
+    memset(&none, 0, sizeof none);
+    if (!edit) return none;
+    return ((const gproji_edit_object *)(const void *)((const char *)edit - offsetof(gproji_edit_object, edit)))
+        ->heap.account;
+}
+
+/* -- from an edit to a mesh -- */
+
+/* What gproj_edit_mesh works with: all arrays as large as they can become. */
+typedef struct gproji_edit_out {
+    int32_t *number[GPROJI_EDIT_KINDS];
+    gproji_soup soup;
+    double *position;
+    int32_t *degree, *corner;
+    int32_t polyline_count, *start, *vertex;
+} gproji_edit_out;
+
+/* False when there is no memory. The numbers stay with the edit if all goes well: see gproji_edit_keep_numbers. */
+GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
+    const gproji_edit_store *s = &object->now;
+    bool complete = true;
+    int32_t kind;
+    memset(out, 0, sizeof *out);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        if (kind == GPROJI_EDIT_HALFEDGE) continue;
+        out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        complete = complete && out->number[kind];
+    }
+    out->position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    out->degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    out->corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
+    out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
+    return complete && out->position && out->degree && out->corner && out->start && out->vertex;
+}
+
+/* Numbers the vertices and faces that are left, and writes them down as polygons. */
+GPROJI_INTERNAL void gproji_edit_write_soup(const gproji_edit_store *s, gproji_edit_out *out) {
+    gproji_soup *soup = &out->soup;
+    int32_t *vertex = out->number[GPROJI_EDIT_VERTEX], *face = out->number[GPROJI_EDIT_FACE];
+    int32_t v, f, h, k, corners = 0;
+    for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
+        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
+        if (s->vertex_into[v] != v) continue;
+        memcpy(out->position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+    }
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        h = s->face_halfedge[f];
+        face[f] = h < 0 ? -1 : soup->face_count;
+        if (h < 0) continue;
+        out->degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) out->corner[corners++] = vertex[s->origin[h]];
+    }
+    soup->position = out->position;
+    soup->face_degree = out->degree;
+    soup->face_vertex = out->corner;
+}
+
+/* Writes down the polylines in new numbers, without repeated vertices, and those with at least two. */
+GPROJI_INTERNAL void gproji_edit_write_polylines(const gproji_edit_store *s, gproji_edit_out *out) {
+    int32_t p, i, begin, end = 0;
+    out->start[0] = 0;
+    for (p = 0; p < s->polyline_count; ++p) {
+        begin = end;
+        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
+            int32_t v = out->number[GPROJI_EDIT_VERTEX][s->polyline_vertex[i]];
+            if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
+        }
+        if (end < begin + 2) {
+            end = begin;
+            continue;
+        }
+        out->start[++out->polyline_count] = end;
+    }
+}
+
+/* Edges have the numbers that the mesh gave them. */
+GPROJI_INTERNAL void gproji_edit_number_edges(const gproji_edit_store *s, const gproj_mesh *mesh,
+                                              gproji_edit_out *out) {
+    int32_t *edge = out->number[GPROJI_EDIT_EDGE], f, e, h, k, i;
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        if (s->face_halfedge[f] < 0) continue;
+        h = s->face_halfedge[f], k = mesh->face_halfedge[out->number[GPROJI_EDIT_FACE][f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = mesh->next[k]) edge[h / 2] = k / 2;
+    }
+    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
+        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
+}
+
+/* The new maps of numbers for the old ones. */
+GPROJI_INTERNAL void gproji_edit_keep_numbers(gproji_edit_object *object, gproji_edit_out *out) {
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+        object->number[kind] = out->number[kind];
+        object->number_count[kind] = object->now.count[kind];
+        out->number[kind] = NULL;
+    }
+    gproji_edit_publish(object);
+}
+
+GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_mesh_object *made;
+    gproji_edit_out out;
+    gproji_pool pool;
+    gproj_code code;
+    int32_t kind;
+    if (!object) return NULL;
+    made = gproji_mesh_begin(host, error);
+    if (!made) return NULL;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_edit_out_take(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
+    if (!code) {
+        gproji_edit_write_soup(&object->now, &out);
+        gproji_edit_write_polylines(&object->now, &out);
+        code = gproji_mesh_build(made, &out.soup, error);
+    }
+    if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
+    if (!code) {
+        gproji_edit_number_edges(&object->now, &made->mesh, &out);
+        gproji_edit_keep_numbers(object, &out);
+    }
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        gproji_give(&object->heap, out.number[kind], (size_t)object->now.count[kind], sizeof(int32_t));
+    gproji_pool_give_all(&pool);
+    return gproji_mesh_done(made, code);
+}
+
+/* -- edges and faces -- */
+
+GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
+    gproji_edit_object *object = gproji_edit_owner(edit, NULL);
+    if (!object || vertex < 0 || vertex >= edit->vertex_count) return -1;
+    return gproji_edit_root(object->now.vertex_into, vertex);
+}
+
+GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other) {
+    gproji_edit_object *object = gproji_edit_owner(edit, NULL);
+    int32_t a = gproj_edit_vertex(edit, vertex), b = gproj_edit_vertex(edit, other), h;
+    h = a < 0 || b < 0 ? -1 : gproji_edit_joined(object, a, b);
+    return h < 0 ? -1 : h / 2;
+}
+
+GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
+        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error)) {
+        return -1;
+    }
+    return object->now.origin[gproji_edit_split(object, h, t)];
+}
+
+GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
+                                        gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t from, to;
+    if (!object || !gproji_edit_given_face(object, face, error)) return -1;
+    from = gproji_edit_given_corner(object, face, vertex, error);
+    to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
+    if (to < 0) return -1;
+    if (from == to) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                    "face %d cannot be cut from vertex %d to itself", face, vertex);
+        return -1;
+    }
+    if (gproji_edit_joined(object, object->now.origin[from], object->now.origin[to]) >= 0) {
+        gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                    "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex, other);
+        return -1;
+    }
+    return gproji_edit_reserve(object, 0, 1, 1, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
+}
+
+GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    return h < 0 || gproji_check_collapse(object, h, error) ? -1 : gproji_edit_collapse(object, h, t);
+}
+
+/* -- triangles -- */
+
+enum {
+    GPROJI_KLINCSEK_MAX = 128 /* corners of a polygon for which all triangulations are compared: O(n^3) */
+};
+
+/* The work of cutting faces into triangles. */
+typedef struct gproji_triangulation {
+    gproji_polygon polygon;
+    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part of the face that is left */
+    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order of cutting */
+    int32_t ear_count;
+    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners that are left for the comparison */
+    int32_t ring_count;
+    double *least; /* ring_count^2: the least sum for the part of the ring from i to j */
+    int32_t *apex; /* ring_count^2: the third corner of the triangle at i and j for which it is least */
+} gproji_triangulation;
+
+/* For faces of at most `degree` corners. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_triangulation_take(gproji_pool *pool, gproji_triangulation *work, int32_t degree) {
+    int64_t side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
+    memset(work, 0, sizeof *work);
+    work->polygon.capacity = degree;
+    work->polygon.xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
+    work->polygon.vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->polygon.next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->polygon.prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->halfedge = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    work->ear = (int32_t *)gproji_pool_take(pool, degree, 2 * sizeof(int32_t));
+    work->least = (double *)gproji_pool_take(pool, side * side, sizeof(double));
+    work->apex = (int32_t *)gproji_pool_take(pool, side * side, sizeof(int32_t));
+    return work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
+           work->ear && work->least && work->apex;
+}
+
+GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
+                                         int32_t b) {
+    return gproji_edit_joined(object, polygon->vertex[a], polygon->vertex[b]) >= 0;
+}
+
+/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any
+   more, any whose neighbours have no edge yet is taken; false where there is none. */
+GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
+    gproji_polygon *polygon = &work->polygon;
+    int64_t budget = 512 * (int64_t)polygon->count;
+    int32_t left = polygon->count, b = 0, refused = 0, i;
+    bool any = false;
+    work->ear_count = 0;
+    while (left > GPROJI_KLINCSEK_MAX) {
+        int32_t a = polygon->prev[b], c = polygon->next[b];
+        any = any || refused >= left || budget <= 0;
+        if (refused >= 2 * left) return false;
+        if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
+            ++refused;
+            b = c;
+            continue;
+        }
+        work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
+        ++work->ear_count;
+        polygon->next[a] = c, polygon->prev[c] = a;
+        --left, refused = 0;
+        any = false;
+        b = c;
+    }
+    for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
+    work->ring_count = left;
+    return true;
+}
+
+/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for
+   x near 0 and for triangles that are turned over, the tangent of that at 1e-6. */
+GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
+    const double least = 1e-6;
+    const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
+    double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
+    double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
+    double x = squares > 0 ? gproji_turn(polygon, a, b, c) / squares : 0;
+    if (!(x > -1)) x = -1; /* a position is not finite */
+    return x >= least ? 1 / x : (2 - x / least) / least;
+}
+
+/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where
+   each needs a diagonal that is an edge already. */
+GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
+    int32_t n = work->ring_count, gap, i, j, k;
+    for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
+    for (gap = 2; gap < n; ++gap) {
+        for (i = 0; i + gap < n; ++i) {
+            double *least = &work->least[i * n + i + gap];
+            j = i + gap;
+            *least = HUGE_VAL;
+            work->apex[i * n + j] = -1;
+            if (gap < n - 1 && gproji_corners_joined(object, &work->polygon, work->ring[i], work->ring[j])) continue;
+            for (k = i + 1; k < j; ++k) {
+                double sum = work->least[i * n + k] + work->least[k * n + j];
+                if (!(sum < *least)) continue;
+                sum += gproji_triangle_cost(&work->polygon, work->ring[i], work->ring[k], work->ring[j]);
+                if (!(sum < *least)) continue;
+                *least = sum;
+                work->apex[i * n + j] = k;
+            }
+        }
+    }
+    return work->apex[n - 1] >= 0;
+}
+
+/* Decides on the diagonals of a face. Nothing is changed. */
+GPROJI_INTERNAL gproj_code gproji_plan_triangles(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                 gproj_error *error) {
+    int32_t h = object->now.face_halfedge[face], i;
+    gproji_polygon_set(&work->polygon, &object->view, face);
+    for (i = 0; i < work->polygon.count; ++i, h = object->now.next[h]) work->halfedge[i] = h;
+    if (gproji_plan_ears(object, work) && gproji_plan_ring(object, work)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                       "face %d cannot be cut into triangles: its diagonals are edges already", face);
+}
+
+/* Cuts a face as planned; there is room. */
+GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_triangulation *work) {
+    int32_t *halfedge = work->halfedge, n = work->ring_count, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i;
+    for (i = 0; i < work->ear_count; ++i) {
+        int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
+        halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
+    }
+    stack[depth++] = 0, stack[depth++] = n - 1; /* parts of the ring, from a corner to a corner, one face each */
+    while (depth) {
+        int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
+        int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]],
+                closing = object->now.prev[from];
+        if (apex > first + 1) {
+            gproji_edit_cut(object, from, middle);
+            stack[depth++] = first, stack[depth++] = apex;
+        }
+        if (last > apex + 1) {
+            gproji_edit_cut(object, middle, closing);
+            stack[depth++] = apex, stack[depth++] = last;
+        }
+    }
+}
+
+/* Cuts one face. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                   gproj_error *error) {
+    gproj_code code = gproji_plan_triangles(object, work, face, error);
+    if (!code) gproji_cut_triangles(object, work);
+    return code;
+}
+
+/* Cuts all faces, or none where one cannot be cut. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_all(gproji_edit_object *object, gproji_triangulation *work,
+                                                  gproj_error *error) {
+    gproji_edit_store copy;
+    gproj_code code = GPROJ_OK;
+    int32_t f, count = object->now.count[GPROJI_EDIT_FACE];
+    if (!gproji_edit_save(object, &copy)) return gproji_fail_memory(error);
+    for (f = 0; f < count && !code; ++f)
+        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
+            code = gproji_triangulate_face(object, work, f, error);
+    return gproji_edit_settle(object, &copy, code);
+}
+
+GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_triangulation work;
+    gproji_pool pool;
+    gproj_code code;
+    int64_t cuts = 0;
+    int32_t f, first = face, last = face, degree = 3;
+    if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
+    if (face == -1) first = 0, last = edit->face_count - 1;
+    for (f = first; f <= last; ++f) {
+        if (edit->face_halfedge[f] < 0) continue;
+        degree = gproji_max(degree, edit->face_degree[f]);
+        cuts += edit->face_degree[f] - 3;
+    }
+    if (!cuts) return 0;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_edit_reserve(object, 0, cuts, cuts, error);
+    if (!code && !gproji_triangulation_take(&pool, &work, degree)) code = gproji_fail_memory(error);
+    if (!code)
+        code = face == -1 ? gproji_triangulate_all(object, &work, error)
+                          : gproji_triangulate_face(object, &work, face, error);
+    gproji_pool_give_all(&pool);
+    return code ? -1 : (int32_t)cuts;
+}
+
+/* -- strips -- */
+
+/* The rungs of a strip, as half-edges of one direction, in order. */
+typedef struct gproji_strip {
+    int32_t count;
+    int32_t given; /* the place of the half-edge that the walk began with */
+    bool closed;   /* is there a quad between the last and the first? */
+    int32_t *rung; /* count */
+    int32_t *side; /* count: the origins of the rungs */
+} gproji_strip;
+
+GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
+}
+
+/* The rung after h, across the quad at its left; -1 where there is none. */
+GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
+    return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
+}
+
+/* The first rung of the strip of half-edge h: h itself where the strip is closed. */
+GPROJI_INTERNAL int32_t gproji_strip_first(const gproji_edit_store *s, int32_t h) {
+    int32_t g = h;
+    while (gproji_is_quad(s, g ^ 1)) {
+        g = s->next[s->next[g ^ 1]];
+        if (g == h) break;
+    }
+    return g;
+}
+
+/* Walks along the strip of half-edge h. */
+GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
+                                             gproji_strip *strip, gproj_error *error) {
+    int32_t first = gproji_strip_first(s, h), g, i;
+    memset(strip, 0, sizeof *strip);
+    g = first;
+    do {
+        ++strip->count;
+        g = gproji_strip_next(s, g);
+    } while (g >= 0 && g != first);
+    strip->closed = g == first;
+    if (strip->count == 1) {
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
+                           h / 2);
+    }
+    strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    if (!strip->rung || !strip->side) return gproji_fail_memory(error);
+    for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
+        if (g == h) strip->given = i;
+        strip->rung[i] = g;
+        strip->side[i] = s->origin[g];
+    }
+    return GPROJ_OK;
+}
+
+/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has
+   one more vertex, edge, and cut. */
+GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
+                                                gproj_error *error) {
+    int64_t count = strip->count, runs = 0;
+    int32_t i, e = strip->rung[0] / 2;
+    gproj_code code;
+    if (strip->closed && count == 2) {
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, e,
+                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
+                           "would be two edges between the new vertices",
+                           e, strip->rung[1] / 2);
+    }
+    code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
+    for (i = 0; i < strip->count; ++i) runs += gproji_polyline_count_runs(&object->now, strip->rung[i]);
+    return code ? code : gproji_polyline_reserve(object, runs, error);
+}
+
+/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the
+   strip already, from side to side, that cut is split at t and met there. */
+GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
+    if (to < 0) {
+        cut = s->next[s->next[from]]; /* from x: to the end of the rung, to the cut, along it */
+        gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
+        from = cut ^ 1;
+        to = gproji_edit_corner(s, s->face[from], y);
+    }
+    gproji_edit_cut(object, from, to);
+}
+
+/* Where a strip ends at a triangle, which has got a fourth corner at the origin of half-edge h, it is cut into two: as a
+   quad it would lead on. */
+GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
+    const gproji_edit_store *s = &object->now;
+    if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
+}
+
+/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from new vertices on. */
+GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
+    const gproji_edit_store *s = &object->now;
+    int32_t i, last = strip->count - 1;
+    for (i = 0; i <= last; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
+    if (!strip->closed) {
+        gproji_strip_end(object, s->next[strip->rung[0] ^ 1]);
+        gproji_strip_end(object, strip->rung[last]);
+    }
+    for (i = 0; i < last; ++i) gproji_strip_cross(object, strip->rung[i], s->origin[strip->rung[i + 1]], t);
+    if (strip->closed) gproji_strip_cross(object, strip->rung[last], s->origin[strip->rung[0]], t);
+}
+
+GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    gproji_strip strip;
+    gproji_pool pool;
+    gproj_code code;
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
+    if (!code) code = gproji_strip_reserve(object, &strip, error);
+    if (!code) {
+        gproji_strip_insert(object, &strip, t);
+        h = strip.rung[strip.given];
+    }
+    gproji_pool_give_all(&pool);
+    return code ? -1 : h / 2;
+}
+
+/* Collapses the rung in place i of a strip, if that may be. One that was merged into another, where the strip crosses
+   itself, is gone with that. */
+GPROJI_INTERNAL gproj_code gproji_strip_collapse_rung(gproji_edit_object *object, const gproji_strip *strip, int32_t i,
+                                                      double t, gproj_error *error) {
+    gproji_edit_store *s = &object->now;
+    int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+    gproj_code code;
+    if (e < 0) return GPROJ_OK;
+    h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+    code = gproji_check_collapse(object, h, error);
+    if (!code) gproji_edit_collapse(object, h, t);
+    return code;
+}
+
+/* Collapses the rungs of a strip one by one; those that are refused again, after the others, as long as that helps. */
+GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
+                                                 gproj_error *error) {
+    int32_t left = strip->count, tried, i;
+    gproj_code code, refusal;
+    do {
+        tried = left;
+        left = 0;
+        refusal = GPROJ_OK;
+        gproji_error_clear(error);
+        for (i = 0; i < tried; ++i) {
+            code = gproji_strip_collapse_rung(object, strip, i, t, error);
+            if (!code) continue;
+            refusal = code;
+            strip->rung[left] = strip->rung[i];
+            strip->side[left++] = strip->side[i];
+        }
+    } while (left && left < tried);
+    return refusal;
+}
+
+/* Says why a strip stays: `error` has why one of its rungs does. */
+GPROJI_INTERNAL void gproji_tell_strip(int32_t edge, gproj_error *error) {
+    char message[GPROJ_MESSAGE_SIZE];
+    if (!error) return;
+    gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+    memcpy(error->message, message, sizeof message);
+}
+
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    gproji_edit_store copy;
+    gproji_strip strip;
+    gproji_pool pool;
+    gproj_code code;
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
+    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
+    if (!code) {
+        code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
+        if (code) gproji_tell_strip(edge, error);
+    }
+    gproji_pool_give_all(&pool);
+    return code ? -1 : strip.count;
+}
+
+/* -- the dual -- */
+
+/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each
+   vertex of the boundary two or three more. */
+typedef struct gproji_dual {
+    gproji_soup soup;
+    double *position;
+    int32_t *degree, *corner;
+    int32_t *vertex;   /* vertex_count: the number of a vertex that is in the dual, too, or -1 */
+    int32_t *midpoint; /* edge_count: the vertex in the middle of a boundary edge, or -1 */
+    int32_t *seen;     /* face_count: the last face that met it as a neighbour */
+    int32_t *start, *polyline;
+    int32_t polyline_count;
+} gproji_dual;
+
+/* False when there is no memory. */
+GPROJI_INTERNAL bool gproji_dual_take(gproji_pool *pool, const gproj_mesh *mesh, gproji_dual *dual) {
+    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
+    memset(dual, 0, sizeof *dual);
+    dual->position = (double *)gproji_pool_take(pool, faces + edges + vertices, 3 * sizeof(double));
+    dual->corner = (int32_t *)gproji_pool_take(pool, 2 * edges + 3 * vertices, sizeof(int32_t));
+    dual->degree = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
+    dual->vertex = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
+    dual->midpoint = (int32_t *)gproji_pool_take(pool, edges, sizeof(int32_t));
+    dual->seen = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
+    dual->start = (int32_t *)gproji_pool_take(pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    dual->polyline = (int32_t *)gproji_pool_take(pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+    return dual->position && dual->corner && dual->degree && dual->vertex && dual->midpoint && dual->seen &&
+           dual->start && dual->polyline;
+}
+
+/* No two faces have two edges in common. */
+GPROJI_INTERNAL gproj_code gproji_check_dual(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
+    int32_t f, k, h, g;
+    gproji_fill(dual->seen, mesh->face_count, -1);
+    for (f = 0; f < mesh->face_count; ++f) {
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            g = mesh->face[h ^ 1];
+            if (g < 0) continue;
+            if (dual->seen[g] == f) {
+                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
+            }
+            dual->seen[g] = f;
+        }
+    }
+    return GPROJ_OK;
+}
+
+/* A new vertex of the dual, at the mean of the origins of `count` half-edges, h and those that follow it. */
+GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
+    int32_t number = dual->soup.vertex_count++, k;
+    double *x = dual->position + 3 * (size_t)number;
+    gproji_set3(0, 0, 0, x);
+    for (k = 0; k < count; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
+    return number;
+}
+
+/* A vertex that is in the dual, too, gets its number there. */
+GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
+    int32_t number = dual->soup.vertex_count++;
+    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
+    dual->vertex[vertex] = number;
+}
+
+GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual *dual) {
+    int32_t f, e, v;
+    for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
+    for (e = 0; e < mesh->edge_count; ++e)
+        dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
+    gproji_fill(dual->vertex, mesh->vertex_count, -1);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
+}
+
+/* The face of a vertex that has faces: those around it; at the boundary the middle of an edge, the faces, the middle of
+   the other edge, and the vertex if it is a corner. */
+GPROJI_INTERNAL void gproji_dual_face(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
+    gproji_soup *soup = &dual->soup;
+    int32_t last = mesh->vertex_halfedge[vertex], h, begin = soup->corner_count;
+    bool boundary = mesh->face[last] < 0;
+    h = boundary ? gproji_rotate(mesh, last) : last;
+    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+    do {
+        dual->corner[soup->corner_count++] = mesh->face[h];
+        h = gproji_rotate(mesh, h);
+    } while (h != last);
+    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
+    if (dual->vertex[vertex] >= 0) dual->corner[soup->corner_count++] = dual->vertex[vertex];
+    dual->degree[soup->face_count++] = soup->corner_count - begin;
+}
+
+/* Polylines all of whose vertices are in the dual. */
+GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *dual) {
+    int32_t p, i, begin, end = 0;
+    dual->start[0] = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        bool whole = true;
+        begin = end;
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            int32_t v = dual->vertex[mesh->polyline_vertex[i]];
+            whole = whole && v >= 0;
+            dual->polyline[end++] = v;
+        }
+        if (whole)
+            dual->start[++dual->polyline_count] = end;
+        else
+            end = begin;
+    }
+}
+
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproji_mesh_object *made, gproj_error *error) {
+    gproj_code code = gproji_check_dual(mesh, dual, error);
+    int32_t v;
+    if (code) return code;
+    gproji_dual_vertices_of(mesh, dual);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        bool isolated = mesh->vertex_halfedge[v] < 0;
+        if (vertex_face) vertex_face[v] = isolated ? -1 : dual->soup.face_count;
+        if (!isolated) gproji_dual_face(mesh, dual, v);
+    }
+    gproji_dual_polylines(mesh, dual);
+    dual->soup.position = dual->position;
+    dual->soup.face_degree = dual->degree;
+    dual->soup.face_vertex = dual->corner;
+    code = gproji_mesh_build(made, &dual->soup, error);
+    return code ? code : gproji_mesh_set_polylines(made, dual->polyline_count, dual->start, dual->polyline, error);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
+                                      gproj_error *error) {
+    gproji_mesh_object *made;
+    gproji_dual dual;
+    gproji_pool pool;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!mesh) {
+        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
+        return NULL;
+    }
+    made = gproji_mesh_begin(host, error);
+    if (!made) return NULL;
+    gproji_pool_start(&pool, &made->heap);
+    code = gproji_dual_take(&pool, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
+                                                : gproji_fail_memory(error);
+    gproji_pool_give_all(&pool);
+    return gproji_mesh_done(made, code);
 }
 
 /* ============================================================================================================
@@ -11478,6 +14640,1606 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 }
 
 /* ============================================================================================================
+   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, cholesky, mesh,
+   text (growing arrays), hierarchy.
+
+   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
+   patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
+   theirs is a table, our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and
+   one at each node between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path
+   may be thickened to w rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the
+   numbers of sides i - 1 and i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of
+   strips:
+       l_i = (edges of the core from corner i to corner i + 1) + k_(i-1) + k_(i+1).
+   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex of valence 3, 4, 5, and a node between of valence 5.
+   For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a solution for
+   nearly all l; where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole
+   boundary, and the strip of quads in such a ring fills any even number of edges.
+
+   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of
+   all quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais,
+   Ray, Sokolov 2021), by Newton steps with the convex part of the Hessian. */
+enum {
+    GPROJI_PATCH_SIDES = 6,
+    GPROJI_PATH_EDGES = 5,
+    GPROJI_CANDIDATES = 40,    /* more than there are kinds of patterns */
+    GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
+    GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
+    GPROJI_UNTANGLE_STEPS = 300,
+    GPROJI_FILL_TRIES = 8,
+    GPROJI_FILL_RINGS = 1 << 10,
+    GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
+    GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
+};
+
+#define GPROJI_REFLEX 3.403392041388943 /* 195 degrees: corners beyond are cut */
+#define GPROJI_FLAT 2.879793265790644   /* 165 degrees: corners beyond get two faces */
+#define GPROJI_OBTUSE 2.356194490192345 /* 135 degrees: at the ends of a cut, corners below */
+#define GPROJI_RIGHT 1.570796326794897
+
+typedef struct gproji_pattern {
+    int32_t sides;
+    int32_t first;                     /* the pattern's corner 0 is the patch's corner `first` */
+    int32_t end[2];                    /* corners at the ends of the path; a point: all at end 0 */
+    int32_t edges;                     /* of the path; 0: a point. Nodes between are edges - 1 */
+    int32_t below;                     /* bit j: the corner of node j + 1 is on the right of the path */
+    int32_t edge[GPROJI_PATH_EDGES];   /* e_j */
+    int32_t rows;                      /* w; > 0 only where no corner is on the right of the path */
+    int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
+    int32_t flat;                      /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    bool ring;                         /* all corners get two faces: a ring of quads around the patch */
+    bool bare;                         /* one strip of quads in a ring, whatever the sides are */
+    double cost;
+} gproji_pattern;
+
+/* A patch under construction. Vertices and quads have local numbers. */
+typedef struct gproji_patch {
+    gproji_heap *heap;
+    int32_t sides;
+    int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
+    int32_t *side[GPROJI_PATCH_SIDES]; /* length + 1 vertices: of the sides as they are now, both ends included */
+    int32_t *block;                    /* memory of all sides */
+    size_t block_size;
+    gproji_ints quad; /* 4 vertices each */
+    gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
+    gproji_ints uses; /* faces at each vertex */
+    int32_t vertices;
+} gproji_patch;
+
+typedef struct gproji_filling {
+    gproji_heap *heap;
+    const gproj_host *host;
+    gproj_error *error;
+    gproj_fill_options options;
+    int32_t count; /* of the points */
+    const double *points;
+    double *seen; /* 2 * count: the points in the plane */
+    double normal[3], across[3], up[3];
+    double edge_length; /* wanted */
+    int32_t sides;
+    gproji_ints corner;  /* points; sides of them */
+    gproji_ints start;   /* sides + 1: the first vertex of each side */
+    int32_t boundary;    /* vertices of the boundary */
+    double *border;      /* 3 * boundary: their positions */
+    gproji_ints polygon; /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
+    gproji_ints patch;   /* ends of the patches in `polygon` */
+    gproji_ints quad;    /* 4 vertices each */
+    double *flat;        /* 2 * vertices, in the plane */
+    size_t flat_capacity;
+    int32_t vertices;
+    int32_t curve_vertices; /* those of the boundary, and of rings along it, come first */
+    int32_t cut_vertices;   /* then those of cuts */
+    int32_t leaves;         /* patches that were filled */
+} gproji_filling;
+
+GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
+    void *block = ints->data;
+    if (ints->count >= INT32_MAX - 1) return false;
+    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
+    ints->data = (int32_t *)block;
+    ints->data[ints->count++] = value;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
+                                      int32_t d) {
+    return gproji_ints_add(heap, ints, a) && gproji_ints_add(heap, ints, b) && gproji_ints_add(heap, ints, c) &&
+           gproji_ints_add(heap, ints, d);
+}
+
+/* -- patterns: their equations -- */
+
+/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows,
+   along the right of the path, up the rows, and back along its left. */
+GPROJI_INTERNAL int32_t gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES]) {
+    int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
+    column[0] = 0;
+    for (i = 0; i < p->edges; ++i) column[i + 1] = column[i] + p->edge[i];
+    all = column[nodes - 1];
+    for (i = 0; i < p->end[0]; ++i) at[n++] = 0;
+    for (i = 1; i + 1 < nodes; ++i)
+        if (p->below >> (i - 1) & 1) at[n++] = p->rows + column[i];
+    for (i = 0; i < p->end[1]; ++i) at[n++] = 2 * p->rows + all;
+    for (i = nodes - 2; i > 0; --i)
+        if (!(p->below >> (i - 1) & 1)) at[n++] = 2 * p->rows + 2 * all - column[i];
+    return 2 * p->rows + 2 * all;
+}
+
+/* The core's vertex at a place of the walk. Vertices are numbered by rows, from below. */
+GPROJI_INTERNAL int32_t gproji_core_vertex(int32_t rows, int32_t all, int32_t place) {
+    int32_t around = 2 * (rows + all);
+    if (around == 0) return 0;
+    place %= around;
+    if (place < rows) return (rows - place) * (all + 1);
+    if (place <= rows + all) return place - rows;
+    if (place <= 2 * rows + all) return (place - rows - all) * (all + 1) + all;
+    return rows * (all + 1) + around - place;
+}
+
+/* The strips k with rest_i = k_(i-1) + k_(i+1): over the cycles of sides i, i + 2, .. False where there are none. */
+GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
+    int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
+    for (first = 0; first < cycles; ++first) {
+        for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
+        /* once around, k_first becomes value - k_first (odd) or value + k_first (even) */
+        if (length % 2 ? value % 2 != 0 : value != 0) return false;
+        start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
+        for (n = 0, i = first; n < length; ++n, i = (i + 2) % sides) {
+            if (start < 0) return false;
+            strip[i] = start;
+            start = rest[(i + 1) % sides] - start;
+        }
+    }
+    return true;
+}
+
+/* Irregular vertices count most, then the distances between them and from them to the boundary. */
+GPROJI_INTERNAL double gproji_pattern_cost(const gproji_pattern *p) {
+    double cost = 0;
+    int32_t i;
+    if (p->edges == 0)
+        cost += 4 * (p->sides > 4 ? p->sides - 4 : 4 - p->sides) + (p->sides == 6 ? 8 : 0);
+    else
+        cost += 4 * ((p->end[0] != 2) + (p->end[1] != 2) + p->edges - 1);
+    for (i = 0; i < p->sides; ++i) cost += p->strip[i] > 0 ? 1.0 / p->strip[i] : 3;
+    for (i = 0; i < p->edges; ++i) cost += 1.0 / p->edge[i];
+    return cost + (p->rows > 0 ? 1 : 0);
+}
+
+/* Candidates, at most one of each kind and rotation, in the order of their costs. */
+typedef struct gproji_candidates {
+    const int32_t *length; /* of the patch's sides */
+    int32_t count;
+    gproji_pattern pattern[GPROJI_CANDIDATES];
+} gproji_candidates;
+
+GPROJI_INTERNAL bool gproji_same_kind(const gproji_pattern *a, const gproji_pattern *b) {
+    return a->first == b->first && a->end[0] == b->end[0] && a->edges == b->edges && a->below == b->below &&
+           (a->rows > 0) == (b->rows > 0);
+}
+
+GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p) {
+    int32_t i;
+    for (i = 0; i < c->count && !gproji_same_kind(&c->pattern[i], p); ++i) continue;
+    if (i < c->count && c->pattern[i].cost <= p->cost) return;
+    GPROJ_ASSERT(i < GPROJI_CANDIDATES);
+    c->count += i == c->count;
+    for (; i > 0 && c->pattern[i - 1].cost > p->cost; --i) c->pattern[i] = c->pattern[i - 1];
+    c->pattern[i] = *p;
+}
+
+/* What the core leaves of the sides for the strips. False where it needs more than there is. */
+GPROJI_INTERNAL bool gproji_rest(const gproji_candidates *c, const gproji_pattern *p, int32_t *rest) {
+    int32_t at[GPROJI_PATCH_SIDES], around = gproji_core_corners(p, at), i;
+    for (i = 0; i < p->sides; ++i) {
+        int32_t to = i + 1 < p->sides ? at[i + 1] : at[0] + around;
+        rest[i] = c->length[(i + p->first) % p->sides] - (to - at[i]);
+        if (rest[i] < 0) return false;
+    }
+    return true;
+}
+
+/* All e_j of one kind of path without rows. */
+GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, int32_t most) {
+    int32_t rest[GPROJI_PATCH_SIDES], i = 0;
+    for (i = 0; i < p->edges; ++i) p->edge[i] = 1;
+    do {
+        if (gproji_rest(c, p, rest) && gproji_find_strips(p->sides, rest, p->strip)) {
+            p->cost = gproji_pattern_cost(p);
+            gproji_offer(c, p);
+        }
+        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1;
+    } while (i < p->edges);
+}
+
+/* The path with a corner at each node and rows: sides 1, 2, .. have one e_j each, side 0 their sum and 2 w. So
+   e_j = l - k - k, and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum of the k_i but for i = 1 and n - 1 (with two sides:
+   + k_0 - k_1). These strips grow evenly until w >= 0. */
+GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
+    int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
+    p->end[0] = p->end[1] = 1;
+    p->edges = n - 1;
+    p->below = 0;
+    p->rows = c->length[p->first];
+    for (i = 1; i < n; ++i) p->rows -= c->length[(i + p->first) % n];
+    p->rows /= 2;
+    for (i = 0; i < n; ++i) {
+        p->strip[i] = least;
+        p->rows += i != 1 && i != n - 1 ? least : n == 2 ? -least : 0;
+        rest[i] = c->length[(i + p->first) % n] - 2 * least;
+        if (i > 0 && rest[i] < 1) return false;
+    }
+    while (p->rows < 0) {
+        for (best = -1, i = 0; i < n; ++i) {
+            int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
+            if (i == 1 || i == n - 1) continue;
+            if ((before > 0 && rest[before] < least_rest) || (after > 0 && rest[after] < least_rest)) continue;
+            if (best < 0 || p->strip[i] < p->strip[best]) best = i;
+        }
+        if (best < 0) return false;
+        ++p->strip[best], ++p->rows;
+        --rest[(best + n - 1) % n], --rest[(best + 1) % n];
+    }
+    for (side = 1; side < n; ++side) p->edge[n - 1 - side] = rest[side];
+    p->cost = gproji_pattern_cost(p);
+    gproji_offer(c, p);
+    return true;
+}
+
+/* A path with equal ends, seen from its other end, is a path of the same kind: is that one tried instead? */
+GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
+    int32_t below = 0, first = p->first + p->end[0], j, nodes = p->edges - 1;
+    for (j = 0; j < nodes; ++j) {
+        bool right = (p->below >> j & 1) != 0;
+        first += right;
+        if (!right) below |= 1 << (nodes - 1 - j);
+    }
+    first %= p->sides;
+    return p->end[0] == p->end[1] && (below < p->below || (below == p->below && first < p->first));
+}
+
+/* All kinds of patterns for a patch. */
+GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, const int32_t *length) {
+    static const int32_t tried[4] = {0, INT32_MAX, GPROJI_TRIED_PAIRS, GPROJI_TRIED_TRIPLES};
+    int32_t most = length[0], a, b, below, i;
+    gproji_pattern p;
+    memset(&p, 0, sizeof p);
+    c->length = length;
+    c->count = 0;
+    for (i = 1; i < sides; ++i) most = gproji_max(most, length[i]);
+    p.sides = sides;
+    p.end[0] = sides;
+    gproji_try_edges(c, &p, 0);
+    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) { /* a grid: a path along one side */
+        p.end[0] = p.end[1] = 2, p.edges = 1, p.edge[0] = length[1], p.strip[1] = length[0];
+        p.strip[0] = p.strip[2] = p.strip[3] = 0;
+        p.cost = -1;
+        gproji_offer(c, &p);
+    }
+    for (p.first = 0; p.first < sides; ++p.first) {
+        for (a = 1; a <= 3; a += 2)
+            for (b = a; b <= 3; b += 2) {
+                p.edges = sides - a - b + 1;
+                if (p.edges < 1 || p.edges > 3) continue;
+                p.end[0] = a, p.end[1] = b, p.rows = 0;
+                for (below = 0; below < 1 << (p.edges - 1); ++below) {
+                    p.below = below;
+                    if (gproji_is_turned_kind(&p)) continue;
+                    gproji_try_edges(c, &p, gproji_min(most, tried[p.edges]));
+                }
+            }
+        if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
+        if (!gproji_try_rows(c, &p, 1)) gproji_try_rows(c, &p, 0);
+    }
+}
+
+/* -- patterns: their quads -- */
+
+GPROJI_INTERNAL bool gproji_patch_take(gproji_patch *patch, gproji_heap *heap, int32_t sides, const int32_t *length) {
+    size_t at = 0;
+    int32_t i;
+    memset(patch, 0, sizeof *patch);
+    patch->heap = heap;
+    patch->sides = sides;
+    for (i = 0; i < sides; ++i) patch->block_size += (size_t)length[i] + 1;
+    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
+    for (i = 0; patch->block && i < sides; ++i) {
+        patch->side[i] = patch->block + at;
+        at += (size_t)length[i] + 1;
+    }
+    return patch->block != NULL;
+}
+
+GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
+    gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
+    gproji_ints_give(patch->heap, &patch->quad);
+    gproji_ints_give(patch->heap, &patch->loop);
+    gproji_ints_give(patch->heap, &patch->uses);
+}
+
+/* The core and its sides. */
+GPROJI_INTERNAL bool gproji_build_core(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, i, j, rows = p->rows;
+    for (i = 0; i < p->edges; ++i) all += p->edge[i];
+    if (p->bare)
+        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
+    else
+        at[p->sides] = gproji_core_corners(p, at) + at[0];
+    for (i = 0; i < p->sides; ++i) {
+        patch->edges[i] = at[i + 1] - at[i];
+        for (j = 0; j <= patch->edges[i]; ++j) patch->side[i][j] = gproji_core_vertex(rows, all, at[i] + j);
+    }
+    patch->vertices = (rows + 1) * (all + 1);
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < all; ++j) {
+            int32_t v = i * (all + 1) + j;
+            if (!gproji_ints_add4(patch->heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+        }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
+
+/* Does a strip run from corner i to the next corner that is not flat, over flat ones between? Sets that corner. */
+GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t i, int32_t *to) {
+    *to = i + 1;
+    if (gproji_is_flat(flat, sides, i) || !gproji_is_flat(flat, sides, i + 1)) return false;
+    while (gproji_is_flat(flat, sides, *to)) ++*to;
+    return true;
+}
+
+/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not
+   flat to the next. False where there are not two such corners, or a side is too short. */
+GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
+    int32_t i, to, sharp = 0;
+    for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
+    if (sharp < 2) return false;
+    for (i = 0; i < sides; ++i)
+        if (gproji_has_long_strip(flat, sides, i, &to)) --inner[(i + sides - 1) % sides], --inner[to % sides];
+    for (i = 0; i < sides; ++i)
+        if (inner[i] < 1) return false;
+    return true;
+}
+
+/* A strip of quads along sides i to to - 1 (numbers may go on beyond the last): new sides outside of them, and one edge
+   more for both neighbours. */
+GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
+    int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
+    int32_t outer = patch->vertices;
+    for (side = i; side < to; ++side) {
+        int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
+        for (j = 0; j < n; ++j)
+            if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
+        outer += n;
+    }
+    patch->side[before][++patch->edges[before]] = patch->vertices;
+    memmove(patch->side[after] + 1, patch->side[after], (size_t)(++patch->edges[after]) * sizeof(int32_t));
+    patch->side[after][0] = outer;
+    for (side = i; side < to; ++side)
+        for (j = 0, outer = patch->vertices; j <= patch->edges[side % patch->sides]; ++j) {
+            patch->side[side % patch->sides][j] = outer + j;
+            if (j == patch->edges[side % patch->sides]) patch->vertices = outer + j;
+        }
+    ++patch->vertices;
+    return true;
+}
+
+/* The boundary as a loop, in a ring of quads if so wanted. */
+GPROJI_INTERNAL bool gproji_close_patch(gproji_patch *patch, bool ring) {
+    int32_t i, j, n;
+    for (i = 0; i < patch->sides; ++i)
+        for (j = 0; j < patch->edges[i]; ++j)
+            if (!gproji_ints_add(patch->heap, &patch->loop, patch->side[i][j])) return false;
+    n = (int32_t)patch->loop.count;
+    for (i = 0; ring && i < n; ++i) {
+        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
+        if (!gproji_ints_add4(patch->heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+    }
+    for (i = 0; ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
+    int32_t i, k;
+    size_t q;
+    if (!gproji_build_core(patch, p, length)) return false;
+    for (i = 0; i < p->sides && !p->bare; ++i)
+        for (k = 0; k < p->strip[i]; ++k)
+            if (!gproji_add_strip(patch, i, i + 1)) return false;
+    for (i = 0; i < p->sides && p->flat; ++i)
+        if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
+    if (!gproji_close_patch(patch, p->ring)) return false;
+    for (i = 0; i < patch->vertices; ++i)
+        if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
+    for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
+    return true;
+}
+
+/* -- the plane -- */
+
+/* Twice the area of the triangle of points i, j, k of an array xy, positive when counter-clockwise. */
+GPROJI_INTERNAL double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
+    const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+}
+
+GPROJI_INTERNAL double gproji_distance2(const double *xy, int32_t i, int32_t j) {
+    double x = xy[2 * (size_t)j] - xy[2 * (size_t)i], y = xy[2 * (size_t)j + 1] - xy[2 * (size_t)i + 1];
+    return sqrt(x * x + y * y);
+}
+
+/* Do the segments a b and c d have a common point? */
+GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b, int32_t c, int32_t d) {
+    const double *p = xy + 2 * (size_t)a, *q = xy + 2 * (size_t)b, *r = xy + 2 * (size_t)c, *s = xy + 2 * (size_t)d;
+    double abc, abd, cda, cdb;
+    int32_t k;
+    for (k = 0; k < 2; ++k)
+        if (gproji_fmax(p[k], q[k]) < gproji_fmin(r[k], s[k]) || gproji_fmax(r[k], s[k]) < gproji_fmin(p[k], q[k]))
+            return false;
+    abc = gproji_turn2(xy, a, b, c), abd = gproji_turn2(xy, a, b, d);
+    cda = gproji_turn2(xy, c, d, a), cdb = gproji_turn2(xy, c, d, b);
+    return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) || (cda < 0 && cdb < 0));
+}
+
+/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet where they should not? Neighbours: do they fold back? */
+GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32_t i, int32_t j) {
+    int32_t b = (i + 1) % count, d = (j + 1) % count;
+    if (b == j || d == i) {
+        int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
+        const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
+        double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
+        return along >= 0 && fabs(gproji_turn2(xy, at, from, to)) <= 1e-12 * along;
+    }
+    return gproji_segments_meet(xy, i, b, j, d);
+}
+
+/* A closed polygon. */
+typedef struct gproji_loop2 {
+    const double *xy;
+    int32_t count;
+} gproji_loop2;
+
+GPROJI_INTERNAL void gproji_loop_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const gproji_loop2 *loop = (const gproji_loop2 *)user;
+    const double *p = loop->xy + 2 * (size_t)item, *q = loop->xy + 2 * (size_t)((item + 1) % loop->count);
+    gproji_set3(gproji_fmin(p[0], q[0]), gproji_fmin(p[1], q[1]), 0, low);
+    gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
+}
+
+/* The lowest side after side i that meets it; the number of sides where there is none. */
+GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gproji_hierarchy *tree, int32_t i) {
+    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = loop->count, k;
+    double low[3], high[3];
+    gproji_loop_box(loop, i, low, high);
+    stack[0] = 0;
+    while (depth > 0) {
+        int32_t at = stack[--depth];
+        const gproji_node *node = &tree->node[at];
+        if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
+            continue;
+        if (node->right >= 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+            continue;
+        }
+        for (k = node->begin; k < node->end; ++k) {
+            int32_t j = tree->item[k];
+            if (j > i && j < found && gproji_polygon_meets(loop->xy, loop->count, i, j)) found = j;
+        }
+    }
+    return found;
+}
+
+/* The first two sides of a closed polygon that meet; first = count where it is simple. False: no memory. */
+GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
+                                          int32_t *second) {
+    gproji_hierarchy tree;
+    gproji_loop2 loop;
+    loop.xy = xy, loop.count = count;
+    if (!gproji_hierarchy_build(heap, &tree, count, gproji_loop_box, &loop)) return false;
+    for (*first = 0; *first < count; ++*first) {
+        *second = gproji_find_meeting(&loop, &tree, *first);
+        if (*second < count) break;
+    }
+    gproji_hierarchy_give(heap, &tree);
+    return true;
+}
+
+/* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
+GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q, int32_t r) {
+    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
+    double u[2], v[2], angle;
+    u[0] = b[0] - a[0], u[1] = b[1] - a[1], v[0] = c[0] - a[0], v[1] = c[1] - a[1];
+    angle = atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    return angle < 0 ? angle + 6.283185307179586 : angle;
+}
+
+/* -- the curve -- */
+
+/* The plane of the vectorial area, with which the curve runs counter-clockwise. Writes the points as seen there. */
+GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
+    static const double none[3] = {0, 0, 0};
+    double a[3], b[3], cross[3], extent = 0;
+    int32_t i;
+    gproji_set3(0, 0, 0, f->normal);
+    for (i = 1; i < f->count; ++i) {
+        gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
+        extent = gproji_fmax(extent, gproji_dot3(a, a));
+        if (i + 1 == f->count) break;
+        gproji_sub3(f->points + 3 * (size_t)i + 3, f->points, b);
+        gproji_cross3(a, b, cross);
+        gproji_add_scaled3(0.5, cross, f->normal);
+    }
+    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, none))
+        return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                           "the curve encloses no area; it must not run back along itself");
+    gproji_tangents3(f->normal, f->across, f->up);
+    for (i = 0; i < f->count; ++i) {
+        gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
+        f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
+    }
+    return GPROJ_OK;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
+    gproj_code code;
+    int32_t i, j;
+    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           f->points ? "a closed curve of %d points; it needs at least 3"
+                                     : "the points of the curve are NULL",
+                           f->count);
+    code = gproji_check_positions(f->count, f->points, "point", f->error);
+    if (code) return code;
+    for (i = 0; i < f->count; ++i) {
+        j = i + 1 < f->count ? i + 1 : 0;
+        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
+            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                               "points %d and %d of the curve are the same; leave one out%s", i, j,
+                               j == 0 ? " (the curve is closed without it)" : "");
+    }
+    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    if (!f->seen) return gproji_fail_memory(f->error);
+    code = gproji_see_curve(f);
+    if (code) return code;
+    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->count) return GPROJ_OK;
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                       "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
+                       "simple curves can be filled",
+                       i, j);
+}
+
+/* Does the curve turn by more than 45 degrees at a point (see gproj_form_is_corner)? */
+GPROJI_INTERNAL bool gproji_turns(const gproji_filling *f, int32_t i) {
+    static const double none[3] = {0, 0, 0};
+    const double *p = f->points + 3 * (size_t)i;
+    double in[3], out[3];
+    gproji_sub3(p, f->points + 3 * (size_t)((i + f->count - 1) % f->count), in);
+    gproji_sub3(f->points + 3 * (size_t)((i + 1) % f->count), p, out);
+    gproji_normalise3(in, none);
+    gproji_normalise3(out, none);
+    return gproji_dot3(in, out) < 0.70710678118654752;
+}
+
+/* The length of the curve from point i to point j > i (modulo the number of points). */
+GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i, int32_t j) {
+    double sum = 0;
+    for (; i < j; ++i)
+        sum += gproji_distance3(f->points + 3 * (size_t)(i % f->count), f->points + 3 * (size_t)((i + 1) % f->count));
+    return sum;
+}
+
+/* Four corners at about equal distances, the first one where the only corner is, or the first point. */
+GPROJI_INTERNAL bool gproji_make_corners(gproji_filling *f) {
+    int32_t from = f->corner.count ? f->corner.data[0] : 0, n = 1, i;
+    double all = gproji_length_between(f, from, from + f->count), at = 0;
+    f->corner.count = 0;
+    if (!gproji_ints_add(f->heap, &f->corner, from)) return false;
+    for (i = from; i + 1 < from + f->count && n < 4; ++i) {
+        double step = gproji_length_between(f, i, i + 1);
+        at += step;
+        if (at + step / 2 >= all * n / 4 || from + f->count - 2 - i < 4 - n) {
+            if (!gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count)) return false;
+            ++n;
+        }
+    }
+    return true;
+}
+
+GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
+    const gproj_fill_options *o = &f->options;
+    int32_t i;
+    bool taken = true;
+    if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "%d corners%s; give at least 2, or none to have them found", o->corner_count,
+                           o->corner_count > 1 ? " in an array that is NULL" : "");
+    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
+                           (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
+                           o->variant);
+    for (i = 0; i < o->corner_count && taken; ++i) {
+        int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
+        if (c < 0 || c >= f->count)
+            return gproji_fail(f->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, c,
+                               "corner %d is point %d, but the points are 0 to %d", i, c, f->count - 1);
+        if (c <= before)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
+                               "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
+                               c, before);
+        taken = gproji_ints_add(f->heap, &f->corner, c);
+    }
+    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
+        if (gproji_turns(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
+    if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
+    f->sides = (int32_t)f->corner.count;
+    if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
+                           o->subdivisions ? "" : " by a NULL array", f->sides);
+    return taken ? GPROJ_OK : gproji_fail_memory(f->error);
+}
+
+/* The points of side j: from the first to the last, counted on beyond the end of the array. */
+GPROJI_INTERNAL void gproji_side_points(const gproji_filling *f, int32_t side, int32_t *from, int32_t *to) {
+    *from = f->corner.data[side];
+    *to = side + 1 < f->sides ? f->corner.data[side + 1] : f->corner.data[0];
+    if (*to <= *from) *to += f->count;
+}
+
+GPROJI_INTERNAL double gproji_side_length(const gproji_filling *f, int32_t side) {
+    int32_t from, to;
+    gproji_side_points(f, side, &from, &to);
+    return gproji_length_between(f, from, to);
+}
+
+/* Which side bears one edge more (+1) or less (-1) best, by its edge length? */
+GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_t *edges, int32_t *change) {
+    int32_t side, best = 0;
+    double least = HUGE_VAL;
+    for (side = 0; side < f->sides; ++side) {
+        double wanted = gproji_side_length(f, side) / f->edge_length;
+        int32_t by = edges[side] > 1 && wanted < edges[side] ? -1 : 1;
+        double off = fabs(log((edges[side] + by) / wanted));
+        if (off < least) least = off, best = side, *change = by;
+    }
+    return best;
+}
+
+/* The edges that strips over nearly flat corners take from the sides: see gproji_inner_lengths. */
+GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken) {
+    int32_t side, flat = 0, many[GPROJI_PATCH_SIDES];
+    for (side = 0; side < f->sides; ++side) {
+        int32_t c = f->corner.data[side];
+        bool is_flat = gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT;
+        if (is_flat) flat |= 1 << side;
+        many[side] = 3; /* more than are taken */
+    }
+    if (!gproji_inner_lengths(f->sides, flat, many, taken)) memcpy(taken, many, sizeof many);
+    for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
+}
+
+/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about
+   the same length. */
+GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
+    int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
+    if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
+    for (side = 0; side < f->sides; ++side) {
+        double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
+        int32_t opposite = (side + 2) % 4;
+        edges[side] = gproji_max(1, (int32_t)(length + 0.5));
+        if (f->sides == 4) {
+            other = gproji_fmin(gproji_side_length(f, opposite) / f->edge_length, GPROJI_FILL_EDGES);
+            if (length < 1.7 * other && other < 1.7 * length)
+                edges[side] = gproji_max(1, (int32_t)(0.5 * (length + other - (taken[side] + taken[opposite])) + 0.5)) +
+                              taken[side];
+        }
+        sum = gproji_min(sum + edges[side], GPROJI_FILL_EDGES + 1);
+        if (edges[side] > edges[longest]) longest = side;
+    }
+    if (sum > GPROJI_FILL_EDGES) return;
+    if (sum % 2) {
+        side = gproji_best_change(f, edges, &change);
+        edges[side] += change, sum += change;
+    }
+    if (sum < 4) edges[longest] += 4 - sum;
+}
+
+GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *edges) {
+    int32_t side, sum = 0, change = 0;
+    for (side = 0; side < f->sides; ++side) {
+        if (edges[side] < 1)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
+        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
+            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "the sides up to side %d have more than %d edges; use longer edges", side,
+                               (int32_t)GPROJI_FILL_EDGES);
+    }
+    if (sum % 2) {
+        side = gproji_best_change(f, edges, &change);
+        return gproji_fail(
+            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
+            "of %d%s",
+            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+    }
+    if (sum < 4)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
+                           "the sides have %d edges together; quads need at least 4", sum);
+    f->boundary = sum;
+    return GPROJ_OK;
+}
+
+/* The number of edges of each side, checked, into `start`, summed up. */
+GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
+    int32_t side, from, to, *edges;
+    gproj_code code;
+    f->edge_length = f->options.edge_length;
+    if (!(f->edge_length >= 0) || !gproji_is_finite(f->edge_length))
+        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
+                           f->edge_length);
+    if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
+    if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
+    for (side = 0; side < f->sides; ++side) {
+        int32_t n = !f->options.keep_points && f->options.side_count ? f->options.subdivisions[side] : 0;
+        gproji_side_points(f, side, &from, &to);
+        if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
+            return gproji_fail_memory(f->error);
+    }
+    edges = f->start.data + 1;
+    if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
+    code = gproji_check_edges(f, edges);
+    for (side = 0; side < f->sides && !code; ++side) f->start.data[side + 1] += f->start.data[side];
+    return code;
+}
+
+/* The vertices of a side but its last: `edges` equal pieces of its length, or its points. */
+GPROJI_INTERNAL void gproji_divide_side(const gproji_filling *f, int32_t side, double *out) {
+    int32_t edges = f->start.data[side + 1] - f->start.data[side], from, to, i, j;
+    double all, before = 0, step;
+    gproji_side_points(f, side, &from, &to);
+    all = gproji_length_between(f, from, to);
+    step = gproji_length_between(f, from, from + 1);
+    for (i = from, j = 0; j < edges; ++j, out += 3) {
+        const double *p, *q;
+        double at = all * j / edges, t, d[3];
+        while (i + 1 < to && at >= before + step) {
+            before += step, ++i;
+            step = gproji_length_between(f, i, i + 1);
+        }
+        if (f->options.keep_points) i = from + j, at = before;
+        p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
+        t = (at - before) / step;
+        gproji_copy3(t > 1 - 1e-9 ? q : p, out);
+        if (t <= 1e-9 || t > 1 - 1e-9) continue; /* a point of the curve */
+        gproji_sub3(q, p, d);
+        gproji_add_scaled3(t, d, out);
+    }
+}
+
+GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
+    void *block = f->flat;
+    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
+    f->flat = (double *)block;
+    f->flat[2 * (size_t)f->vertices] = x;
+    f->flat[2 * (size_t)f->vertices + 1] = y;
+    ++f->vertices;
+    return true;
+}
+
+/* The side of the edge that begins at a vertex of the boundary. */
+GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
+    int32_t side = 0;
+    while (f->start.data[side + 1] <= vertex) ++side;
+    return side;
+}
+
+/* The vertices of the boundary, and the first patch: all of it. */
+GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
+    gproj_code code = gproji_find_corners(f);
+    int32_t side, i, j;
+    if (!code) code = gproji_divide_sides(f);
+    if (code) return code;
+    f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
+    if (!f->border) return gproji_fail_memory(f->error);
+    for (side = 0; side < f->sides; ++side) gproji_divide_side(f, side, f->border + 3 * (size_t)f->start.data[side]);
+    for (side = 0, i = 0; i < f->boundary; ++i) {
+        double d[3];
+        bool corner = i == f->start.data[side];
+        side += corner;
+        gproji_sub3(f->border + 3 * (size_t)i, f->points, d);
+        if (!gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up)) ||
+            !gproji_ints_add(f->heap, &f->polygon, 2 * i + corner))
+            return gproji_fail_memory(f->error);
+    }
+    if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (i == f->boundary) return GPROJ_OK;
+    i = gproji_side_of(f, i), j = gproji_side_of(f, j);
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[i],
+                       "with so few edges side %d meets side %d; divide them finer", i, j);
+}
+
+/* -- cuts -- */
+
+/* A cut through a polygon of the filling: from its place i to its place j. */
+typedef struct gproji_cut_line {
+    int32_t i, j;
+    int32_t edges;
+    double cost;
+} gproji_cut_line;
+
+/* A patch: `count` entries of f->polygon. */
+typedef struct gproji_outline {
+    const gproji_filling *f;
+    int32_t *entry;
+    int32_t count;
+    double edge; /* mean edge length */
+} gproji_outline;
+
+GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
+
+GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) {
+    return gproji_inner_angle(o->f->flat, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
+                              gproji_outline_vertex(o, i + o->count - 1));
+}
+
+GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t from, int32_t to) {
+    int32_t i, n = 0;
+    for (i = from; i < to; ++i) n += o->entry[i % o->count] & 1;
+    return n;
+}
+
+/* How far the angle is from 1, 2 or 3 right angles, as a part of it, squared. */
+GPROJI_INTERNAL double gproji_angle_cost(double angle) {
+    int32_t n = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
+    double off = angle / n / GPROJI_RIGHT - 1;
+    return off * off;
+}
+
+/* Is the cut inside, and how near does it pass other vertices? Its cost for that, or infinity. */
+GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i, int32_t j) {
+    const double *xy = o->f->flat;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), k;
+    double length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge;
+    for (k = 0; k < o->count; ++k) {
+        int32_t p = gproji_outline_vertex(o, k), q = gproji_outline_vertex(o, k + 1);
+        double along, off;
+        if (p == a || p == b) continue;
+        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return HUGE_VAL;
+        along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
+                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
+                length;
+        off = fabs(gproji_turn2(xy, a, b, p)) / length;
+        if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
+    }
+    return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
+}
+
+/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short
+   sides leave no room for others. */
+GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
+    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
+    int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
+    for (i = 1; i < sides; ++i) least = gproji_min(least, length[i]);
+    if (sides == 4) {
+        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
+        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
+    }
+    if (sides % 2 && sides > 1 && gproji_find_strips(sides, length, strip)) {
+        for (i = 0; i < sides && strip[i] > 0; ++i) continue;
+        if (i == sides) return 0.2;
+    }
+    return cost[sides] + (least < 3 ? 0.6 : 0);
+}
+
+/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts
+   that are to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
+                                        bool last) {
+    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    int32_t reflex = 0;
+    if (j - i + edges < 4) return HUGE_VAL;
+    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
+    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
+    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
+    if (n < 2) return gproji_sides_cost(n, length);
+    for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
+        side += k == i ? first : o->entry[k % o->count] & 1;
+        ++length[side % n];
+    }
+    length[(side + last) % n] += edges;
+    return gproji_sides_cost(n, length);
+}
+
+/* Costs of cuts from place i to place j, with numbers of edges of the right parity. */
+GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
+    const double *xy = o->f->flat;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end;
+    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0;
+    bool corner[2][2];
+    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b); /* in the part from i to j */
+    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
+    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
+    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
+    for (end = 0; end < 4; ++end) {
+        double angle = at[end / 2][end % 2];
+        if (!(angle > 0.1)) return;
+        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
+        cost += gproji_angle_cost(angle);
+    }
+    cost += 0.02 * length / o->edge;
+    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
+    if (cost >= best->cost) return;
+    cost += gproji_clearance_cost(o, i, j);
+    if (!(cost < best->cost)) return;
+    wanted = (int32_t)(length / o->edge + 0.5);
+    for (edges = gproji_max(1, wanted - 3); edges <= wanted + 3; ++edges) {
+        double off = log(edges * o->edge / length), all;
+        if ((j - i + edges) % 2) continue;
+        all = cost + 2 * off * off + gproji_part_cost(o, i, j, edges, corner[0][0], corner[1][0]) +
+              gproji_part_cost(o, j, i + o->count, edges, corner[1][1], corner[0][1]);
+        if (all < best->cost) best->i = i, best->j = j, best->edges = edges, best->cost = all;
+    }
+}
+
+/* The best cut from a corner that is reflex, or from any where there are more than 6; cost infinite: none. */
+GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
+    gproji_cut_line best = {0, 0, 0, HUGE_VAL};
+    bool many = gproji_outline_corners(o, 0, o->count) > GPROJI_PATCH_SIDES, reflex = false;
+    int32_t i, j, pass;
+    for (i = 0; i < o->count; ++i) reflex |= (o->entry[i] & 1) && gproji_outline_angle(o, i) > GPROJI_REFLEX;
+    if (!reflex && !many) return best;
+    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass)
+        for (i = 0; i < o->count; ++i) {
+            if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
+            for (j = 0; j < o->count; ++j) {
+                int32_t apart = j > i ? j - i : i - j;
+                if (apart > 1 && apart + 1 < o->count) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
+            }
+        }
+    return best;
+}
+
+/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., forward or backward. */
+GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
+                                     int32_t first, int32_t inner, bool forward) {
+    int32_t k, from = (int32_t)f->polygon.count, to, end;
+    for (k = i; k <= j; ++k)
+        if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
+    to = (int32_t)f->polygon.count - 1;
+    for (k = 0; k < inner; ++k)
+        if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
+    if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    for (end = 0; end < 2; ++end) { /* corners of the part by their angles */
+        int32_t at = end ? to : from;
+        gproji_outline o;
+        o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
+        f->polygon.data[at] &= ~1;
+        f->polygon.data[at] |= gproji_outline_angle(&o, at - from) < GPROJI_OBTUSE;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t count, const gproji_cut_line *cut) {
+    int32_t a = f->polygon.data[start + cut->i] >> 1, b = f->polygon.data[start + cut->j] >> 1, first = f->vertices, k;
+    for (k = 1; k < cut->edges; ++k) { /* from j to i */
+        double t = (double)k / cut->edges;
+        if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                             (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+            return false;
+    }
+    return gproji_add_part(f, start, count, cut->i, cut->j, first, cut->edges - 1, true) &&
+           gproji_add_part(f, start, count, cut->j, cut->i + count, first, cut->edges - 1, false);
+}
+
+/* -- patches -- */
+
+/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are
+   left out; where there are fewer than 2, places in between are taken. `flat`: the bits of those that are flat. */
+GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
+    int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
+    for (; n > GPROJI_PATCH_SIDES; --n) {
+        int32_t flattest = -1;
+        for (i = 0; i < o->count; ++i)
+            if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
+                flattest = i;
+        o->entry[flattest] &= ~1;
+    }
+    for (i = 0; n < 2 && i < o->count; ++i)
+        if (o->entry[i] & 1) break;
+    for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
+    for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
+        if (!(o->entry[i] & 1)) continue;
+        if (o->f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
+        place[k++] = i;
+    }
+    return k;
+}
+
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
+   boundary, or 3 where these are on the curve or a ring along it? `at`: the place of the pattern's first corner.
+   Destroys `uses`. */
+GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
+    int32_t i, side, from = at, *uses = patch->uses.data;
+    for (side = 0; side < patch->sides; ++side)
+        for (i = 0; i < patch->edges[side]; ++i, ++at) {
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
+            uses[v] = -1; /* twice on the boundary is not good */
+        }
+    for (i = 0; i < patch->vertices; ++i)
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
+    return true;
+}
+
+/* Copies a finished patch into the filling. */
+GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *o, int32_t from, gproji_patch *patch) {
+    int32_t *number = patch->uses.data, i, n = (int32_t)patch->loop.count;
+    size_t q;
+    double x = 0, y = 0;
+    for (i = 0; i < patch->vertices; ++i) number[i] = -1;
+    for (i = 0; i < n; ++i) {
+        int32_t v = gproji_outline_vertex(o, from + i);
+        number[patch->loop.data[i]] = v;
+        x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
+    }
+    for (i = 0; i < patch->vertices; ++i) {
+        if (number[i] >= 0) continue;
+        number[i] = f->vertices;
+        if (!gproji_add_flat(f, x, y)) return false;
+    }
+    for (q = 0; q < patch->quad.count; ++q)
+        if (!gproji_ints_add(f->heap, &f->quad, number[patch->quad.data[q]])) return false;
+    return true;
+}
+
+/* Tries a pattern. 1: the patch is built and good; 0: it is not; -1: no memory. Give the patch back in any case. */
+GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_outline *o,
+                                           const int32_t *place, const gproji_pattern *p, const int32_t *length) {
+    int32_t turned[GPROJI_PATCH_SIDES], i;
+    for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
+    if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
+    return gproji_patch_is_good(patch, o, place[p->first]);
+}
+
+/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a
+   ring; at last a ring around one strip. -1: no memory. */
+GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
+                                              int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
+                                              gproji_pattern *chosen) {
+    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
+    memset(chosen, 0, sizeof *chosen);
+    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
+        gproji_find_patterns(c, sides, ring ? length : inner);
+        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c->pattern[i];
+            gproji_patch patch;
+            int32_t outcome;
+            p->ring = ring != 0;
+            for (k = 0; k < sides && !ring; ++k)
+                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
+            outcome = gproji_try_pattern(f, &patch, o, place, p, length);
+            gproji_patch_give(&patch);
+            if (outcome < 0) return -1;
+            if (outcome > 0) *chosen = *p, ++good;
+        }
+    }
+    if (good > 0) return 1;
+    for (i = 0; i < sides; ++i) sum += length[i];
+    chosen->sides = sides;
+    chosen->edges = chosen->rows = 1;
+    chosen->edge[0] = sum / 2 - 1;
+    chosen->bare = chosen->ring = true;
+    return 1;
+}
+
+GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
+    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat, i;
+    int32_t sides = gproji_patch_corners(o, place, &flat);
+    gproji_pattern p;
+    gproji_patch patch;
+    bool done;
+    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
+    if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
+    done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
+    gproji_patch_give(&patch);
+    ++f->leaves;
+    return done;
+}
+
+/* The rings wanted, and what they leave as the first patch. Its outline is near the boundary as yet. */
+GPROJI_INTERNAL bool gproji_add_rings(gproji_filling *f) {
+    int32_t n = f->boundary, ring, i;
+    for (ring = 1; ring <= f->options.rings; ++ring)
+        for (i = 0; i < n; ++i) {
+            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
+                return false;
+        }
+    f->curve_vertices = f->vertices;
+    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
+    return true;
+}
+
+/* Cuts the outline into patches, then fills them: vertices of cuts come before those inside of patches. */
+GPROJI_INTERNAL gproj_code gproji_fill_patches(gproji_filling *f, gproji_candidates *c) {
+    size_t at;
+    int32_t stage, start, k;
+    for (stage = 0; stage < 2; ++stage) {
+        for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+            gproji_outline o;
+            gproji_cut_line cut;
+            if (stage == 1 && f->patch.data[at] < 0) continue; /* it has been cut */
+            o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+            for (k = 0; k < o.count; ++k)
+                o.edge +=
+                    gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+            if (stage == 1) {
+                if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
+                continue;
+            }
+            cut = gproji_find_cut(&o);
+            if (!(cut.cost < HUGE_VAL)) continue;
+            if (!gproji_make_cut(f, start, o.count, &cut)) return gproji_fail_memory(f->error);
+            f->patch.data[at] = -f->patch.data[at];
+        }
+        if (stage == 0) f->cut_vertices = f->vertices;
+    }
+    return GPROJ_OK;
+}
+
+/* -- positions -- */
+
+/* A symmetric matrix given by pairs of unknowns, repeated ones summed, and its factorisation. */
+typedef struct gproji_pairs {
+    gproji_pool pool;
+    gproj_cholesky *cholesky;
+    int32_t unknowns;
+    int64_t count;
+    int32_t *pair;  /* 2 * count: unknowns, negative: there is none */
+    int64_t *start; /* unknowns + 1 */
+    int32_t *row;
+    int64_t *place; /* count: of each pair in `row` and `value`; -1: nowhere */
+    double *value;
+} gproji_pairs;
+
+GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
+    memset(m, 0, sizeof *m);
+    gproji_pool_start(&m->pool, f->heap);
+    m->unknowns = unknowns;
+    m->count = count;
+    m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
+    m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
+    m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
+    m->place = (int64_t *)gproji_pool_take(&m->pool, count, sizeof *m->place);
+    m->value = (double *)gproji_pool_take(&m->pool, count, sizeof *m->value);
+    m->cholesky = gproj_cholesky_create(f->host);
+    return m->pair && m->start && m->row && m->place && m->value && m->cholesky;
+}
+
+GPROJI_INTERNAL void gproji_pairs_give(gproji_pairs *m) {
+    gproj_cholesky_destroy(m->cholesky);
+    gproji_pool_give_all(&m->pool);
+}
+
+/* Sorts the pairs by columns and analyses the pattern. */
+GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
+    int64_t e;
+    int32_t i;
+    for (e = 0; e < m->count; ++e) {
+        int32_t column = gproji_min(m->pair[2 * e], m->pair[2 * e + 1]);
+        if (column >= 0) ++m->start[column + 2];
+    }
+    for (i = 2; i <= m->unknowns; ++i) m->start[i] += m->start[i - 1];
+    for (e = 0; e < m->count; ++e) { /* start[column + 1] moves from the column's beginning to its end */
+        int32_t column = gproji_min(m->pair[2 * e], m->pair[2 * e + 1]);
+        m->place[e] = -1;
+        if (column < 0) continue;
+        m->place[e] = m->start[column + 1]++;
+        m->row[m->place[e]] = gproji_max(m->pair[2 * e], m->pair[2 * e + 1]);
+    }
+    return gproj_cholesky_analyse(m->cholesky, m->unknowns, m->start, m->row, NULL) == GPROJ_OK;
+}
+
+GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
+GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
+
+/* The Laplace equation: each vertex from `fixed` on is the mean of its neighbours. `field` has `fields` numbers a
+   vertex; `side` first the right-hand sides, then the solutions, one after the other. */
+GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pairs *m, int32_t fixed, int32_t fields,
+                                            const double *field, double *side) {
+    int32_t n = (int32_t)f->quad.count, i, k, end;
+    for (i = 0; i < n; ++i) {
+        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m->pair + 6 * (size_t)i;
+        pair[0] = pair[1] = pair[4] = a - fixed;
+        pair[2] = pair[3] = pair[5] = b - fixed;
+        for (end = 0; end < 2; ++end)
+            for (k = 0; k < fields; ++k) {
+                int32_t inner = end ? a : b, outer = end ? b : a;
+                if (inner >= fixed && outer < fixed)
+                    side[(size_t)k * (size_t)m->unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
+            }
+    }
+    if (!gproji_pairs_analyse(m)) return false;
+    for (i = 0; i < 3 * n; ++i)
+        if (m->place[i] >= 0) m->value[m->place[i]] = i % 3 == 2 ? -1 : 1;
+    return gproj_cholesky_factor(m->cholesky, m->value) == GPROJ_FACTORED &&
+           gproj_cholesky_solve(m->cholesky, fields, side, side) == GPROJ_OK;
+}
+
+/* Sets the fields of the vertices from `fixed` on. */
+GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
+    int32_t unknowns = f->vertices - fixed, i, k;
+    gproji_pairs m;
+    double *side = NULL;
+    bool done;
+    if (unknowns == 0) return GPROJ_OK;
+    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)f->quad.count);
+    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
+    done = side && gproji_harmonic_system(f, &m, fixed, fields, field, side);
+    for (i = 0; done && i < unknowns; ++i)
+        for (k = 0; k < fields; ++k)
+            field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];
+    gproji_pairs_give(&m);
+    return done ? GPROJ_OK : gproji_fail_memory(f->error);
+}
+
+/* The distortion of the mesh in the plane. For a corner at p with neighbours q and r of a quad of wanted edge s, with
+   a = (q - p) / s, b = (r - p) / s and D = det(a, b):
+       (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X),  X = (D + sqrt(D^2 + epsilon^2)) / 2,
+   least for a square of edge s and, where epsilon = 0, infinite at D = 0. */
+typedef struct gproji_untangling {
+    gproji_filling *f;
+    gproji_pairs m;
+    double *edge;     /* of each quad: s */
+    double *gradient; /* 2 a vertex that moves */
+    double *step;
+    double *start; /* flat positions before a step */
+    double epsilon;
+    double least; /* D of the worst corner, at the last evaluation */
+    bool failed;  /* no memory to factor */
+} gproji_untangling;
+
+#define GPROJI_AREA_WEIGHT 0.3 /* lambda */
+
+/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X)
+   with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
+GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
+                                                double hessian[4][4]) {
+    double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
+    double turn[4], weight = GPROJI_AREA_WEIGHT;
+    int32_t i, j;
+    x = d > 0 ? 0.5 * (d + root) : 0.5 * epsilon * epsilon / (root - d); /* without cancellation */
+    square = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
+    value = 0.5 * (square + weight * (1 + d * d)) / x;
+    if (!gradient) return value;
+    bend = 1 / root; /* X' / X */
+    slope = weight * d / x - value * bend;
+    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0];
+    for (i = 0; i < 4; ++i) gradient[i] = z[i] / x + slope * turn[i];
+    for (i = 0; i < 4; ++i)
+        for (j = 0; j < 4; ++j) {
+            double across = square * bend * bend + weight * ((1 - bend * d) * (1 - bend * d) + bend * bend);
+            hessian[i][j] = ((i == j) - bend * (z[i] * turn[j] + turn[i] * z[j]) + across * turn[i] * turn[j]) / x;
+        }
+    return value;
+}
+
+GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
+    const int32_t *quad = u->f->quad.data;
+    const double *p = u->f->flat + 2 * (size_t)quad[corner],
+                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
+                 *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
+    double s = u->edge[corner / 4];
+    z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
+}
+
+/* The sum over all corners, and the worst D. */
+GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
+    int32_t n = (int32_t)u->f->quad.count, c;
+    double sum = 0, z[4];
+    u->least = HUGE_VAL;
+    for (c = 0; c < n; ++c) {
+        gproji_corner_edges(u, c, z);
+        u->least = gproji_fmin(u->least, z[0] * z[3] - z[1] * z[2]);
+        sum += gproji_corner_distortion(z, u->epsilon, NULL, NULL);
+    }
+    return sum;
+}
+
+/* Adds one quad's gradient and Hessian: 8 numbers, x and y of its vertices. */
+GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
+    double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
+    int32_t corner, i, j, k = 0;
+    for (corner = 0; corner < 4; ++corner) { /* z = (q, r - p, p) / s: each of them in two places */
+        int32_t p = corner, ends[2], a, b;
+        ends[0] = (corner + 1) % 4, ends[1] = (corner + 3) % 4;
+        gproji_corner_edges(u, 4 * quad + corner, z);
+        gproji_corner_distortion(z, u->epsilon, g, h);
+        for (i = 0; i < 4; ++i) {
+            a = 2 * ends[i / 2] + i % 2;
+            gradient[a] += g[i] / s, gradient[2 * p + i % 2] -= g[i] / s;
+            for (j = 0; j < 4; ++j) {
+                double value = h[i][j] / (s * s);
+                b = 2 * ends[j / 2] + j % 2;
+                hessian[a][b] += value, hessian[a][2 * p + j % 2] -= value;
+                hessian[2 * p + i % 2][b] -= value, hessian[2 * p + i % 2][2 * p + j % 2] += value;
+            }
+        }
+    }
+    for (i = 0; i < 8; ++i) {
+        int32_t v = u->f->quad.data[4 * quad + i / 2] - u->f->boundary;
+        if (v >= 0) u->gradient[2 * v + i % 2] += gradient[i];
+        for (j = 0; j <= i; ++j, ++k) {
+            int64_t place = u->m.place[GPROJI_QUAD_ENTRIES * (int64_t)quad + k];
+            if (place >= 0) u->m.value[place] = hessian[i][j];
+        }
+    }
+}
+
+/* A step of Newton's method, shortened until the distortion is less. False where it gains less than this part of it. */
+GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
+    gproji_filling *f = u->f;
+    size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
+    int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
+    gproj_factor_outcome outcome;
+    memset(u->gradient, 0, n * sizeof *u->gradient);
+    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
+    outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
+    u->failed = outcome == GPROJ_FACTOR_FAILED;
+    if (outcome != GPROJ_FACTORED) return false;
+    gproj_cholesky_solve(u->m.cholesky, 1, u->gradient, u->step);
+    before = gproji_distortion(u);
+    slope = gproji_dot(u->gradient, u->step, n);
+    memcpy(u->start, moving, n * sizeof *moving);
+    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
+        for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
+        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
+    }
+    memcpy(moving, u->start, n * sizeof *moving);
+    gproji_distortion(u);
+    return false;
+}
+
+/* The wanted edge of each quad: that of the boundary, harmonic inside. */
+GPROJI_INTERNAL gproj_code gproji_find_sizes(gproji_untangling *u) {
+    gproji_filling *f = u->f;
+    int32_t i, quads = (int32_t)f->quad.count / 4;
+    double *size = u->start; /* has room for it */
+    gproj_code code;
+    for (i = 0; i < f->boundary; ++i)
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
+    code = gproji_fill_harmonically(f, f->boundary, 1, size);
+    for (i = 0; i < quads && !code; ++i) {
+        const int32_t *v = f->quad.data + 4 * (size_t)i;
+        u->edge[i] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
+    }
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling *u) {
+    int32_t quads = (int32_t)f->quad.count / 4, q, i, j, n;
+    gproj_code code = gproji_find_sizes(u);
+    if (code) return code;
+    for (q = 0, n = 0; q < quads; ++q)
+        for (i = 0; i < 8; ++i)
+            for (j = 0; j <= i; ++j, ++n) {
+                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
+                u->m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
+                u->m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
+            }
+    if (!gproji_pairs_analyse(&u->m)) return gproji_fail_memory(f->error);
+    u->epsilon = 1;
+    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
+        if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u->failed) return gproji_fail_memory(f->error);
+        if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
+        u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
+    }
+    return GPROJ_OK;
+}
+
+/* Do all corners of all quads turn left? */
+GPROJI_INTERNAL bool gproji_is_untangled(const gproji_filling *f) {
+    int32_t n = (int32_t)f->quad.count, i;
+    for (i = 0; i < n; ++i)
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                           f->quad.data[gproji_quad_previous(i)]) > 0))
+            return false;
+    return true;
+}
+
+GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
+    int32_t unknowns = 2 * (f->vertices - f->boundary);
+    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
+    gproji_untangling u;
+    memset(&u, 0, sizeof u);
+    u.f = f;
+    if (code || unknowns == 0) return code;
+    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)(f->quad.count / 4))) {
+        u.edge = (double *)gproji_pool_take(&u.m.pool, (int64_t)f->quad.count / 4, sizeof *u.edge);
+        u.gradient = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.gradient);
+        u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
+        u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
+    }
+    code = u.edge && u.gradient && u.step && u.start ? gproji_untangle(f, &u) : gproji_fail_memory(f->error);
+    gproji_pairs_give(&u.m);
+    return code;
+}
+
+/* -- the mesh -- */
+
+/* Positions in space: the curve at the boundary; inside those of the plane, with harmonic heights. */
+GPROJI_INTERNAL gproj_code gproji_lift_vertices(gproji_filling *f, double *height, double *position) {
+    int32_t v;
+    gproj_code code;
+    for (v = 0; v < f->boundary; ++v) {
+        double d[3];
+        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
+        height[v] = gproji_dot3(d, f->normal);
+    }
+    code = gproji_fill_harmonically(f, f->boundary, 1, height);
+    memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    for (v = f->boundary; v < f->vertices && !code; ++v) {
+        double *out = position + 3 * (size_t)v;
+        gproji_copy3(f->points, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(height[v], f->normal, out);
+    }
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
+    int32_t faces = (int32_t)f->quad.count / 4, side, i;
+    gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
+    gproji_soup soup;
+    gproji_pool pool;
+    double *height, *position;
+    int32_t *degree;
+    bool taken;
+    gproj_code code;
+    gproji_pool_start(&pool, f->heap);
+    height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
+    position = (double *)gproji_pool_take(&pool, 3 * (int64_t)f->vertices, sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, faces, sizeof *degree);
+    taken = height && position && degree && gproji_ints_add(f->heap, &start, 0);
+    for (side = 0; taken && side < f->sides; ++side) {
+        for (i = f->start.data[side]; taken && i <= f->start.data[side + 1]; ++i)
+            taken = gproji_ints_add(f->heap, &line, i % f->boundary);
+        taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
+    }
+    code = taken ? gproji_lift_vertices(f, height, position) : gproji_fail_memory(f->error);
+    if (!code) {
+        gproji_fill(degree, faces, 4);
+        soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
+        soup.position = position, soup.face_degree = degree, soup.face_vertex = f->quad.data;
+        code = gproji_mesh_build(object, &soup, f->error);
+    }
+    if (!code) code = gproji_mesh_set_polylines(object, f->sides, start.data, line.data, f->error);
+    gproji_ints_give(f->heap, &line);
+    gproji_ints_give(f->heap, &start);
+    gproji_pool_give_all(&pool);
+    return code;
+}
+
+GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
+    int32_t i, n = (int32_t)f->quad.count;
+    info->boundary_count = f->boundary;
+    info->side_count = f->sides;
+    info->patch_count = f->leaves;
+    for (i = f->boundary; i < f->vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(mesh, i);
+        info->irregular_count += valence != 4;
+        info->min_valence = i == f->boundary ? valence : gproji_min(info->min_valence, valence);
+        info->max_valence = gproji_max(info->max_valence, valence);
+    }
+    for (i = 0; i < n; ++i) {
+        double angle = gproji_inner_angle(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                                          f->quad.data[gproji_quad_previous(i)]) *
+                       57.29577951308232;
+        if (i == 0 || angle < info->min_angle) info->min_angle = angle;
+        if (i == 0 || angle > info->max_angle) info->max_angle = angle;
+    }
+}
+
+/* The largest valence inside. */
+GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
+    int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    size_t i;
+    if (!count) return gproji_fail_memory(f->error);
+    for (*most = 0, i = 0; i < f->quad.count; ++i)
+        if (f->quad.data[i] >= f->boundary) *most = gproji_max(*most, ++count[f->quad.data[i]]);
+    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    return GPROJ_OK;
+}
+
+/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the
+   right way up. Sets whether it is good. */
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
+    int32_t most = 0;
+    gproj_code code;
+    f->polygon.count = (size_t)f->boundary;
+    f->patch.count = 1;
+    f->patch.data[0] = f->boundary;
+    f->quad.count = 0;
+    f->vertices = f->boundary;
+    f->leaves = 0;
+    *good = false;
+    code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
+    if (!code) code = gproji_find_valence(f, &most);
+    if (code || most > valence) return code;
+    code = gproji_place_vertices(f);
+    *good = gproji_is_untangled(f);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candidates *c) {
+    static const int32_t valence[3] = {5, 6, INT32_MAX};
+    int32_t variant = f->options.variant, pass, tries;
+    for (pass = 0; pass < 3; ++pass)
+        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries; ++tries) {
+            bool good;
+            gproj_code code;
+            f->options.variant = variant + tries;
+            code = gproji_try_filling(f, c, valence[pass], &good);
+            if (code || good) return code;
+        }
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                       "no filling without a quad turned over was found; divide the sides finer or mark other corners");
+}
+
+GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
+    gproji_candidates *c;
+    gproj_code code = gproji_check_curve(f);
+    if (!code) code = gproji_divide_curve(f);
+    if (code) return code;
+    c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
+    code = c ? gproji_fill_outline(f, c) : gproji_fail_memory(f->error);
+    gproji_give(f->heap, c, 1, sizeof *c);
+    if (!code) code = gproji_build_filling(f, object);
+    if (!code) gproji_describe_filling(f, &object->mesh, info);
+    return code;
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
+                                      gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_filling f;
+    gproj_fill_info found;
+    gproj_code code;
+    if (!object) return NULL;
+    memset(&f, 0, sizeof f);
+    memset(&found, 0, sizeof found);
+    f.heap = &object->heap, f.host = host, f.error = error;
+    f.count = count, f.points = points;
+    if (options) f.options = *options;
+    code = gproji_fill_curve(&f, object, &found);
+    gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
+    gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
+    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
+    gproji_ints_give(f.heap, &f.corner);
+    gproji_ints_give(f.heap, &f.start);
+    gproji_ints_give(f.heap, &f.polygon);
+    gproji_ints_give(f.heap, &f.patch);
+    gproji_ints_give(f.heap, &f.quad);
+    if (info) *info = found;
+    return gproji_mesh_done(object, code);
+}
+
+/* ============================================================================================================
    >>form   A mesh and its system: life, units, and what all builders share. Uses all earlier sections.
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
@@ -11781,6 +16543,14 @@ GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, dou
     term->a = a;
 }
 
+/* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
+GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms) {
+    gproj_system *s = form->system;
+    if (group >= 0 &&
+        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms)))
+        gproji_fail_memory(&s->error);
+}
+
 /* Refuses vertex numbers out of range. */
 GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
                                                const int32_t *vertices) {
@@ -11836,23 +16606,8 @@ GPROJI_INTERNAL bool gproji_select_boundary(const gproj_form *form, int32_t vert
     return gproj_mesh_is_boundary_vertex(form->mesh, vertex);
 }
 
-/* The half-edges with face -1 that leave and enter a boundary vertex are h and prev[h]. */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex) {
-    const gproj_mesh *mesh;
-    const double *p;
-    double in[3], out[3];
-    int32_t h;
-    static const double none[3] = {0, 0, 0};
-    if (!form || !form->mesh || !form->original || vertex < 0 || vertex >= form->mesh->vertex_count) return false;
-    mesh = form->mesh;
-    if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
-    if (gproj_mesh_valence(mesh, vertex) == 2) return true;
-    h = mesh->vertex_halfedge[vertex];
-    p = form->original + 3 * (size_t)vertex;
-    gproji_sub3(p, form->original + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
-    gproji_sub3(form->original + 3 * (size_t)mesh->origin[mesh->twin[h]], p, out);
-    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
-    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+    return form && form->mesh && form->original && gproji_is_corner(form->mesh, form->original, vertex);
 }
 
 GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex) {
@@ -11878,6 +16633,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, c
     int32_t i, k, group;
     if (!part) return -1;
     group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
@@ -11993,6 +16749,16 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     }
 }
 
+/* Room for the normals of all faces that have none yet. */
+GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
+    size_t faces = 0, corners = 0;
+    int32_t f;
+    for (f = 0; f < form->mesh->face_count; ++f)
+        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
+            ++faces, corners += (size_t)form->mesh->face_degree[f];
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 3 * faces + 6 * corners);
+}
+
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
     int32_t group, f;
@@ -12003,6 +16769,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     }
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
+    gproji_expect_normals(form, group);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
@@ -12079,7 +16846,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
             part->segment[i] = gproji_walk(curve, part->segment[i], p);
-        } else if (system->group[group].row[3 * i + 2].own > 0) {
+        } else if (gproji_own_weight(&system->group[group], 3 * i + 2) > 0) {
             continue;
         }
         after = gproji_along(curve, part->segment[i], p, true) > 0;
@@ -12341,8 +17108,11 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     gproj_term *term;
     int32_t group, v;
+    size_t vertices;
     if (!gproji_form_ready(form)) return -1;
+    vertices = (size_t)form->mesh->vertex_count;
     group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    gproji_expect_group(form, group, 0, 6 * vertices, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -12543,14 +17313,17 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
     g = &form->system->group[group];
     have = gproji_element_count(form->mesh, g->place);
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
-    if (!of) return gproji_fail_memory(&form->error);
+    if (!of || !gproji_share_weights(form->system, g)) {
+        gproji_give(&form->own, of, (size_t)have, sizeof *of);
+        return gproji_fail_memory(&form->error);
+    }
     for (k = 0; k < have; ++k) of[k] = -1;
     for (k = 0; k < count; ++k) of[elements ? elements[k] : k] = weights[k];
     for (k = 0; k < g->row_count; ++k) {
         gproji_row *row = &g->row[k];
         if (row->element < 0 || row->element >= have || of[row->element] < 0) continue;
-        row->factor = of[row->element];
-        row->weight = row->own * row->factor;
+        g->share[k].factor = of[row->element];
+        row->weight = g->share[k].own * g->share[k].factor;
     }
     gproji_give(&form->own, of, (size_t)have, sizeof *of);
     form->system->changed = true;
@@ -13723,6 +18496,8 @@ GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
     gproj_term *term;
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
+    gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
+                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v]);
     count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
     if (!term) {
@@ -13933,11 +18708,13 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
-    int32_t count, edge = form->system->group[group].row[row].element;
+    const gproji_group *g = &form->system->group[group];
+    int32_t count, edge = g->row[row].element;
     const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
-    if (count != 1 || term->j >= 0 || term->i != form->statics->force[edge]) return -1;
-    if (form->system->group[group].row[row].constant != 0) return -1;
+    if (count != 1 || term->j >= 0) return -1;
+    if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
+    if (g->row[row].constant != 0) return -1;
     *sign = term->a;
     return edge;
 }
@@ -14764,13 +19541,15 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
 
 /* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
    them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproj_term *term, int32_t count) {
-    int32_t vertices = 3 * form->mesh->vertex_count, t;
+GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
+    int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
-    for (t = 0; t < count; ++t) {
-        if (term[t].i >= vertices) continue;
-        if (term[t].j >= 0 && term[t].j < vertices) return true;
-        if (term[t].j < 0) sum[term[t].i % 3] += term[t].a;
+    int64_t t;
+    for (t = row->term; t < row[1].term; ++t) {
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        if (i >= vertices) continue;
+        if (j >= 0 && j < vertices) return true;
+        if (j < 0) sum[i % 3] += g->term[t].a;
     }
     return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
 }
@@ -14781,16 +19560,13 @@ GPROJI_INTERNAL bool gproji_bound_holds(const gproji_row *row) { return row->con
 
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t g, r, count;
-    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
-        gproj_group_info info = gproj_system_group_info(form->system, g);
-        if (form->system->group[g].guard) continue;
-        for (r = 0; info.schedule.weight > 0 && r < info.rows; ++r) {
-            const gproj_term *term = gproji_row_terms(form->system, g, r, &count);
-            bool bound = info.kind == GPROJ_BOUND, volume = form->system->group[g].global;
-            if (!(form->system->group[g].row[r].weight > 0)) continue;
-            if (bound ? gproji_bound_holds(&form->system->group[g].row[r])
-                      : volume || gproji_row_holds(form, term, count))
+    int32_t i, r;
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            if (g->kind == GPROJ_BOUND ? gproji_bound_holds(row) : g->global || gproji_row_holds(form, g, row))
                 return true;
         }
     }
@@ -15121,16 +19897,25 @@ GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, do
 
 /* -- the state -- */
 
-/* A row's weights: one byte where all are 1. */
-GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproji_row *row) {
-    bool plain = row->own == 1 && row->factor == 1 && row->weight == 1;
-    if (gproji_pass_bool(stream, &plain)) {
-        if (stream->way == GPROJI_READ) row->own = row->factor = row->weight = 1;
+/* The rows' weights, and what they are the products of where elements have weights. */
+GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+    bool shared = g->share != NULL;
+    int32_t r;
+    for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_number(stream, &g->row[r].weight, 0, 1e100);
+    if (!gproji_pass_bool(stream, &shared)) {
+        for (r = 0; stream->way == GPROJI_READ && g->share && r < g->row_count; ++r)
+            g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
         return;
     }
-    gproji_pass_number(stream, &row->own, 0, 1e50);
-    gproji_pass_number(stream, &row->factor, 0, 1e50);
-    gproji_pass_number(stream, &row->weight, 0, 1e100);
+    if (gproji_comes_in(stream) && !gproji_share_weights(form->system, g)) {
+        gproji_fail_memory(&form->error);
+        gproji_spoil(stream, "out of memory");
+        return;
+    }
+    for (r = 0; r < g->row_count && !stream->wrong; ++r) {
+        gproji_pass_number(stream, &g->share[r].own, 0, 1e50);
+        gproji_pass_number(stream, &g->share[r].factor, 0, 1e50);
+    }
 }
 
 /* The constants and coefficients of a group's rows. */
@@ -15142,9 +19927,17 @@ GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproji_group *g)
         gproji_pass_number(stream, &g->term[t].a, -DBL_MAX, DBL_MAX);
 }
 
+/* What of a solve in frames is passed. */
+typedef enum gproji_passing {
+    GPROJI_PASS_NONE,
+    GPROJI_PASS_SOLVE,
+    GPROJI_PASS_NEAREST /* with multipliers */
+} gproji_passing;
+
 /* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
    any of a group that the library has added (`own`): they are set when a solve begins. */
-GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, bool own, bool solving) {
+GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
+                                       gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
     int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
@@ -15152,22 +19945,35 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproji_group *g, b
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
     if (stream->way == GPROJI_READ) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
-    if (own && !solving) return;
-    if (solving || !g->refresh) gproji_pass_numbers(stream, g);
-    for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_weights(stream, &g->row[r]);
-    for (r = 0; solving && r < g->row_count && !stream->wrong; ++r) {
+    if (own && !passing) return;
+    if (passing || !g->refresh) gproji_pass_numbers(stream, g);
+    gproji_pass_weights(stream, form, g);
+    for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
-        gproji_pass_number(stream, &g->row[r].multiplier, -DBL_MAX, DBL_MAX);
+        if (passing == GPROJI_PASS_NEAREST) gproji_pass_number(stream, &g->multiplier[r].y, -DBL_MAX, DBL_MAX);
     }
 }
 
-/* A solve in frames. Returns whether one is on. */
-GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
+/* Multipliers for a solve for the nearest point that comes in. */
+GPROJI_INTERNAL void gproji_make_multipliers(gproji_stream *stream, gproj_form *form) {
+    gproj_system *s = form->system;
+    int32_t i;
+    bool all = s->compiled && s->sum;
+    for (i = 0; i < s->group_count; ++i) all = all && s->group[i].multiplier;
+    if (all || !gproji_comes_in(stream) || stream->wrong) return;
+    if (gproji_compile(s) == GPROJ_OK && gproji_start_multipliers(s)) return;
+    gproji_fail_memory(&form->error);
+    gproji_spoil(stream, "out of memory");
+}
+
+/* A solve in frames, if one is on. */
+GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
     gproji_solve solve = form->solve;
     gproji_loop *loop = &solve.loop;
+    bool nearest, begun;
     if (!gproji_pass_bool(stream, &solve.on)) {
         if (stream->way == GPROJI_READ) form->solve.on = form->solve.finished = false;
-        return false;
+        return GPROJI_PASS_NONE;
     }
     gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
     gproji_pass_integer(stream, &solve.collapsed, 0, INT32_MAX);
@@ -15178,10 +19984,10 @@ GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) 
     gproji_pass_bool(stream, &loop->options.skip_damping);
     gproji_pass_bool(stream, &loop->options.skip_closeness);
     gproji_pass_bool(stream, &loop->options.skip_guard);
-    gproji_pass_bool(stream, &loop->options.nearest);
+    nearest = gproji_pass_bool(stream, &loop->options.nearest);
     gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
-    gproji_pass_bool(stream, &loop->begun);
+    begun = gproji_pass_bool(stream, &loop->begun);
     gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
@@ -15192,7 +19998,8 @@ GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) 
     gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->minimum);
     gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX / 2);
-    if (stream->way != GPROJI_READ) return true;
+    if (nearest && begun) gproji_make_multipliers(stream, form);
+    if (stream->way != GPROJI_READ) return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
     loop->system = form->system;
     loop->restored = loop->begun;
@@ -15200,7 +20007,7 @@ GPROJI_INTERNAL bool gproji_pass_solve(gproji_stream *stream, gproj_form *form) 
     memset(loop->result.seconds, 0, sizeof loop->result.seconds);
     solve.structure = gproji_structure_of(form->system);
     form->solve = solve;
-    return true;
+    return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
 }
 
 /* The last segment that vertex i of a gliding part may be on; -1: it stays where it was. */
@@ -15222,7 +20029,7 @@ GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) 
 }
 
 /* The groups, each after its kind; those of the form that do not come in lose their weight. */
-GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, bool solving) {
+GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     gproj_system *s = form->system;
     int32_t count = s->group_count, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
@@ -15240,8 +20047,8 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             return;
         }
         seen[kind] = true;
-        gproji_pass_group(stream, &s->group[group], kind != GPROJI_OWN_NONE, solving);
-        if (solving && kind == GPROJI_OWN_GUARD) {
+        gproji_pass_group(stream, form, &s->group[group], kind != GPROJI_OWN_NONE, passing);
+        if (passing && kind == GPROJI_OWN_GUARD) {
             gproji_pass_bool(stream, &form->guard_on);
             gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
         }
@@ -15266,15 +20073,15 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
 }
 
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
-    bool solving;
+    gproji_passing passing;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
-    solving = gproji_pass_solve(stream, form);
-    if (solving) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
+    passing = gproji_pass_solve(stream, form);
+    if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_parts(stream, form);
-    gproji_pass_groups(stream, form, solving);
+    gproji_pass_groups(stream, form, passing);
 }
 
 /* -- what it belongs to -- */
@@ -15331,8 +20138,12 @@ GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g)
     hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
     for (r = 0; r < g->row_count; ++r)
         hash = gproji_hash_step(hash, (uint64_t)g->row[r + 1].term << 32 ^ (uint32_t)g->row[r].element);
-    for (t = 0; t < g->row[g->row_count].term; ++t)
-        hash = gproji_hash_step(hash, (uint64_t)(uint32_t)g->term[t].i << 32 | (uint32_t)g->term[t].j);
+    for (r = 0; r < g->row_count; ++r)
+        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
+            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].i);
+            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].j);
+            hash = gproji_hash_step(hash, (uint64_t)i << 32 | j);
+        }
     return gproji_hash_step(hash, (uint64_t)g->row_count);
 }
 
@@ -15556,17 +20367,22 @@ GPROJI_INTERNAL void gproji_scale_responses(gproj_drag *drag, double epsilon) {
     }
 }
 
-/* From A^-1 to (A + U U')^-1: see gproji_wide_correct. Wide rows have phi = 0. */
-GPROJI_INTERNAL void gproji_correct_responses(gproj_drag *drag, int32_t wide) {
+/* Q = (A + U U')^-1 Q for the columns from `first` on: see gproji_wide_correct. `wide`: columns of U. */
+GPROJI_INTERNAL void gproji_solve_responses(gproj_drag *drag, int32_t first, int32_t wide) {
     gproj_system *s = drag->form->system;
+    gproj_cholesky *c = s->cholesky;
     size_t n = (size_t)drag->variables;
+    double *column = drag->motion + n * (size_t)first;
     int32_t j;
-    if (wide == 0) return;
-    memset(s->step, 0, n * sizeof *s->step);
-    for (j = 0; j < drag->columns; ++j) {
-        memcpy(s->correction, drag->motion + n * (size_t)j, n * sizeof *s->correction);
-        gproji_wide_correct(s, wide);
-        memcpy(drag->motion + n * (size_t)j, s->correction, n * sizeof *s->correction);
+    if (wide == 0) {
+        gproj_cholesky_solve(c, drag->columns - first, column, column);
+        return;
+    }
+    gproji_cholesky_forward(c, drag->columns - first, column, column);
+    for (j = first; j < drag->columns; ++j, column += n) {
+        memset(s->wide_vector, 0, (size_t)wide * sizeof *s->wide_vector);
+        gproji_wide_correct(s, wide, column);
+        gproji_cholesky_backward(c, column, column);
     }
 }
 
@@ -15601,42 +20417,32 @@ GPROJI_INTERNAL bool gproji_factor_tangents(gproj_drag *drag, double epsilon, in
     return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, drag->motion) == GPROJ_FACTORED;
 }
 
-/* What the rows of U need, and a step that takes the residual off where `base` is to move by it. Returns how many rows
-   are wide. */
+/* Makes U ready, and a step that takes the residual off, where `base` is to move by it. Returns how many columns U has. */
 GPROJI_INTERNAL int32_t gproji_prepare_wide(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
-    int32_t i, r, wide = 0;
+    int32_t i, wide = 0;
     if (s->wide_count == 0 && !restore) return 0;
     gproji_merit_gradient(s);
-    gproji_solve_step(s);
+    wide = gproji_step_sides(s);
+    gproji_finish_step(s, wide, false);
     for (i = 0; restore && i < drag->variables; ++i) drag->base[i] += s->step[i];
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r) {
-            gproji_row *row = &s->group[i].row[r];
-            if (!row->wide || !row->active) continue;
-            row->phi = 0;
-            ++wide;
-        }
     return wide;
 }
 
-/* The responses in Q: see (1). False: the matrix cannot be factored. */
+/* The responses in Q: see (1). The first ones go along with the factorisation, unless rows are wide. False: the matrix
+   cannot be factored. */
 GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
-    gproj_cholesky *c = drag->form->system->cholesky;
-    int32_t round, wide, first = gproji_min(c->batch, drag->columns);
-    size_t done = (size_t)first * (size_t)drag->variables;
-    double epsilon = gproji_drag_epsilon;
+    gproj_system *s = drag->form->system;
+    int32_t round, wide, first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns);
     gproji_start_responses(drag);
-    gproji_scale_responses(drag, epsilon);
-    if (!gproji_factor_tangents(drag, epsilon, first)) return false;
-    gproji_cholesky_finish(c, drag->motion);
-    gproj_cholesky_solve(c, drag->columns - first, drag->motion + done, drag->motion + done);
+    gproji_scale_responses(drag, gproji_drag_epsilon);
+    if (!gproji_factor_tangents(drag, gproji_drag_epsilon, first)) return false;
+    if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
     wide = gproji_prepare_wide(drag, restore);
-    gproji_correct_responses(drag, wide);
+    gproji_solve_responses(drag, first, wide);
     for (round = 1; round < GPROJI_DRAG_ROUNDS; ++round) {
-        gproji_scale_responses(drag, epsilon);
-        gproj_cholesky_solve(c, drag->columns, drag->motion, drag->motion);
-        gproji_correct_responses(drag, wide);
+        gproji_scale_responses(drag, gproji_drag_epsilon);
+        gproji_solve_responses(drag, 0, wide);
     }
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
     return true;
@@ -16011,7 +20817,7 @@ GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
     int64_t e;
     for (r = 0; r < fairness->row_count; ++r) {
         fairness->row[r].constant = 0;
-        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first, NULL);
+        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
     }
     for (r = 0; r < handles->row_count; ++r) {
         gproj_system_set_row(s, form->drag_handles, r, NULL, -drag->first[r]);
@@ -16023,7 +20829,7 @@ GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
         for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
             for (c = 0; c < 3; ++c) {
                 int32_t row = 3 * drag->vertex[e] + c;
-                double weight = gproji_fmax(fabs(drag->weight[e]) / most, handles->row[row].own);
+                double weight = gproji_fmax(fabs(drag->weight[e]) / most, handles->row[row].weight);
                 gproj_system_set_row_weight(s, form->drag_handles, row, weight);
                 gproj_system_set_row(s, form->drag_handles, row, NULL, -s->x[row]);
             }

@@ -101,9 +101,11 @@ expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
 expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
-for later in --subdivide=1; do
-    expect 2 "there is no option $(echo "$later" | sed 's/=.*//')" grid.obj -o new.obj --planar $later
+for levels in 0 15 1.5 2,lop ,loop x; do
+    expect 2 "expected a whole number from 1 to 14" grid.obj -o new.obj --planar --subdivide $levels
 done
+expect 3 "face 0 has 4 corners" grid.obj -o new.obj --planar --subdivide 1,loop
+expect 3 "more than a mesh can have" grid.obj -o new.obj --planar --subdivide 14
 expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
 expect 2 "the weight must be a number" grid.obj -o new.obj --planar=-1
 expect 2 "the weight must be a number" grid.obj -o new.obj --planar=nan
@@ -331,6 +333,19 @@ run grid.obj -o near.obj --planar --closeness 0 --fairness 0.2*0.5:3 --fix bound
 [ $status -eq 0 ] && grep -q "projected gradient" out.txt && pass || fail "--fairness --nearest exits with $status"
 run grid.obj -o wish.obj --fairness 0.2
 { [ $status -eq 0 ] || [ $status -eq 1 ]; } && pass || fail "wishes alone exit with $status"
+
+# Subdivision: counts, numbers of the cage's vertices, and what holds afterwards.
+printf 'v 0 0 0\nv 2 0 0\nv 2 2 1\nv 0 2 0\nf 1 2 3\nf 1 3 4\n' >cage.obj
+counts() { echo "$(grep -c '^v ' "$1") $(grep -c '^f ' "$1")"; }
+run cage.obj -o fine.obj --subdivide 2
+[ $status -eq 0 ] && [ "$(counts fine.obj)" = "33 24" ] && pass || fail "--subdivide 2: $(counts fine.obj), exit $status"
+run cage.obj -o fine.obj --subdivide 2,loop
+[ $status -eq 0 ] && [ "$(counts fine.obj)" = "25 32" ] && pass || fail "--subdivide 2,loop: $(counts fine.obj)"
+run grid.obj -o fine.obj --subdivide 1 --planar --fix 0,8,72,80 --report fine.json
+[ $status -eq 0 ] && [ "$(counts fine.obj)" = "289 256" ] && grep -q '"vertices": 289' fine.json && pass ||
+    fail "--subdivide 1 --planar exits with $status"
+paste -d ' ' <(sed -n 9p fine.obj) <(sed -n 9p grid.obj) |
+    awk '{ exit !(($2-$6)^2 + ($3-$7)^2 + ($4-$8)^2 < 1e-18) }' && pass || fail "--subdivide: --fix 8 is not the cage's vertex 8"
 
 printf '# corners\n0, 8\n72 80 # the last\n' >corners.txt
 for fix in boundary corners 0,8,72,80 corners.txt 0-8,72=2; do

@@ -43,7 +43,8 @@ enum {
 enum {
     MOST_OPTIONS = 64,
     MOST_ITERATIONS = 100000,
-    MOST_THREADS = 256
+    MOST_THREADS = 256,
+    MOST_LEVELS = 14
 };
 
 typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
@@ -72,6 +73,11 @@ typedef struct tool_move {
     int32_t vertex;
     double position[3], weight;
 } tool_move;
+
+typedef struct tool_subdivision {
+    int32_t levels; /* 0: none */
+    gproj_scheme scheme;
+} tool_subdivision;
 
 typedef struct tool_record { /* of one iteration, for the report */
     gproj_iteration iteration;
@@ -104,6 +110,7 @@ typedef struct tool {
     /* what the command line says */
     const char *input;
     tool_output output[OUTPUT_COUNT];
+    tool_subdivision subdivision;
     tool_weight planar, circular, conical, planar_boundary, straight_boundary, orthogonal_boundary, lifting, closeness,
         fairness, boundary_fairness, tangential, gauss, parallelograms, equal_areas;
     tool_weight equal_lengths;
@@ -413,6 +420,17 @@ static bool set_iterations(tool *t, void *place, const char *name, const char *v
     return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_ITERATIONS);
 }
 
+static bool set_subdivision(tool *t, void *place, const char *name, const char *value) {
+    tool_subdivision *subdivision = (tool_subdivision *)place;
+    size_t size = strcspn(value, ",");
+    const char *rest = value + size;
+    if (!read_integer(value, size, 1, MOST_LEVELS, &subdivision->levels) || (*rest && strcmp(rest, ",loop") != 0))
+        return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d, with ,loop for triangles", name,
+                    value, MOST_LEVELS);
+    subdivision->scheme = *rest ? GPROJ_LOOP : GPROJ_CATMULL_CLARK;
+    return true;
+}
+
 static bool set_threads(tool *t, void *place, const char *name, const char *value) {
     int32_t *threads = (int32_t *)place;
     if (!read_integer(value, strlen(value), 0, MOST_THREADS, threads))
@@ -582,6 +600,11 @@ typedef struct tool_option {
 
 static const tool_option options[] = {
     {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
+
+    {0, "subdivide", "N[,loop]", false,
+     "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
+     "triangle four (Loop). The cage's vertices keep their numbers",
+     "where it begins", set_subdivision, PLACE(subdivision)},
 
     {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
      PLACE(planar)},
@@ -830,7 +853,7 @@ static bool anything_asked(const tool *t) {
            t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
            t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
            t->total_area.given || t->cost.given || t->equilibrium.given || t->planar_boundary.given ||
-           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given;
+           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given || t->subdivision.levels > 0;
 }
 
 static bool anything_wished(const tool *t) {
@@ -1031,11 +1054,27 @@ static char *load_text(tool *t, const char *path) {
     return text;
 }
 
-static bool read_mesh(tool *t) {
-    int32_t i;
+/* The mesh from which the work begins. */
+static bool make_mesh(tool *t) {
+    gproj_subdivide_options options;
+    gproj_error error;
+    gproj_mesh *coarse;
     t->mesh = load(t, t->input, strlen(t->input));
     if (!t->mesh) return false;
     if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
+    if (t->subdivision.levels == 0) return true;
+    memset(&options, 0, sizeof options);
+    options.levels = t->subdivision.levels;
+    options.scheme = t->subdivision.scheme;
+    coarse = t->mesh;
+    t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
+    gproj_mesh_destroy(coarse);
+    return t->mesh || fail_library(t, t->input, &error);
+}
+
+static bool read_mesh(tool *t) {
+    int32_t i;
+    if (!make_mesh(t)) return false;
     t->original = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->original);
     t->planarity_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);
     t->planarity = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->planarity);

@@ -1,0 +1,712 @@
+/* test_fill.c - >>fill: closed curves filled with quads. */
+#include "gprojt_form.h"
+
+enum {
+    MOST_POINTS = 400,
+    MOST_CORNERS = 16
+};
+
+/* A closed curve with marked corners, and what is asked of its filling. */
+typedef struct gprojt_curve {
+    int32_t count, corner_count;
+    double point[3 * MOST_POINTS];
+    int32_t corner[MOST_CORNERS], edges[MOST_CORNERS];
+    bool marked, given; /* corners, edges */
+    gproj_fill_options options;
+} gprojt_curve;
+
+static void gprojt_add_point(gprojt_curve *c, double x, double y, double z) {
+    c->point[3 * c->count] = x, c->point[3 * c->count + 1] = y, c->point[3 * c->count++ + 2] = z;
+}
+
+static gproj_fill_options gprojt_options(const gprojt_curve *c) {
+    gproj_fill_options options = c->options;
+    if (c->marked) options.corner_count = c->corner_count, options.corners = c->corner;
+    if (c->given) options.side_count = options.side_count ? options.side_count : c->corner_count;
+    if (c->given) options.subdivisions = c->edges;
+    return options;
+}
+
+static gproj_mesh *gprojt_fill(const gprojt_curve *c, gproj_fill_info *info, gproj_error *error) {
+    gproj_fill_options options = gprojt_options(c);
+    return gproj_mesh_fill(c->count, c->point, &options, info, NULL, error);
+}
+
+/* A polygon without further points; corners are found. */
+static gprojt_curve gprojt_polygon(int32_t count, const double *xy) {
+    gprojt_curve c;
+    int32_t i;
+    memset(&c, 0, sizeof c);
+    for (i = 0; i < count; ++i) gprojt_add_point(&c, xy[2 * i], xy[2 * i + 1], 0);
+    return c;
+}
+
+/* `corners` corners on a circle, `points` points for each side, which bulges. */
+static gprojt_curve gprojt_rose(int32_t corners, int32_t points, double bulge) {
+    gprojt_curve c;
+    int32_t i, j;
+    memset(&c, 0, sizeof c);
+    for (i = 0; i < corners; ++i) {
+        double a = 6.283185307179586 * i / corners, b = 6.283185307179586 * (i + 1) / corners;
+        c.corner[c.corner_count++] = c.count;
+        for (j = 0; j < points; ++j) {
+            double t = (double)j / points, h = 4 * bulge * t * (1 - t);
+            double x = (1 - t) * cos(a) + t * cos(b), y = (1 - t) * sin(a) + t * sin(b);
+            gprojt_add_point(&c, 5 * (x + h * cos(0.5 * (a + b))), 5 * (y + h * sin(0.5 * (a + b))), 0);
+        }
+    }
+    c.marked = true;
+    return c;
+}
+
+/* A random curve about the origin: kind 0 nearly convex, 1 curved inwards and outwards, 2 wild. It may cross itself. */
+static gprojt_curve gprojt_random_curve(uint64_t *state, int32_t corners, int kind) {
+    gprojt_curve c;
+    double x[MOST_CORNERS + 1], y[MOST_CORNERS + 1], begin = 6.28 * gprojt_uniform(state);
+    int32_t i, j, points = 12;
+    memset(&c, 0, sizeof c);
+    for (i = 0; i < corners; ++i) {
+        double a = begin + 6.283185307179586 * (i + 0.6 * (gprojt_uniform(state) - 0.5)) / corners;
+        double r = kind == 0 ? 10 : kind == 1 ? 5 + 10 * gprojt_uniform(state) : 3 + 12 * gprojt_uniform(state);
+        x[i] = r * cos(a), y[i] = r * sin(a);
+    }
+    x[corners] = x[0], y[corners] = y[0];
+    for (i = 0; i < corners; ++i) {
+        double dx = x[i + 1] - x[i], dy = y[i + 1] - y[i], u = gprojt_uniform(state), out = corners == 2 ? 0.4 : 0;
+        double bulge = out + (kind == 0 ? 0.15 * u : (kind == 1 ? 0.5 : 0.9) * (u - 0.5));
+        double wave = kind == 2 ? 0.3 * (gprojt_uniform(state) - 0.5) : 0;
+        c.corner[c.corner_count++] = c.count;
+        for (j = 0; j < points; ++j) {
+            double t = (double)j / points, h = 4 * bulge * t * (1 - t) + wave * sin(6.283185307179586 * t);
+            gprojt_add_point(&c, x[i] + t * dx + h * dy, y[i] + t * dy - h * dx, 0);
+        }
+    }
+    c.marked = true;
+    return c;
+}
+
+static double gprojt_curve_length(const gprojt_curve *c, int32_t from, int32_t to) {
+    double sum = 0;
+    for (; from < to; ++from)
+        sum += gprojt_far(c->point + 3 * (from % c->count), c->point + 3 * ((from + 1) % c->count));
+    return sum;
+}
+
+static double gprojt_curve_side(const gprojt_curve *c, int32_t side) {
+    int32_t to = side + 1 < c->corner_count ? c->corner[side + 1] : c->corner[0] + c->count;
+    return gprojt_curve_length(c, c->corner[side], to);
+}
+
+/* -- what every filling must be -- */
+
+/* Is the boundary the vertices 0, 1, .. in the order of the curve? */
+static bool gprojt_boundary_is_first(const gproj_mesh *mesh, int32_t boundary) {
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (gproj_mesh_is_boundary_vertex(mesh, v) != (v < boundary)) return false;
+    for (v = 0; v < boundary; ++v) /* the half-edges of the boundary run against the faces */
+        if (mesh->origin[mesh->vertex_halfedge[(v + 1) % boundary] ^ 1] != v) return false;
+    return true;
+}
+
+/* Sides from corner to corner, with the numbers of edges that were given. */
+static bool gprojt_sides_are_right(const gprojt_curve *c, const gproj_mesh *mesh, const gproj_fill_info *info) {
+    int32_t side, i, at = 0;
+    if (mesh->polyline_count != info->side_count) return false;
+    for (side = 0; side < mesh->polyline_count; ++side) {
+        const int32_t *line = mesh->polyline_vertex + mesh->polyline_start[side];
+        int32_t edges = mesh->polyline_start[side + 1] - mesh->polyline_start[side] - 1;
+        if (c->given && !c->options.keep_points && edges != c->edges[side]) return false;
+        if (c->marked && memcmp(mesh->position + 3 * line[0], c->point + 3 * c->corner[side], 3 * sizeof(double)) != 0)
+            return false;
+        for (i = 0; i <= edges; ++i)
+            if (line[i] != (at + i) % info->boundary_count) return false;
+        at += edges;
+    }
+    return at == info->boundary_count;
+}
+
+/* The largest distance of the boundary from the curve. */
+static double gprojt_boundary_distance(const gprojt_curve *c, const gproj_mesh *mesh, int32_t boundary) {
+    gproj_curve *curve = gproj_curve_create(c->count, c->point, true, NULL, NULL);
+    double worst = 0;
+    int32_t v;
+    for (v = 0; v < boundary; ++v) worst = fmax(worst, gproj_curve_closest(curve, mesh->position + 3 * v).distance);
+    gproj_curve_destroy(curve);
+    return worst;
+}
+
+/* Does the curve run counter-clockwise, seen from above? */
+static bool gprojt_is_left(const gprojt_curve *c) {
+    double area = 0;
+    int32_t i;
+    for (i = 0; i < c->count; ++i) {
+        const double *p = c->point + 3 * i, *q = c->point + 3 * ((i + 1) % c->count);
+        area += p[0] * q[1] - p[1] * q[0];
+    }
+    return area > 0;
+}
+
+/* The smallest sine of a corner of a quad, seen from above, or from below if the curve is clockwise there. */
+static double gprojt_least_sine(const gprojt_curve *c, const gproj_mesh *mesh) {
+    double least = 1, sign = gprojt_is_left(c) ? 1 : -1;
+    int32_t h;
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        const double *p = mesh->position + 3 * mesh->origin[h], *q = mesh->position + 3 * mesh->origin[mesh->next[h]],
+                     *r = mesh->position + 3 * mesh->origin[mesh->prev[h]];
+        double a = q[0] - p[0], b = q[1] - p[1], x = r[0] - p[0], y = r[1] - p[1];
+        if (mesh->face[h] >= 0)
+            least = fmin(least, sign * (a * y - b * x) / (sqrt(a * a + b * b) * sqrt(x * x + y * y)));
+    }
+    return least;
+}
+
+/* All of it; `most`: the largest valence inside. */
+static bool gprojt_filling_is_good(const gprojt_curve *c, const gproj_mesh *mesh, const gproj_fill_info *info,
+                                   int32_t most) {
+    const char *wrong = gprojt_validate_mesh(mesh);
+    int32_t f, v, irregular = 0;
+    if (wrong) printf("    %s\n", wrong);
+    if (wrong || mesh->loop_count != 1 || mesh->component_count != 1 || mesh->isolated_count || mesh->reoriented_count)
+        return false;
+    if (mesh->vertex_count - mesh->edge_count + mesh->face_count != 1) return false;
+    for (f = 0; f < mesh->face_count; ++f)
+        if (mesh->face_degree[f] != 4) return false;
+    for (v = info->boundary_count; v < mesh->vertex_count; ++v) {
+        int32_t valence = gproj_mesh_valence(mesh, v);
+        irregular += valence != 4;
+        if (valence < 3 || valence > most || valence < info->min_valence || valence > info->max_valence) return false;
+    }
+    return irregular == info->irregular_count && gprojt_boundary_is_first(mesh, info->boundary_count) &&
+           gprojt_sides_are_right(c, mesh, info) && gprojt_boundary_distance(c, mesh, info->boundary_count) <= 1e-14 &&
+           gprojt_least_sine(c, mesh) > 0 && info->min_angle > 0 && info->max_angle < 180;
+}
+
+/* -- random curves -- */
+
+/* Numbers of edges by the length of the sides, times 0.7 to 1.3. Returns their sum. */
+static int32_t gprojt_random_edges(gprojt_curve *c, double length, uint64_t *state) {
+    int32_t side, sum = 0;
+    for (side = 0; side < c->corner_count; ++side) {
+        double wanted = gprojt_curve_side(c, side) / length * (0.7 + 0.6 * gprojt_uniform(state));
+        c->edges[side] = wanted < 1 ? 1 : (int32_t)(wanted + 0.5);
+        sum += c->edges[side];
+    }
+    c->given = true;
+    return sum;
+}
+
+/* An odd sum is refused, with the number that one side should have. Makes it so. */
+static bool gprojt_parity_is_refused(gprojt_curve *c) {
+    gproj_error error;
+    gproj_mesh *mesh = gprojt_fill(c, NULL, &error);
+    int32_t side;
+    for (side = 0; side < c->corner_count && c->corner[side] != error.index; ++side) continue;
+    if (mesh || error.code != GPROJ_ERROR_ARGUMENT || side == c->corner_count ||
+        !strstr(error.message, "quads need an even number; give side ")) {
+        gproj_mesh_destroy(mesh);
+        return false;
+    }
+    c->edges[side] = atoi(strstr(strstr(error.message, "give side ") + 10, " ") + 1);
+    return true;
+}
+
+/* Fills `wanted` random curves. Counts those with valence 6. */
+static int32_t gprojt_fill_random(int32_t wanted, int32_t fewest, int32_t most, double length, uint64_t seed) {
+    int32_t filled = 0, odd = 0, six = 0, tries;
+    uint64_t state = seed;
+    for (tries = 0; filled < wanted; ++tries) {
+        gprojt_curve c = gprojt_random_curve(&state, fewest + gprojt_below(&state, most - fewest + 1), tries % 3);
+        gproj_fill_info info;
+        gproj_error error;
+        gproj_mesh *mesh;
+        bool is_odd = tries % 2 && gprojt_random_edges(&c, length, &state) % 2;
+        c.options.edge_length = length;
+        mesh = gprojt_fill(&c, &info, &error);
+        if (!mesh && strstr(error.message, "meets itself")) continue;
+        GPROJT_CHECK((mesh == NULL) == is_odd);
+        if (!mesh) {
+            ++odd;
+            GPROJT_CHECK(gprojt_parity_is_refused(&c));
+            mesh = gprojt_fill(&c, &info, &error);
+        }
+        if (!mesh && strstr(error.message, "with so few edges")) continue;
+        if (!mesh) printf("    try %d: %s\n", (int)tries, error.message);
+        GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 6));
+        six += mesh && info.max_valence > 5;
+        ++filled;
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(odd > wanted / 10);
+    return six;
+}
+
+GPROJT_TEST(random_curves) {
+    GPROJT_CHECK(gprojt_fill_random(200, 3, 6, 1.5, 1) == 0);
+    GPROJT_CHECK(gprojt_fill_random(60, 2, 6, 4, 2) == 0);
+    GPROJT_CHECK(gprojt_fill_random(20, 2, 6, 0.7, 3) == 0);
+}
+
+GPROJT_TEST(random_curves_with_many_corners) {
+    GPROJT_CHECK(gprojt_fill_random(40, 7, 12, 1.2, 4) == 0);
+    GPROJT_CHECK(gprojt_fill_random(40, 7, 12, 3, 5) <= 4);
+}
+
+/* -- any numbers of edges -- */
+
+GPROJT_TEST(any_numbers_of_edges) {
+    static const int32_t most[] = {0, 0, 8, 6, 4, 3, 3};
+    int32_t sides, i;
+    for (sides = 2; sides <= 6; ++sides) {
+        gprojt_curve c = gprojt_rose(sides, 6, sides == 2 ? 0.7 : 0.1);
+        c.given = true;
+        for (i = 0; i < sides; ++i) c.edges[i] = 1;
+        do {
+            gproj_fill_info info;
+            gproj_error error;
+            int32_t sum = 0;
+            gproj_mesh *mesh = gprojt_fill(&c, &info, &error);
+            for (i = 0; i < sides; ++i) sum += c.edges[i];
+            GPROJT_CHECK((mesh != NULL) == (sum % 2 == 0 && sum >= 4) || strstr(error.message, "meets itself"));
+            if (mesh) GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+            gproj_mesh_destroy(mesh);
+            for (i = 0; i < sides && ++c.edges[i] > most[sides]; ++i) c.edges[i] = 1;
+        } while (i < sides);
+    }
+}
+
+/* Numbers that no one would choose, also longer than all other sides together. */
+GPROJT_TEST(odd_numbers_of_edges) {
+    static const int32_t edges[][6] = {
+        {60, 2},      {30, 4},          {12, 3, 3},       {40, 1, 5},          {25, 3, 4, 6},           {2, 30, 4, 8},
+        {9, 9, 1, 1}, {30, 2, 3, 4, 5}, {3, 3, 20, 3, 3}, {30, 1, 2, 3, 4, 4}, {10, 20, 30, 20, 10, 30}};
+    static const int32_t sides[] = {2, 2, 3, 3, 4, 4, 4, 5, 5, 6, 6};
+    int32_t i;
+    for (i = 0; i < 11; ++i) {
+        gprojt_curve c = gprojt_rose(sides[i], 12, sides[i] == 2 ? 0.7 : 0.1);
+        gproj_fill_info info;
+        gproj_error error;
+        gproj_mesh *mesh;
+        memcpy(c.edges, edges[i], sizeof edges[i]);
+        c.given = true;
+        mesh = gprojt_fill(&c, &info, &error);
+        if (!mesh) puts(error.message);
+        GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 5));
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* -- shapes whose best mesh is known -- */
+
+GPROJT_TEST(right_angles_give_grids) {
+    static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
+    static const double T[] = {0, 0, 9, 0, 9, 3, 6, 3, 6, 8, 3, 8, 3, 3, 0, 3};
+    static const double U[] = {0, 0, 9, 0, 9, 9, 6, 9, 6, 3, 3, 3, 3, 9, 0, 9};
+    static const double plus[] = {3, 0, 6, 0, 6, 3, 9, 3, 9, 6, 6, 6, 6, 9, 3, 9, 3, 6, 0, 6, 0, 3, 3, 3};
+    static const double box[] = {0, 0, 8, 0, 8, 3, 0, 3};
+    static const double *const shape[] = {L, T, U, plus, box};
+    static const int32_t corners[] = {6, 8, 8, 12, 4};
+    static const double area[] = {27, 42, 63, 45, 24};
+    int32_t i, v;
+    for (i = 0; i < 5; ++i) {
+        gprojt_curve c = gprojt_polygon(corners[i], shape[i]);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.options.edge_length = 0.5;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
+        GPROJT_CHECK(info.irregular_count == 0 && info.side_count == corners[i]);
+        GPROJT_CHECK(mesh->face_count == (int32_t)(4 * area[i] + 0.5));
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) /* every vertex is at its place of the grid */
+            GPROJT_NEAR(mesh->position[v], 0.5 * floor(2 * mesh->position[v] + 0.5), 1e-5);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* n edges on all sides of a regular polygon: one irregular vertex where it can be, in 6 sides two of valence 5. */
+GPROJT_TEST(regular_polygons) {
+    static const int32_t irregular[] = {0, 0, 2, 1, 0, 1, 2}, valence[] = {0, 0, 3, 3, 4, 5, 5};
+    int32_t sides, i, v;
+    for (sides = 2; sides <= 6; ++sides) {
+        gprojt_curve c = gprojt_rose(sides, 12, sides == 2 ? 0.7 : 0);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        for (i = 0; i < sides; ++i) c.edges[i] = 8;
+        c.given = true;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.irregular_count == irregular[sides] && info.patch_count == 1);
+        GPROJT_CHECK(info.min_angle > 40 && info.max_angle < 140);
+        for (v = info.boundary_count; v < mesh->vertex_count; ++v) {
+            i = gproj_mesh_valence(mesh, v);
+            GPROJT_CHECK(i == 4 || i == valence[sides]);
+            if (i != 4 && sides % 2) /* the only one is in the middle */
+                GPROJT_CHECK(fabs(mesh->position[3 * v]) + fabs(mesh->position[3 * v + 1]) < 1e-3);
+        }
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* -- corners and sides -- */
+
+GPROJT_TEST(curves_without_corners) {
+    int32_t corners;
+    for (corners = 0; corners <= 6; ++corners) {
+        gprojt_curve c;
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        int32_t i;
+        memset(&c, 0, sizeof c);
+        for (i = 0; i < 120; ++i) {
+            double t = 6.283185307179586 * i / 120, r = corners == 1 ? 2 * fabs(sin(0.5 * t)) + 0.2 : 2;
+            gprojt_add_point(&c, r * cos(t), r * sin(t), 0);
+        }
+        for (i = 0; i < corners; ++i) c.corner[c.corner_count++] = 120 * i / corners;
+        c.marked = corners > 1;
+        c.options.edge_length = 0.3;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.side_count == (corners > 1 ? corners : 4));
+        if (corners == 0) GPROJT_CHECK(info.irregular_count == 4);
+        GPROJT_CHECK(info.min_angle > 25 && info.max_angle < 155);
+        for (i = 0; i < info.boundary_count && corners != 1; ++i) GPROJT_CHECK(gproj_mesh_valence(mesh, i) >= 3);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Half a circle, with corners marked on the arc: these get two faces, those at the ends of the diameter one. */
+GPROJT_TEST(corners_that_are_flat) {
+    gprojt_curve c;
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    int32_t i;
+    memset(&c, 0, sizeof c);
+    for (i = 0; i < 91; ++i) gprojt_add_point(&c, cos(3.141592653589793 * i / 90), sin(3.141592653589793 * i / 90), 0);
+    for (i = 0; i < 4; ++i) c.corner[c.corner_count++] = 30 * i;
+    c.edges[0] = c.edges[2] = 6, c.edges[1] = 8, c.edges[3] = 10;
+    c.marked = c.given = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
+    GPROJT_CHECK(info.irregular_count == 2);
+    GPROJT_CHECK(gproj_mesh_valence(mesh, 0) == 2 && gproj_mesh_valence(mesh, 6) == 3);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(points_of_the_curve_are_kept) {
+    gprojt_curve c = gprojt_rose(4, 9, 0.2);
+    gproj_fill_info info;
+    gproj_error error;
+    gproj_mesh *mesh;
+    c.options.keep_points = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
+    GPROJT_CHECK(info.boundary_count == c.count);
+    GPROJT_CHECK(memcmp(mesh->position, c.point, 3 * (size_t)c.count * sizeof(double)) == 0);
+    gproj_mesh_destroy(mesh);
+    --c.count;
+    mesh = gprojt_fill(&c, &info, &error);
+    GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, error.index,
+                                         "35 edges together, but quads need an even number; give side "));
+    GPROJT_CHECK(strstr(error.message, "(add or leave out a point)"));
+}
+
+/* All edges of a side are of equal length along the curve. */
+GPROJT_TEST(sides_are_divided_evenly) {
+    gprojt_curve c = gprojt_rose(3, 30, 0.15);
+    gproj_mesh *mesh;
+    int32_t side, i;
+    c.options.edge_length = 0.8;
+    mesh = gprojt_fill(&c, NULL, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    for (side = 0; side < 3; ++side) {
+        const int32_t *line = mesh->polyline_vertex + mesh->polyline_start[side];
+        int32_t edges = mesh->polyline_start[side + 1] - mesh->polyline_start[side] - 1;
+        double length = gprojt_curve_side(&c, side);
+        GPROJT_CHECK(fabs(length / edges - 0.8) < 0.1);
+        for (i = 0; i < edges; ++i)
+            GPROJT_NEAR(gprojt_far(mesh->position + 3 * line[i], mesh->position + 3 * line[i + 1]), length / edges,
+                        5e-3);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
+/* Rings run along the whole boundary, also past corners and where the inside is cut. */
+GPROJT_TEST(rings) {
+    static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
+    int32_t i, k, shape;
+    for (shape = 0; shape < 2; ++shape) {
+        gprojt_curve c = shape ? gprojt_polygon(6, L) : gprojt_rose(4, 12, 0.2);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.options.edge_length = 0.6;
+        c.options.rings = 3;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.irregular_count == (shape ? 6 : 4)); /* 3 at each corner, 5 where the L is reflex */
+        for (i = 0; i < info.boundary_count; ++i) /* one edge leads inside from each vertex, and on to the next ring */
+            for (k = 0; k < 3; ++k) {
+                int32_t v = k * info.boundary_count + i, ring[6], n = gproj_mesh_one_ring(mesh, v, ring, 6), next = 0;
+                GPROJT_CHECK(n == (k == 0 ? 3 : 4));
+                while (next < n && ring[next] != v + info.boundary_count) ++next;
+                GPROJT_CHECK(next < n);
+            }
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A quad alone has no choice; where it would be bent inwards, another mesh of the same boundary is taken. */
+GPROJT_TEST(single_quads) {
+    static const double flat[] = {0, 0, 4, 0, 5, 4, 0, 3}, bent[] = {0, 0, 4, 0, 1, 1, 0, 4};
+    static const int32_t corner[] = {0, 1, 3};
+    gprojt_curve c = gprojt_polygon(4, flat);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.options.keep_points = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(mesh->face_count == 1 && info.irregular_count == 0 && info.max_valence == 0);
+    gproj_mesh_destroy(mesh);
+    c = gprojt_polygon(4, bent);
+    c.options.keep_points = true;
+    memcpy(c.corner, corner, sizeof corner);
+    c.corner_count = 3, c.marked = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+    GPROJT_CHECK(mesh->face_count == 5 && info.irregular_count == 4); /* a cube without one of its faces */
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(variants_differ) {
+    gprojt_curve c = gprojt_rose(5, 12, 0.1);
+    int32_t i, k, faces[3], irregular[3];
+    gproj_mesh *mesh;
+    for (i = 0; i < 5; ++i) c.edges[i] = 6 + 2 * (i == 2) + 2 * (i == 3);
+    c.given = true;
+    for (k = 0; k < 3; ++k) {
+        gproj_fill_info info;
+        c.options.variant = k;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        faces[k] = mesh->face_count, irregular[k] = info.irregular_count;
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(irregular[0] == 1 && irregular[1] >= irregular[0] && irregular[2] >= irregular[1]);
+    GPROJT_CHECK(faces[0] != faces[1] || irregular[0] != irregular[1]);
+    c.options.variant = 1000000; /* the last one that there is */
+    mesh = gprojt_fill(&c, NULL, NULL);
+    GPROJT_CHECK(mesh != NULL);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- in space -- */
+
+/* A curve over another plane than z = 0, in another unit: the same mesh, moved. */
+GPROJT_TEST(anywhere_in_space) {
+    uint64_t state = 12;
+    gprojt_curve c = gprojt_random_curve(&state, 5, 1), moved = c;
+    gproj_fill_info info;
+    gproj_mesh *a, *b;
+    double scale = 1e4, worst = 0;
+    int32_t i, k;
+    for (i = 0; i < c.count; ++i) c.point[3 * i + 2] = 0.3 * sin(0.2 * i);
+    for (i = 0; i < c.count; ++i) { /* a half turn about the diagonal x = z takes (x, y, z) to (z, -y, x) */
+        moved.point[3 * i] = scale * c.point[3 * i + 2] + 5, moved.point[3 * i + 1] = -scale * c.point[3 * i + 1];
+        moved.point[3 * i + 2] = scale * c.point[3 * i] - 7;
+    }
+    a = gprojt_fill(&c, NULL, NULL), b = gprojt_fill(&moved, &info, NULL);
+    GPROJT_REQUIRE(a && b);
+    GPROJT_REQUIRE(a->vertex_count == b->vertex_count && a->face_count == b->face_count);
+    GPROJT_CHECK(memcmp(a->origin, b->origin, (size_t)a->halfedge_count * sizeof(int32_t)) == 0);
+    for (i = 0; i < a->vertex_count; ++i) {
+        const double *p = a->position + 3 * i, *q = b->position + 3 * i;
+        double m[3];
+        m[0] = (q[2] + 7) / scale, m[1] = -q[1] / scale, m[2] = (q[0] - 5) / scale;
+        for (k = 0; k < 3; ++k) worst = fmax(worst, fabs(m[k] - p[k]));
+    }
+    GPROJT_CHECK(worst < 1e-3); /* as far as the last steps are small */
+    GPROJT_CHECK(gprojt_boundary_distance(&moved, b, info.boundary_count) <= 1e-14 * 15 * scale);
+    gproj_mesh_destroy(a);
+    gproj_mesh_destroy(b);
+}
+
+/* Heights inside are means of those around: between those of the curve, and linear where these are. */
+GPROJT_TEST(heights_are_harmonic) {
+    gprojt_curve c = gprojt_rose(4, 12, 0.2);
+    gproj_mesh *mesh;
+    int32_t i, k, ring[8];
+    for (i = 0; i < c.count; ++i) c.point[3 * i + 2] = 0.4 * sin(12.566370614359172 * i / c.count);
+    c.options.edge_length = 0.7;
+    mesh = gprojt_fill(&c, NULL, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_least_sine(&c, mesh) > 0.3);
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        int32_t valence = gproj_mesh_one_ring(mesh, i, ring, 8);
+        double mean = 0;
+        if (gproj_mesh_is_boundary_vertex(mesh, i)) continue;
+        for (k = 0; k < valence; ++k) mean += mesh->position[3 * ring[k] + 2] / valence;
+        GPROJT_NEAR(mesh->position[3 * i + 2], mean, 1e-12);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
+/* A clockwise curve gives faces that look down. */
+GPROJT_TEST(orientation_is_that_of_the_curve) {
+    static const double xy[] = {0, 0, 0, 2, 3, 2, 3, 0};
+    gprojt_curve c = gprojt_polygon(4, xy);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    double area[3];
+    int32_t f;
+    c.options.edge_length = 0.5;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, area);
+        GPROJT_NEAR(area[2], -0.25, 1e-6);
+    }
+    GPROJT_CHECK(gprojt_boundary_is_first(mesh, info.boundary_count));
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- what is refused -- */
+
+static bool gprojt_is_refused(const gprojt_curve *c, gproj_code code, gproj_place place, int64_t index,
+                              const char *piece) {
+    gproj_error error;
+    gproj_fill_info info;
+    gproj_mesh *mesh = gprojt_fill(c, &info, &error);
+    bool right = gprojt_mesh_was_refused(mesh, &error, code, place, index, piece) && info.boundary_count == 0;
+    gproj_mesh_destroy(mesh);
+    return right;
+}
+
+GPROJT_TEST(refusals_of_curves) {
+    static const double eight[] = {0, 0, 4, 4, 4, 0, 0, 3}, back[] = {0, 0, 4, 0, 8, 0, 6, 0, 6, 3};
+    static const double deep[] = {0, 0, 2, -2, 4, 0, 4, 2, 2, -1, 0, 2};
+    static const int32_t deep_corner[] = {0, 2, 3, 5}, deep_edges[] = {1, 1, 2, 2};
+    static const double touch[] = {0, 0, 4, 0, 4, 4, 2, 0, 0, 4}, line[] = {0, 0, 1, 1, 2, 2};
+    gprojt_curve c = gprojt_polygon(4, eight);
+    gproj_fill_info info;
+    gproj_error error;
+    gproj_mesh *mesh;
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "after point 0 and after point 2"));
+    c = gprojt_polygon(5, back);
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 1, "after point 1 and after point 2"));
+    c = gprojt_polygon(5, touch);
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "after point 0 and after point 2"));
+    c = gprojt_polygon(3, line);
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "encloses no area"));
+    c = gprojt_polygon(6, deep); /* the top comes down below where the bottom's one edge is */
+    memcpy(c.corner, deep_corner, sizeof deep_corner), memcpy(c.edges, deep_edges, sizeof deep_edges);
+    c.corner_count = 4, c.marked = c.given = true;
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "with so few edges side 0 meets side 2"));
+    c.edges[0] = c.edges[3] = 2;
+    c.edges[1] = 2;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 5));
+    gproj_mesh_destroy(mesh);
+    c.count = 2;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3"));
+    c = gprojt_rose(4, 3, 0);
+    memcpy(c.point + 15, c.point + 12, 3 * sizeof(double));
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 4, "points 4 and 5"));
+    c = gprojt_rose(4, 3, 0);
+    gprojt_add_point(&c, c.point[0], c.point[1], c.point[2]);
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 12, "closed without it"));
+    c.point[7] = HUGE_VAL;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 2, "coordinate y of point 2 is inf"));
+    GPROJT_CHECK(gprojt_mesh_was_refused(gproj_mesh_fill(5, NULL, NULL, NULL, NULL, &error), &error,
+                                         GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "NULL"));
+}
+
+GPROJT_TEST(refusals_of_options) {
+    const gprojt_curve good = gprojt_rose(4, 3, 0.1);
+    gprojt_curve c = good;
+    int32_t i;
+    c.corner[2] = 3;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "ascending order"));
+    c.corner[2] = 12;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, 12, "the points are 0 to 11"));
+    c = good, c.corner_count = 1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "at least 2"));
+    c = good, c.marked = false, c.options.corner_count = 3;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "NULL"));
+    c = good, c.options.variant = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant"));
+    c = good, c.options.rings = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-1 rings"));
+    c = good, c.options.edge_length = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "edge length is -1"));
+    c.options.edge_length = 1e-9;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, 3, "use longer edges"));
+    c = good;
+    c.given = true;
+    for (i = 0; i < 4; ++i) c.edges[i] = 3;
+    c.edges[1] = 0;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "side 1 is to have 0 edges"));
+    c.edges[1] = 2;
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "give side 1 3 edges instead of 2"));
+    c.options.side_count = 3;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "but the curve has 4"));
+    c = gprojt_rose(2, 6, 0.7);
+    c.edges[0] = c.edges[1] = 1;
+    c.given = true;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 0, "at least 4"));
+}
+
+/* -- memory -- */
+
+static bool gprojt_fill_with(const gproj_host *host, void *user) {
+    const gprojt_curve *c = (const gprojt_curve *)user;
+    gproj_fill_options options = gprojt_options(c);
+    gproj_error error;
+    gproj_mesh *mesh = gproj_mesh_fill(c->count, c->point, &options, NULL, host, &error);
+    return gprojt_mesh_was_made(mesh, host, &error);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
+    gprojt_curve c = gprojt_polygon(6, L);
+    c.options.edge_length = 1.5;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_rose(3, 4, 0.1);
+    c.edges[0] = 4, c.edges[1] = 2, c.edges[2] = 2;
+    c.given = true;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+}
+
+int main(void) {
+    GPROJT_RUN(random_curves);
+    GPROJT_RUN(random_curves_with_many_corners);
+    GPROJT_RUN(any_numbers_of_edges);
+    GPROJT_RUN(odd_numbers_of_edges);
+    GPROJT_RUN(right_angles_give_grids);
+    GPROJT_RUN(regular_polygons);
+    GPROJT_RUN(curves_without_corners);
+    GPROJT_RUN(corners_that_are_flat);
+    GPROJT_RUN(points_of_the_curve_are_kept);
+    GPROJT_RUN(sides_are_divided_evenly);
+    GPROJT_RUN(rings);
+    GPROJT_RUN(single_quads);
+    GPROJT_RUN(variants_differ);
+    GPROJT_RUN(anywhere_in_space);
+    GPROJT_RUN(heights_are_harmonic);
+    GPROJT_RUN(orientation_is_that_of_the_curve);
+    GPROJT_RUN(refusals_of_curves);
+    GPROJT_RUN(refusals_of_options);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
