@@ -104,6 +104,14 @@ expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-
 for levels in 0 15 1.5 2,lop ,loop x; do
     expect 2 "expected a whole number from 1 to 14" grid.obj -o new.obj --planar --subdivide $levels
 done
+expect 2 "one is needed" grid.obj --fill curve.obj -o new.obj
+expect 2 "add --fill" grid.obj -o new.obj --planar --sides 4,4,4,4
+for sides in 4,4,,4 4,4,0,4 4,4, x 1.5; do
+    expect 2 "expected N,N,..." --fill curve.obj -o new.obj --sides "$sides"
+done
+expect 2 "expected a height" grid.obj -o new.obj --planar --lift 0
+expect 2 "expected a height" grid.obj -o new.obj --planar --lift up
+expect 2 "--state is a file" grid.obj -o new.obj --planar --state -
 expect 3 "face 0 has 4 corners" grid.obj -o new.obj --planar --subdivide 1,loop
 expect 3 "more than a mesh can have" grid.obj -o new.obj --planar --subdivide 14
 expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
@@ -346,6 +354,46 @@ run grid.obj -o fine.obj --subdivide 1 --planar --fix 0,8,72,80 --report fine.js
     fail "--subdivide 1 --planar exits with $status"
 paste -d ' ' <(sed -n 9p fine.obj) <(sed -n 9p grid.obj) |
     awk '{ exit !(($2-$6)^2 + ($3-$7)^2 + ($4-$8)^2 < 1e-18) }' && pass || fail "--subdivide: --fix 8 is not the cage's vertex 8"
+
+# A filled curve, its sides, and a lift.
+awk 'BEGIN { n = 48; for (i = 0; i < n; i++) { t = 6.283185307179586 * i / n; r = 5 + cos(2 * t)
+    printf "v %.17g %.17g 0\n", r * cos(t), r * sin(t) } }' >points.obj
+{ cat points.obj; echo "l $(seq 1 48 | tr '\n' ' ')1"; } >curve.obj
+printf 'v 0 0 0\nv 6 0 0\nv 6 5 0\nv 0 5 0\nl 1 2 3 4 1\n' >square.obj
+run --fill square.obj --sides 6,5,6,5 -o filled.obj
+[ $status -eq 0 ] && [ "$(counts filled.obj)" = "42 30" ] && pass || fail "--fill --sides: $(counts filled.obj), exit $status"
+run --fill square.obj --sides 6,5,6,4 -o odd.obj
+[ $status -eq 3 ] && [ ! -e odd.obj ] && grep -q "even" err.txt && pass || fail "an odd boundary exits with $status"
+run --fill points.obj -o filled.obj
+[ $status -eq 0 ] && pass || fail "--fill of vertices alone exits with $status: $(cat err.txt)"
+cp filled.obj same.obj
+run --fill curve.obj -o filled.obj
+[ $status -eq 0 ] && cmp -s filled.obj same.obj && pass || fail "--fill of a polyline exits with $status: $(cat err.txt)"
+run --fill grid.obj -o filled.obj
+[ $status -eq 0 ] && [ "$(counts filled.obj)" = "81 64" ] && pass || fail "--fill of a mesh's boundary: $(counts filled.obj)"
+run --fill torus.obj -o none.obj
+[ $status -eq 3 ] && grep -q "no curve" err.txt && pass || fail "--fill without a curve exits with $status"
+run --fill curve.obj --lift 2 -o lifted.obj
+[ $status -eq 0 ] && awk '$1 == "v" { if ($4 > z) z = $4; if ($4 < low) low = $4 } END { exit !(z > 1.99 && z < 2.01 && low > -0.1) }' \
+    lifted.obj && pass || fail "--lift 2 exits with $status"
+run --fill curve.obj --lift 2 --planar --fix boundary -o lifted.obj
+measure lifted.obj lifted.obj
+[ $status -eq 0 ] && pass || fail "--fill --lift --planar exits with $status"
+want "--fill --lift --planar" planarity_after 1e-12
+run torus.obj --lift 2 -o none.obj
+[ $status -eq 3 ] && grep -q "needs a boundary" err.txt && pass || fail "--lift without a boundary exits with $status"
+
+# A state: work in parts ends where work at once does; a wrong one is refused, and nothing is written.
+run grid.obj -o whole.obj --planar --fairness 0.1
+run grid.obj -o part.obj --planar --fairness 0.1 --time-limit 1e-9 --state work.state
+[ $status -eq 1 ] && [ -s work.state ] && pass || fail "--state with --time-limit exits with $status"
+run grid.obj -o part.obj --planar --fairness 0.1 --state work.state
+[ $status -eq 0 ] && cmp -s whole.obj part.obj && pass || fail "work in parts is not what work at once is"
+expect 3 "another form" grid.obj -o new.obj --planar --state work.state
+head -c 200 work.state >cut.state
+expect 3 "state" grid.obj -o new.obj --planar --fairness 0.1 --state cut.state
+[ "$(wc -c <cut.state)" -eq 200 ] && pass || fail "a refused state was written over"
+expect 2 "would overwrite" grid.obj -o new.obj --planar --state grid.obj
 
 printf '# corners\n0, 8\n72 80 # the last\n' >corners.txt
 for fix in boundary corners 0,8,72,80 corners.txt 0-8,72=2; do

@@ -44,7 +44,9 @@ enum {
     MOST_OPTIONS = 64,
     MOST_ITERATIONS = 100000,
     MOST_THREADS = 256,
-    MOST_LEVELS = 14
+    MOST_LEVELS = 14,
+    MOST_SIDES = 64,
+    MOST_DRAGS = 200 /* moves of a drag */
 };
 
 typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
@@ -79,6 +81,10 @@ typedef struct tool_subdivision {
     gproj_scheme scheme;
 } tool_subdivision;
 
+typedef struct tool_sides { /* numbers of edges */
+    int32_t count, edges[MOST_SIDES];
+} tool_sides;
+
 typedef struct tool_record { /* of one iteration, for the report */
     gproj_iteration iteration;
     double planarity_max, planarity_mean;
@@ -103,6 +109,7 @@ enum {
     OUTPUT_FORCES,
     OUTPUT_OFFSET,
     OUTPUT_SUPPORT,
+    OUTPUT_STATE, /* and an input, where the file exists */
     OUTPUT_COUNT
 };
 
@@ -110,7 +117,10 @@ typedef struct tool {
     /* what the command line says */
     const char *input;
     tool_output output[OUTPUT_COUNT];
+    const char *fill; /* a file with a curve; NULL: the mesh is the input */
+    tool_sides sides;
     tool_subdivision subdivision;
+    double lift; /* 0: none */
     tool_weight planar, circular, conical, planar_boundary, straight_boundary, orthogonal_boundary, lifting, closeness,
         fairness, boundary_fairness, tangential, gauss, parallelograms, equal_areas;
     tool_weight equal_lengths;
@@ -125,6 +135,7 @@ typedef struct tool {
     tool_word supports;
     tool_word *fix, *glide; /* as many as the command line has words, at most */
     tool_move *move;
+    int32_t *move_group; /* for each of `move`: its group in the form, -1: none of its own */
     int32_t fix_count, glide_count, move_count;
     tool_word reference;
     int32_t iterations, threads;
@@ -431,6 +442,25 @@ static bool set_subdivision(tool *t, void *place, const char *name, const char *
     return true;
 }
 
+static bool set_sides(tool *t, void *place, const char *name, const char *value) {
+    tool_sides *sides = (tool_sides *)place;
+    const char *at = value;
+    for (;; ++at) {
+        size_t size = strcspn(at, ",");
+        if (sides->count == MOST_SIDES || !read_integer(at, size, 1, 100000, &sides->edges[sides->count]))
+            return fail(t, EXIT_USAGE, "--%s %s: expected N,N,...: a number of edges for each side", name, value);
+        sides->count++;
+        at += size;
+        if (!*at) return true;
+    }
+}
+
+static bool set_lift(tool *t, void *place, const char *name, const char *value) {
+    double *lift = (double *)place;
+    if (read_number(value, strlen(value), lift) && fabs(*lift) > 0) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a height, not 0", name, value);
+}
+
 static bool set_threads(tool *t, void *place, const char *name, const char *value) {
     int32_t *threads = (int32_t *)place;
     if (!read_integer(value, strlen(value), 0, MOST_THREADS, threads))
@@ -601,10 +631,24 @@ typedef struct tool_option {
 static const tool_option options[] = {
     {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
 
+    {0, "fill", "CURVE", false,
+     "instead of INPUT: quads fill the closed curve in this OBJ file, its first polyline, else its boundary, else all "
+     "its vertices. The boundary's vertices come first",
+     "where it begins", set_path, PLACE(fill)},
+    {0, "sides", "N,N,...", false,
+     "the numbers of edges of the curve's sides, from corner to corner (by its mean edge if left out)", NULL, set_sides,
+     PLACE(sides)},
     {0, "subdivide", "N[,loop]", false,
      "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
      "triangle four (Loop). The cage's vertices keep their numbers",
-     "where it begins", set_subdivision, PLACE(subdivision)},
+     NULL, set_subdivision, PLACE(subdivision)},
+    {0, "lift", "HEIGHT", false,
+     "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly", NULL, set_lift,
+     PLACE(lift)},
+    {0, "state", "FILE", false,
+     "where FILE exists, the work goes on from there: it was written with the same input and options. At the end the "
+     "state is written to it. With --time-limit or --iterations long work can be done in parts",
+     NULL, set_path, PLACE(output[OUTPUT_STATE])},
 
     {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
      PLACE(planar)},
@@ -639,7 +683,10 @@ static const tool_option options[] = {
      "file "
      "with polylines (else its boundary loops are taken)",
      NULL, add_glide, 0},
-    {0, "move", "I,X,Y,Z[=W]", true, "vertex I goes to X,Y,Z; it is then free of --fix and --glide", NULL, add_move, 0},
+    {0, "move", "I,X,Y,Z[=W]", true,
+     "vertex I goes to X,Y,Z: it is dragged there, while what must hold goes on holding, and stays. It is then free of "
+     "--fix and --glide",
+     NULL, add_move, 0},
 
     {0, "equilibrium", "[=W]", false, "forces in the edges balance the loads at all vertices without support (z is up)",
      "statics", set_must, PLACE(equilibrium)},
@@ -853,7 +900,8 @@ static bool anything_asked(const tool *t) {
            t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
            t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
            t->total_area.given || t->cost.given || t->equilibrium.given || t->planar_boundary.given ||
-           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given || t->subdivision.levels > 0;
+           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given || t->fill ||
+           t->subdivision.levels > 0 || fabs(t->lift) > 0;
 }
 
 static bool anything_wished(const tool *t) {
@@ -866,6 +914,11 @@ static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
     int i;
+    if (t->fill && t->input)
+        return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
+    if (t->sides.count > 0 && !t->fill)
+        return fail(t, EXIT_USAGE, "--sides are those of a curve: add --fill CURVE.obj");
+    if (t->fill) t->input = t->fill;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
     if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
     if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
@@ -889,6 +942,8 @@ static bool check_options(tool *t) {
                     "--force-fairness and --forces are about forces: add --equilibrium");
     if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
+    if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--state is a file: give its name");
     if (t->output[OUTPUT_SUPPORT].path && !t->output[OUTPUT_OFFSET].path)
         return fail(t, EXIT_USAGE, "--support is between the mesh and its offset: add --offset DISTANCE,FILE.obj");
     for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
@@ -911,7 +966,8 @@ static bool read_command_line(tool *t, int argc, char **argv) {
     t->fix = (tool_word *)take(t, (size_t)argc, sizeof *t->fix);
     t->glide = (tool_word *)take(t, (size_t)argc, sizeof *t->glide);
     t->move = (tool_move *)take(t, (size_t)argc, sizeof *t->move);
-    if (!t->fix || !t->glide || !t->move) return false;
+    t->move_group = (int32_t *)take(t, (size_t)argc, sizeof *t->move_group);
+    if (!t->fix || !t->glide || !t->move || !t->move_group) return false;
     for (i = 1; i < argc && !t->help && !t->version; ++i) {
         if (!plain && strcmp(argv[i], "--") == 0)
             plain = true;
@@ -1021,8 +1077,8 @@ static gproj_mesh *load(tool *t, const char *path, size_t size) {
     return mesh;
 }
 
-/* The whole of a small text file, NUL-terminated. */
-static char *load_text(tool *t, const char *path) {
+/* The whole of a file, with a NUL behind it. length: of it without that NUL; may be NULL. */
+static char *load_file(tool *t, const char *path, size_t *length) {
     FILE *file = fopen(path, "rb");
     char *text = NULL;
     size_t size = 0, capacity = 0, got = 0;
@@ -1046,30 +1102,124 @@ static char *load_text(tool *t, const char *path) {
             fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
         free(text);
         text = NULL;
-    } else if (text)
+    } else if (text) {
         text[size] = 0;
-    else
+        if (length) *length = size;
+    } else
         fail_memory(t);
     fclose(file);
     return text;
 }
 
-/* The mesh from which the work begins. */
-static bool make_mesh(tool *t) {
+/* The points of the curve in a file: its first polyline, its first boundary loop, or all vertices. Their number. */
+static int32_t take_curve(const gproj_mesh *file, double *point) {
+    int32_t count = 0, k, first, h;
+    if (file->polyline_count > 0) {
+        const int32_t *vertex = file->polyline_vertex + file->polyline_start[0];
+        count = file->polyline_start[1] - file->polyline_start[0];
+        count -= count > 1 && vertex[0] == vertex[count - 1];
+        for (k = 0; k < count; ++k) memcpy(point + 3 * k, file->position + 3 * (size_t)vertex[k], 3 * sizeof *point);
+    } else if (file->loop_count > 0) { /* backwards: a loop runs against the faces */
+        for (h = first = file->loop_halfedge[0]; h != first || count == 0; h = file->prev[h])
+            memcpy(point + 3 * count++, file->position + 3 * (size_t)file->origin[h], 3 * sizeof *point);
+    } else if (file->face_count == 0) {
+        count = file->vertex_count;
+        memcpy(point, file->position, 3 * (size_t)count * sizeof *point);
+    }
+    return count;
+}
+
+static bool fill_curve(tool *t) {
+    gproj_fill_options options;
+    gproj_error error;
+    gproj_mesh *file = load(t, t->fill, strlen(t->fill));
+    double *point;
+    int32_t count;
+    if (!file) return false;
+    point =
+        (double *)take(t, 3 * (size_t)(file->vertex_count + file->polyline_start[file->polyline_count]), sizeof *point);
+    if (point) {
+        memset(&options, 0, sizeof options);
+        options.side_count = t->sides.count;
+        options.subdivisions = t->sides.edges;
+        count = take_curve(file, point);
+        t->mesh = gproj_mesh_fill(count, point, &options, NULL, &t->host, &error);
+        if (!t->mesh && count == 0)
+            fail(t, EXIT_REFUSED, "%s: there is no curve: neither polylines nor a boundary", t->fill);
+        else if (!t->mesh)
+            fail_library(t, t->fill, &error);
+    }
+    free(point);
+    gproj_mesh_destroy(file);
+    return t->mesh != NULL;
+}
+
+static bool subdivide(tool *t) {
     gproj_subdivide_options options;
     gproj_error error;
-    gproj_mesh *coarse;
-    t->mesh = load(t, t->input, strlen(t->input));
-    if (!t->mesh) return false;
-    if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
-    if (t->subdivision.levels == 0) return true;
+    gproj_mesh *coarse = t->mesh;
     memset(&options, 0, sizeof options);
     options.levels = t->subdivision.levels;
     options.scheme = t->subdivision.scheme;
-    coarse = t->mesh;
     t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
     gproj_mesh_destroy(coarse);
     return t->mesh || fail_library(t, t->input, &error);
+}
+
+/* The vertex that is farthest from the boundary; -1 where there is none. */
+static int32_t innermost_vertex(const gproj_mesh *mesh) {
+    int32_t best = -1, v, l, h;
+    double farthest = 0;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        const double *p = mesh->position + 3 * (size_t)v, *q;
+        double nearest = INFINITY;
+        if (mesh->vertex_halfedge[v] < 0) continue;
+        for (l = 0; l < mesh->loop_count && nearest > farthest; ++l) {
+            h = mesh->loop_halfedge[l];
+            do {
+                q = mesh->position + 3 * (size_t)mesh->origin[h];
+                nearest = fmin(nearest, (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
+                                            (p[2] - q[2]) * (p[2] - q[2]));
+                h = mesh->next[h];
+            } while (h != mesh->loop_halfedge[l] && nearest > farthest);
+        }
+        if (nearest > farthest && nearest < INFINITY) farthest = nearest, best = v;
+    }
+    return best;
+}
+
+/* An auxiliary projection: one vertex goes up, the boundary stays, and fairness guides the others. */
+static bool lift(tool *t) {
+    int32_t vertex = innermost_vertex(t->mesh);
+    gproj_form *form;
+    gproj_result result;
+    double target[3];
+    if (vertex < 0) return fail(t, EXIT_REFUSED, "%s: --lift needs a boundary, and vertices inside", t->input);
+    memcpy(target, t->mesh->position + 3 * (size_t)vertex, sizeof target);
+    target[2] += t->lift;
+    form = gproj_form_create(t->mesh, &t->host);
+    if (!form) return fail_memory(t);
+    gproj_add_targets(form, 1, &vertex, target, 1);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_add_fairness(form, 0.3);
+    gproj_add_closeness(form, 0.01);
+    result = gproj_solve(form, 10, NULL);
+    if (result.outcome == GPROJ_FAILED) fail_library(t, NULL, gproj_form_error(form));
+    gproj_form_destroy(form);
+    return t->exit_code == 0;
+}
+
+/* The mesh from which the work begins. */
+static bool make_mesh(tool *t) {
+    if (t->fill) {
+        if (!fill_curve(t)) return false;
+    } else {
+        t->mesh = load(t, t->input, strlen(t->input));
+        if (!t->mesh) return false;
+        if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
+    }
+    if (t->subdivision.levels > 0 && !subdivide(t)) return false;
+    return fabs(t->lift) <= 0 || lift(t);
 }
 
 static bool read_mesh(tool *t) {
@@ -1146,7 +1296,7 @@ static bool mark_vertices(tool *t, const char *option, const tool_word *word, bo
     } else if (strspn(name, "0123456789,- ") == word->length) {
         good = mark_list(t, name, option, EXIT_USAGE, mark);
     } else {
-        text = load_text(t, name);
+        text = load_file(t, name, NULL);
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
         free(text);
     }
@@ -1187,7 +1337,9 @@ static bool add_moves(tool *t) {
             vertex[count] = t->move[j].vertex;
             memcpy(place + 3 * count++, t->move[j].position, sizeof t->move[j].position);
         }
-        if (earlier == 0 && t->move[i].weight > 0) gproj_add_targets(t->form, count, vertex, place, t->move[i].weight);
+        t->move_group[i] = earlier > 0 || t->move[i].weight <= 0
+                               ? -1
+                               : gproj_add_targets(t->form, count, vertex, place, t->move[i].weight);
     }
     free(vertex), free(place);
     return t->exit_code == 0;
@@ -1362,7 +1514,7 @@ static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
 }
 
 static bool read_loads(tool *t) {
-    char *text = load_text(t, t->loads), *line = text;
+    char *text = load_file(t, t->loads, NULL), *line = text;
     int32_t number = 1;
     bool good = text != NULL;
     if (text && strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
@@ -1558,20 +1710,96 @@ static bool measure_forces(tool *t) {
     return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
-static bool solve(tool *t) {
-    gproj_solve_options how;
-    double begin = now(NULL);
+/* Switches the targets of --move off or on. */
+static void switch_moves(tool *t, bool on) {
     int32_t i;
-    memset(&how, 0, sizeof how);
-    how.tolerance = t->tolerance;
-    how.epsilon = t->epsilon;
-    how.time_budget = t->time_limit;
-    how.skip_closeness = t->closeness.given && t->closeness.weight <= 0;
-    how.nearest = t->nearest;
-    how.on_iteration = on_iteration;
-    how.user = t;
+    for (i = 0; i < t->move_count; ++i) {
+        gproj_schedule schedule = {0, 0, 0};
+        if (on) schedule.weight = t->move[i].weight;
+        if (t->move_group[i] >= 0) gproj_set_schedule(t->form, t->move_group[i], schedule);
+    }
+}
+
+/* Where the moved vertices are at the part `part` of their way, 0 to 1. */
+static void place_handles(const tool *t, double part, double *position) {
+    int32_t i, k;
+    for (i = 0; i < t->move_count; ++i)
+        for (k = 0; k < 3; ++k) {
+            double from = t->original[3 * (size_t)t->move[i].vertex + (size_t)k];
+            position[3 * i + k] = from + part * (t->move[i].position[k] - from);
+        }
+}
+
+/* Drags the moved vertices to their places, in moves of at most half an edge, and releases them there. Forces have no
+   tangent space before their first solve: with --equilibrium vertices are not dragged. */
+static bool drag(tool *t) {
+    gproj_drag_options options;
+    gproj_handles handles;
+    gproj_error error;
+    gproj_drag *work;
+    int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, count;
+    double *position = (double *)take(t, 3 * (size_t)t->move_count, sizeof *position), farthest = 0;
+    bool good = vertex && position;
+    memset(&options, 0, sizeof options);
+    memset(&handles, 0, sizeof handles);
+    options.residual_bound = 0.05;
+    for (i = 0; good && i < t->move_count; ++i) {
+        const tool_move *move = &t->move[i];
+        const double *p = t->original + 3 * (size_t)move->vertex;
+        vertex[i] = move->vertex;
+        farthest =
+            fmax(farthest, hypot(hypot(move->position[0] - p[0], move->position[1] - p[1]), move->position[2] - p[2]));
+    }
+    handles.count = t->move_count, handles.vertex = vertex;
+    switch_moves(t, false);
+    work = good ? gproj_drag_begin(t->form, &handles, &options, &error) : NULL;
+    if (good && !work) good = fail_library(t, NULL, &error);
+    count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / (0.5 * t->before.mean_edge)));
+    for (i = 1; good && i <= count; ++i) {
+        place_handles(t, (double)i / count, position);
+        good = gproj_drag_move(work, position) == GPROJ_OK || fail_library(t, NULL, gproj_drag_error(work));
+    }
+    if (good) {
+        gproj_result result = gproj_drag_end(work);
+        if (result.outcome == GPROJ_FAILED) good = fail_library(t, NULL, gproj_form_error(t->form));
+    } else if (work)
+        gproj_drag_cancel(work);
+    switch_moves(t, true);
+    free(vertex), free(position);
+    return good;
+}
+
+/* The state in the file of --state, where there is one. */
+static bool restore(tool *t) {
+    const tool_output *state = &t->output[OUTPUT_STATE];
+    gproj_error error;
+    size_t size;
+    char *bytes;
+    if (access(state->target, F_OK) != 0) return true;
+    bytes = load_file(t, state->path, &size);
+    if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
+    free(bytes);
+    return t->exit_code == 0;
+}
+
+/* The solve, from a saved state or from the beginning, an iteration at a time: where it is broken off it can go on. */
+static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
+    double begin = now(NULL), limit = how->time_budget;
+    gproj_solve_options options = *how;
+    options.time_budget = 0;
+    gproj_step_begin(t->form, t->iterations, &options);
+    if (!restore(t)) return false;
+    if (!gproj_step_is_on(t->form)) gproj_step_begin(t->form, t->iterations, &options);
+    do {
+        t->result = gproj_step(t->form, 0);
+    } while (gproj_step_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
+    return true;
+}
+
+/* What is done besides the solve for the pictures and the report. */
+static bool prepare_records(tool *t) {
+    gproj_error error;
     if (t->output[OUTPUT_REPORT].path) {
-        gproj_error error;
         t->record = (tool_record *)take(t, (size_t)t->iterations, sizeof *t->record);
         if (!t->record) return false;
         t->probe = gproj_mesh_copy(t->mesh, &t->host, &error);
@@ -1581,7 +1809,27 @@ static bool solve(tool *t) {
         t->imbalance_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->imbalance_before);
         if (!t->imbalance_before || !measure_imbalance(t, t->imbalance_before)) return false;
     }
-    t->result = gproj_solve(t->form, t->iterations, &how);
+    return true;
+}
+
+static bool solve(tool *t) {
+    bool dragged = t->move_count > 0 && !t->equilibrium.given;
+    gproj_solve_options how;
+    double begin = now(NULL);
+    int32_t i;
+    memset(&how, 0, sizeof how);
+    how.tolerance = t->tolerance;
+    how.epsilon = t->epsilon;
+    how.time_budget = t->time_limit;
+    how.skip_closeness = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
+    how.nearest = t->nearest;
+    how.on_iteration = on_iteration;
+    how.user = t;
+    if (!prepare_records(t) || (dragged && !drag(t))) return false;
+    if (!t->output[OUTPUT_STATE].path)
+        t->result = gproj_solve(t->form, t->iterations, &how);
+    else if (!solve_in_parts(t, &how))
+        return false;
     t->solve_seconds = now(NULL) - begin;
     if (t->bar) fputc('\n', stderr);
     t->bar = false;
@@ -2077,6 +2325,15 @@ static gproj_code write_support(tool *t, FILE *file) {
 }
 
 /* Opens a new file beside the target, with the mode of an old one there. */
+static gproj_code write_state(tool *t, FILE *file) {
+    size_t size = gproj_state_size(t->form);
+    void *bytes = malloc(size ? size : 1);
+    gproj_code code = bytes ? gproj_state_save(t->form, bytes, size, NULL) : GPROJ_ERROR_MEMORY;
+    if (code == GPROJ_OK && fwrite(bytes, 1, size, file) != size) code = GPROJ_ERROR_FILE;
+    free(bytes);
+    return code;
+}
+
 static FILE *open_temporary(tool *t, tool_output *output) {
     char ending[48];
     struct stat info;
@@ -2121,6 +2378,7 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
         !write_output(t, &t->output[OUTPUT_OFFSET], write_offset) ||
         !write_output(t, &t->output[OUTPUT_SUPPORT], write_support) ||
+        !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
@@ -2249,7 +2507,7 @@ static void clean_up(tool *t) {
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
     gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
-    free(t->curve), free(t->fix), free(t->glide), free(t->move);
+    free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade), free(t->record),
