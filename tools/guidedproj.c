@@ -46,7 +46,7 @@ enum {
     MOST_THREADS = 256,
     MOST_LEVELS = 14,
     MOST_SIDES = 64,
-    MOST_DRAGS = 200 /* moves of a drag */
+    MOST_DRAGS = 50 /* and releases, for one --move */
 };
 
 typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
@@ -1730,19 +1730,28 @@ static void place_handles(const tool *t, double part, double *position) {
         }
 }
 
-/* Drags the moved vertices to their places, in moves of at most half an edge, and releases them there. Forces have no
-   tangent space before their first solve: with --equilibrium vertices are not dragged. */
-static bool drag(tool *t) {
-    gproj_drag_options options;
-    gproj_handles handles;
+/* One drag and its release. */
+static bool drag_to(tool *t, const gproj_handles *handles, const double *position) {
     gproj_error error;
-    gproj_drag *work;
+    gproj_result result;
+    gproj_drag *work = gproj_drag_begin(t->form, handles, NULL, &error);
+    if (!work) return fail_library(t, NULL, &error);
+    if (gproj_drag_move(work, position) != GPROJ_OK) {
+        fail_library(t, NULL, gproj_drag_error(work));
+        gproj_drag_cancel(work);
+        return false;
+    }
+    result = gproj_drag_end(work);
+    return result.outcome != GPROJ_FAILED || fail_library(t, NULL, gproj_form_error(t->form));
+}
+
+/* Drags the moved vertices to their places, an edge at a time, with a release each. Forces have no tangent space before
+   their first solve: with --equilibrium vertices are not dragged. */
+static bool drag(tool *t) {
+    gproj_handles handles;
     int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, count;
     double *position = (double *)take(t, 3 * (size_t)t->move_count, sizeof *position), farthest = 0;
     bool good = vertex && position;
-    memset(&options, 0, sizeof options);
-    memset(&handles, 0, sizeof handles);
-    options.residual_bound = 0.05;
     for (i = 0; good && i < t->move_count; ++i) {
         const tool_move *move = &t->move[i];
         const double *p = t->original + 3 * (size_t)move->vertex;
@@ -1750,20 +1759,14 @@ static bool drag(tool *t) {
         farthest =
             fmax(farthest, hypot(hypot(move->position[0] - p[0], move->position[1] - p[1]), move->position[2] - p[2]));
     }
+    memset(&handles, 0, sizeof handles);
     handles.count = t->move_count, handles.vertex = vertex;
+    count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / t->before.mean_edge));
     switch_moves(t, false);
-    work = good ? gproj_drag_begin(t->form, &handles, &options, &error) : NULL;
-    if (good && !work) good = fail_library(t, NULL, &error);
-    count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / (0.5 * t->before.mean_edge)));
     for (i = 1; good && i <= count; ++i) {
         place_handles(t, (double)i / count, position);
-        good = gproj_drag_move(work, position) == GPROJ_OK || fail_library(t, NULL, gproj_drag_error(work));
+        good = drag_to(t, &handles, position);
     }
-    if (good) {
-        gproj_result result = gproj_drag_end(work);
-        if (result.outcome == GPROJ_FAILED) good = fail_library(t, NULL, gproj_form_error(t->form));
-    } else if (work)
-        gproj_drag_cancel(work);
     switch_moves(t, true);
     free(vertex), free(position);
     return good;
