@@ -4581,8 +4581,8 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 }
 
 /* ============================================================================================================
-   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, dense, ordering,
-   dissection.
+   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, kernels, dense,
+   ordering, dissection.
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
@@ -6815,7 +6815,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
 /* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
-   error, parallel, dense, symbolic, cholesky.
+   error, parallel, vector (sums), dense, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
 
@@ -8260,8 +8260,8 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
 }
 
 /* ============================================================================================================
-   >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, error,
-   parallel, system.
+   >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
+   error, system.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
@@ -10148,7 +10148,7 @@ GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *po
 
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
 /* ============================================================================================================
-   >>text   Meshes as OBJ and OFF texts. Uses platform, memory, error, number, mesh.
+   >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
 
    Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
    Both readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
@@ -11595,7 +11595,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
 }
 
 /* ============================================================================================================
-   >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory, vector.
+   >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory.
 
    A binary tree of axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median of the box centres
    along the longest axis of the node's centres, down to leaves of at most four items; searched depth first, the nearer
@@ -16240,7 +16240,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 }
 
 /* ============================================================================================================
-   >>form   A mesh and its system: life, units, and what all builders share. Uses all earlier sections.
+   >>form   A mesh and its system: life, units, and what all builders share. Uses platform, memory, error,
+   vector, system, loop, mesh, curve.
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
@@ -16619,7 +16620,8 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 }
 
 /* ============================================================================================================
-   >>catalogue   The constraints and wishes of a form, one builder each. Uses all earlier sections.
+   >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
+   system, loop, mesh, curve, surface, measure, form.
 
    Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system;
    those whose rows change with x have a refresh beside them. */
@@ -18181,7 +18183,8 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 }
 
 /* ============================================================================================================
-   >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses all earlier sections.
+   >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses platform, memory,
+   error, vector, least-squares, system, loop, mesh, form, catalogue.
 
    Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method for form finding
    and computation of general networks (1974).
@@ -19217,7 +19220,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
 }
 
 /* ============================================================================================================
-   >>guard   A face must not lose its area on the way. Uses platform, vector, system, loop, mesh, form.
+   >>guard   A face must not lose its area on the way. Uses platform, memory, error, vector, system, loop, mesh, form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
    a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it
@@ -19350,8 +19353,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 }
 
 /* ============================================================================================================
-   >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses all earlier
-   sections. */
+   >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
+   memory, error, vector, system, loop, measure, form, catalogue, statics, guard. */
 
 /* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
@@ -19715,7 +19718,8 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
 }
 
 /* ============================================================================================================
-   >>state   A form's state as a block of bytes. Uses all earlier sections.
+   >>state   A form's state as a block of bytes. Uses platform, error, system, loop, curve, form, catalogue, statics,
+   guard.
 
    One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
    is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
@@ -20275,7 +20279,8 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 }
 
 /* ============================================================================================================
-   >>drag   The tangent space of what must hold, and its response to handles. Uses all earlier sections.
+   >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
+   vector, cholesky, system, loop, form, catalogue, guard, solve, state.
 
    Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
    in the tangent space that a force f at the handles' vertices brings about is its projection,

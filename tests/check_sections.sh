@@ -1,6 +1,7 @@
 #!/bin/bash
 # check_sections.sh - the header reads from top to bottom: cut at any section banner, what comes before compiles; tags
-# are unique and the manual's contents name them all, in order; no static function is declared ahead.
+# are unique and the manual's contents name them all, in order; no static function is declared ahead; and the banner of
+# each section of the implementation names the sections whose functions, types and constants it uses, and no later ones.
 #
 # A banner is a comment that begins with a line of - or = and goes on with >>tag. The manual is everything before the
 # first banner; its table of contents are its lines that begin with >>tag.
@@ -33,6 +34,25 @@ code = re.sub(r"^[ \t]*#(?:\\\n|[^\n])*", "", code, flags=re.M)
 ahead = re.findall(r"^(?:GPROJI_INTERNAL|GPROJI_INLINE|GPROJI_NOINLINE|static)\b[^;{}=]*?\)\s*;", code, re.M)
 complain("ahead", [" ".join(a.split()) for a in ahead])
 
+# What sections use: names that an earlier section defines at the beginning of a line (constants: indented by four).
+DEFINED = (r"^(?:GPROJ\w*|static)\b[^=;(]*?\b(gproji?_\w+)\s*\(", r"^#define (GPROJI?_\w+)", r"^\} (gproji_\w+);",
+           r"^    (GPROJI_[A-Z0-9_]+)(?: = [^;]*?)?(?:,|\n)", r"^static const [^=;]*?\b(gproji_\w+)")
+begins = [position for position, tag in banners if not tag.startswith("api-")] + [len(text)]
+names, home, wrong = [], {}, []
+for tag, begin, end in zip([tag for tag in tags if not tag.startswith("api-")], begins, begins[1:]):
+    banner, _, body = text[begin + 3:end].partition("*/")
+    body = re.sub(r'/\*.*?\*/|"(?:\\.|[^"\\\n])*"', "", body, flags=re.S)
+    words = banner.split("\n\n")[0].split("Uses ")
+    stated = set(re.findall(r"[a-z-]+", re.sub(r"\(.*?\)", "", words[-1]))) if len(words) > 1 else set()
+    used = {home[word] for word in re.findall(r"\bgproji?_\w+|\bGPROJI_\w+", body) if word in home}
+    wrong += [f">>{tag} uses {other}" for other in names if other in used - stated]
+    wrong += [f">>{tag} cannot use {other}" for other in tags if other in stated - set(names)]
+    names.append(tag)
+    for pattern in DEFINED:
+        for word in re.findall(pattern, body, re.M):
+            home.setdefault(word, tag)
+complain("uses", wrong if len(home) > 500 else ["the definitions were not found"])
+
 # The prefixes, with open conditionals closed.
 for position, tag in banners + [(len(text), "end")]:
     prefix = text[:position]
@@ -42,7 +62,8 @@ for position, tag in banners + [(len(text), "end")]:
 END
 python3 "$work/sections.py" "$root/guidedproj.h" "$work" || fail 'sections.py'
 for kind in 'banners:section banners' 'unique:tags used twice' 'contents:the table of contents differs from the sections' \
-    'references:>>tags that name no section' 'ahead:static functions declared ahead of their definition'; do
+    'references:>>tags that name no section' 'uses:what a section uses is not what its banner says' \
+    'ahead:static functions declared ahead of their definition'; do
     clean "${kind#*:}" "$(cat "$work/${kind%%:*}.list")"
 done
 for prefix in "$work"/prefix_*.c; do
