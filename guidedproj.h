@@ -2107,6 +2107,28 @@ GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *cap
     return true;
 }
 
+/* A growing array of integers; zeros at first. */
+typedef struct gproji_ints {
+    int32_t *data;
+    size_t count, capacity;
+} gproji_ints;
+
+#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* how many it may have */
+
+/* Appends one; false when there is no memory, or when there are as many as there may be. */
+GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
+    void *block = ints->data;
+    if (ints->count >= GPROJI_INTS_MAX) return false;
+    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
+    ints->data = (int32_t *)block;
+    ints->data[ints->count++] = value;
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
+    gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
+}
+
 /* An object's own memory: its struct is taken from the heap that it then carries. The heap's struct must be the
    object's first member. */
 GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
@@ -2292,7 +2314,7 @@ GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_
 }
 
 /* ============================================================================================================
-   >>vector   3-vectors and symmetric 3x3 matrices. Uses platform. */
+   >>vector   3-vectors, points in the plane, sums. Uses platform. */
 
 GPROJI_INLINE void gproji_copy3(const double a[3], double out[3]) { out[0] = a[0], out[1] = a[1], out[2] = a[2]; }
 GPROJI_INLINE void gproji_set3(double x, double y, double z, double out[3]) { out[0] = x, out[1] = y, out[2] = z; }
@@ -2334,6 +2356,12 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
     double sign = n[2] < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
     gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
+}
+
+/* Twice the area of the triangle of points i, j, k in the plane, two numbers of xy each, positive when counter-clockwise. */
+GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
+    const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
 GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
@@ -7859,10 +7887,8 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
         return code;
     }
     gproji_system_forget(s);
-    if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK) {
-        const gproj_error *error = gproj_cholesky_error(s->cholesky);
-        return gproji_fail(&s->error, error->code, error->place, error->index, "%s", error->message);
-    }
+    if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
+        return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
     return gproji_fail_memory(&s->error);
 }
 
@@ -10100,21 +10126,36 @@ GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
 }
 
+/* The half-edge from vertex a to vertex b; -1: they have no edge. */
+GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
+    int32_t start = mesh->vertex_halfedge[a], h = start;
+    if (start < 0) return -1;
+    do {
+        if (mesh->origin[h ^ 1] == b) return h;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    return -1;
+}
+
+/* Does a polyline turn by more than 45 degrees at a point with these neighbours? Not where one of them is the same. */
+GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], const double after[3]) {
+    static const double none[3] = {0, 0, 0};
+    double in[3], out[3];
+    gproji_sub3(at, before, in);
+    gproji_sub3(after, at, out);
+    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+}
+
 /* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex
    are h and prev[h]. */
 GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
-    static const double none[3] = {0, 0, 0};
-    const double *p;
-    double in[3], out[3];
     int32_t h;
     if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
     if (gproj_mesh_valence(mesh, vertex) == 2) return true;
     h = mesh->vertex_halfedge[vertex];
-    p = position + 3 * (size_t)vertex;
-    gproji_sub3(p, position + 3 * (size_t)mesh->origin[mesh->prev[h]], in);
-    gproji_sub3(position + 3 * (size_t)mesh->origin[h ^ 1], p, out);
-    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
-    return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
+    return gproji_turns(position + 3 * (size_t)mesh->origin[mesh->prev[h]], position + 3 * (size_t)vertex,
+                        position + 3 * (size_t)mesh->origin[h ^ 1]);
 }
 
 /* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
@@ -10155,12 +10196,6 @@ GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gp
    builder's complaints can name the line too. Nothing is allocated because a text promises it: arrays grow as the
    elements appear.
    Invariant: the scanner never reads text[size] or beyond; `line` is the line of the character at `at`. */
-
-/* A growing array of integers. */
-typedef struct gproji_ints {
-    int32_t *data;
-    size_t count, capacity;
-} gproji_ints;
 
 typedef struct gproji_reader {
     const char *text;
@@ -10288,21 +10323,12 @@ GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes
                        slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
 }
 
-/* Appends to a growing array. */
+/* Appends to a growing array of the text. */
 GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
-    void *block = ints->data;
-    if (ints->count >= ints->capacity) {
-        if (ints->count >= INT32_MAX - 1) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: the text has too many elements; split the mesh", reader->line);
-        }
-        if (!gproji_reserve(reader->heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) {
-            return gproji_fail_memory(reader->error);
-        }
-        ints->data = (int32_t *)block;
-    }
-    ints->data[ints->count++] = value;
-    return GPROJ_OK;
+    if (gproji_ints_add(reader->heap, ints, value)) return GPROJ_OK;
+    if (ints->count < GPROJI_INTS_MAX) return gproji_fail_memory(reader->error);
+    return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
+                       "line %d: the text has too many elements; split the mesh", reader->line);
 }
 
 GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
@@ -10608,10 +10634,6 @@ GPROJI_INTERNAL gproj_code gproji_reader_build(const gproji_reader *reader, gpro
     }
     return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
                                      reader->polyline_vertex.data, reader->error);
-}
-
-GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
-    gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
 /* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
@@ -11243,17 +11265,6 @@ GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degr
         for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
         *degree++ = 3;
     }
-}
-
-/* The half-edge from vertex a to vertex b; -1: they have no edge. */
-GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
-    int32_t start = mesh->vertex_halfedge[a], h = start;
-    if (start < 0) return -1;
-    do {
-        if (mesh->origin[h ^ 1] == b) return h;
-        h = gproji_rotate(mesh, h);
-    } while (h != start);
-    return -1;
 }
 
 /* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
@@ -12040,8 +12051,7 @@ typedef struct gproji_polygon {
 
 /* Twice the area of the triangle of corners a, b, c, positive when counter-clockwise. */
 GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
-    const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    return gproji_turn2(polygon->xy, a, b, c);
 }
 
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
@@ -12622,18 +12632,6 @@ GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t f
     return -1;
 }
 
-/* The half-edge from vertex a to vertex b; -1: none. */
-GPROJI_INTERNAL int32_t gproji_edit_joined(const gproji_edit_object *object, int32_t a, int32_t b) {
-    const gproj_mesh *view = &object->view;
-    int32_t start = view->vertex_halfedge[a], h = start;
-    if (start < 0) return -1;
-    do {
-        if (view->origin[h ^ 1] == b) return h;
-        h = gproji_rotate(view, h);
-    } while (h != start);
-    return -1;
-}
-
 /* A new stamp for marks, greater than all that are in use. */
 GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
     gproji_edit_store *s = &object->now;
@@ -13159,7 +13157,7 @@ GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
 GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other) {
     gproji_edit_object *object = gproji_edit_owner(edit, NULL);
     int32_t a = gproj_edit_vertex(edit, vertex), b = gproj_edit_vertex(edit, other), h;
-    h = a < 0 || b < 0 ? -1 : gproji_edit_joined(object, a, b);
+    h = a < 0 || b < 0 ? -1 : gproji_halfedge_between(&object->view, a, b);
     return h < 0 ? -1 : h / 2;
 }
 
@@ -13186,7 +13184,7 @@ GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t 
                     "face %d cannot be cut from vertex %d to itself", face, vertex);
         return -1;
     }
-    if (gproji_edit_joined(object, object->now.origin[from], object->now.origin[to]) >= 0) {
+    if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0) {
         gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
                     "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex, other);
         return -1;
@@ -13237,7 +13235,7 @@ GPROJI_INTERNAL bool gproji_triangulation_take(gproji_pool *pool, gproji_triangu
 
 GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
                                          int32_t b) {
-    return gproji_edit_joined(object, polygon->vertex[a], polygon->vertex[b]) >= 0;
+    return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
 }
 
 /* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any
@@ -14641,7 +14639,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 
 /* ============================================================================================================
    >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, cholesky, mesh,
-   text (growing arrays), hierarchy.
+   hierarchy.
 
    A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
    patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
@@ -14731,15 +14729,6 @@ typedef struct gproji_filling {
     int32_t cut_vertices;   /* then those of cuts */
     int32_t leaves;         /* patches that were filled */
 } gproji_filling;
-
-GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
-    void *block = ints->data;
-    if (ints->count >= INT32_MAX - 1) return false;
-    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
-    ints->data = (int32_t *)block;
-    ints->data[ints->count++] = value;
-    return true;
-}
 
 GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
                                       int32_t d) {
@@ -15057,12 +15046,6 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_patter
 
 /* -- the plane -- */
 
-/* Twice the area of the triangle of points i, j, k of an array xy, positive when counter-clockwise. */
-GPROJI_INTERNAL double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
-    const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-}
-
 GPROJI_INTERNAL double gproji_distance2(const double *xy, int32_t i, int32_t j) {
     double x = xy[2 * (size_t)j] - xy[2 * (size_t)i], y = xy[2 * (size_t)j + 1] - xy[2 * (size_t)i + 1];
     return sqrt(x * x + y * y);
@@ -15093,24 +15076,24 @@ GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32
     return gproji_segments_meet(xy, i, b, j, d);
 }
 
-/* A closed polygon. */
-typedef struct gproji_loop2 {
+/* A closed polygon in the plane. */
+typedef struct gproji_ring2 {
     const double *xy;
     int32_t count;
-} gproji_loop2;
+} gproji_ring2;
 
-GPROJI_INTERNAL void gproji_loop_box(const void *user, int32_t item, double low[3], double high[3]) {
-    const gproji_loop2 *loop = (const gproji_loop2 *)user;
-    const double *p = loop->xy + 2 * (size_t)item, *q = loop->xy + 2 * (size_t)((item + 1) % loop->count);
+GPROJI_INTERNAL void gproji_ring_box(const void *user, int32_t item, double low[3], double high[3]) {
+    const gproji_ring2 *ring = (const gproji_ring2 *)user;
+    const double *p = ring->xy + 2 * (size_t)item, *q = ring->xy + 2 * (size_t)((item + 1) % ring->count);
     gproji_set3(gproji_fmin(p[0], q[0]), gproji_fmin(p[1], q[1]), 0, low);
     gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
 }
 
 /* The lowest side after side i that meets it; the number of sides where there is none. */
-GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gproji_hierarchy *tree, int32_t i) {
-    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = loop->count, k;
+GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_ring2 *ring, const gproji_hierarchy *tree, int32_t i) {
+    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = ring->count, k;
     double low[3], high[3];
-    gproji_loop_box(loop, i, low, high);
+    gproji_ring_box(ring, i, low, high);
     stack[0] = 0;
     while (depth > 0) {
         int32_t at = stack[--depth];
@@ -15124,7 +15107,7 @@ GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gpro
         }
         for (k = node->begin; k < node->end; ++k) {
             int32_t j = tree->item[k];
-            if (j > i && j < found && gproji_polygon_meets(loop->xy, loop->count, i, j)) found = j;
+            if (j > i && j < found && gproji_polygon_meets(ring->xy, ring->count, i, j)) found = j;
         }
     }
     return found;
@@ -15134,11 +15117,11 @@ GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_loop2 *loop, const gpro
 GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
                                           int32_t *second) {
     gproji_hierarchy tree;
-    gproji_loop2 loop;
-    loop.xy = xy, loop.count = count;
-    if (!gproji_hierarchy_build(heap, &tree, count, gproji_loop_box, &loop)) return false;
+    gproji_ring2 ring;
+    ring.xy = xy, ring.count = count;
+    if (!gproji_hierarchy_build(heap, &tree, count, gproji_ring_box, &ring)) return false;
     for (*first = 0; *first < count; ++*first) {
-        *second = gproji_find_meeting(&loop, &tree, *first);
+        *second = gproji_find_meeting(&ring, &tree, *first);
         if (*second < count) break;
     }
     gproji_hierarchy_give(heap, &tree);
@@ -15210,16 +15193,10 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                        i, j);
 }
 
-/* Does the curve turn by more than 45 degrees at a point (see gproj_form_is_corner)? */
-GPROJI_INTERNAL bool gproji_turns(const gproji_filling *f, int32_t i) {
-    static const double none[3] = {0, 0, 0};
-    const double *p = f->points + 3 * (size_t)i;
-    double in[3], out[3];
-    gproji_sub3(p, f->points + 3 * (size_t)((i + f->count - 1) % f->count), in);
-    gproji_sub3(f->points + 3 * (size_t)((i + 1) % f->count), p, out);
-    gproji_normalise3(in, none);
-    gproji_normalise3(out, none);
-    return gproji_dot3(in, out) < 0.70710678118654752;
+/* Is a point of the curve a corner, as gproj_form_is_corner says of vertices? */
+GPROJI_INTERNAL bool gproji_is_curve_corner(const gproji_filling *f, int32_t i) {
+    int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
+    return gproji_turns(f->points + 3 * (size_t)before, f->points + 3 * (size_t)i, f->points + 3 * (size_t)after);
 }
 
 /* The length of the curve from point i to point j > i (modulo the number of points). */
@@ -15273,7 +15250,7 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
         taken = gproji_ints_add(f->heap, &f->corner, c);
     }
     for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
-        if (gproji_turns(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
+        if (gproji_is_curve_corner(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
     if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
     f->sides = (int32_t)f->corner.count;
     if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
