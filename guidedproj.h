@@ -1376,7 +1376,9 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
    handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. An error (rows were added, a position is not finite) changes nothing. */
+   each handle and variable; no allocation. Errors, which change nothing: GPROJ_ERROR_STATE (rows were added), GPROJ_ERROR_NUMBER (a position is not
+   finite or beyond 1e70); and GPROJ_ERROR_NUMBER where everything was to be linearised anew and could not: then the drag
+   moves nothing any more, and can be ended or cancelled. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
 /* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
    all rows. */
@@ -1392,7 +1394,8 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
    mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. */
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. (Where something was added to the
+   form against the rule, only the mesh.) */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -7812,7 +7815,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 
 GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
     size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
-    if (n > 0 && k + 1 > SIZE_MAX / 2 / sizeof(double) / n) return false;
+    if (k + 1 > SIZE_MAX / 2 / sizeof(double) / (n > k ? n : k + 1)) return false; /* (k + 1) n or k k are too many */
     s->wide_taken = k;
     s->sides = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->sides);
     s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
@@ -19673,7 +19676,7 @@ GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gpro
 GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on; }
 
 GPROJ_API void gproj_step_stop(gproj_form *form) {
-    if (form && !form->system->solving) form->solve.on = form->solve.finished = false;
+    if (form && form->system && !form->system->solving) form->solve.on = form->solve.finished = false;
 }
 
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
@@ -20257,7 +20260,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 
 /* ============================================================================================================
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
-   vector, cholesky, system, loop, form, catalogue, guard, solve, state.
+   vector, cholesky, system, loop, mesh, form, catalogue, guard, solve, state.
 
    Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
    in the tangent space that a force f at the handles' vertices brings about is its projection,
@@ -20528,6 +20531,13 @@ GPROJI_INTERNAL gproj_code gproji_fail_linearising(gproj_drag *drag, gproj_error
 
 /* -- moves -- */
 
+/* Refuses positions of handles that are not finite or far too large. */
+GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const double *positions, gproj_error *error) {
+    gproj_code code = gproji_check_positions(handles, positions, "handle", error);
+    if (code && error) error->place = GPROJ_PLACE_NONE; /* a handle is no vertex */
+    return code;
+}
+
 /* x = base + Q m with the m for which the handles come nearest to where they should be. */
 GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
@@ -20569,14 +20579,10 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
 }
 
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
-    int32_t i;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag)) return drag->error.code;
-    for (i = 0; i < drag->columns; ++i)
-        if (!gproji_is_finite(positions[i]))
-            return gproji_fail(&drag->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, i / 3,
-                               "drag: the position of handle %d is not a finite number", i / 3);
+    if (gproji_check_handle_positions(drag->info.handles, positions, &drag->error)) return drag->error.code;
     gproji_set_wanted(drag, positions);
     gproji_follow_handles(drag);
     if (drag->options.residual_bound > 0 && gproji_see_constraints(drag) > drag->options.residual_bound) {
@@ -20643,7 +20649,7 @@ GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gpro
             return false;
         }
     }
-    return true;
+    return !h->position || gproji_check_handle_positions(h->count, h->position, error) == GPROJ_OK;
 }
 
 /* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
@@ -20782,9 +20788,15 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
+/* The mesh is what it was before the drag. */
+GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+}
+
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     if (!drag) return;
-    gproji_read_state(drag->form, drag->state, drag->state_size, NULL);
+    if (gproji_read_state(drag->form, drag->state, drag->state_size, NULL) != GPROJ_OK)
+        gproji_reset_mesh(drag->form); /* something was added to the form, which is not that of the state any more */
     gproji_destroy_drag(drag);
 }
 
@@ -20844,7 +20856,7 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
     form = drag->form;
     form->drag = NULL;
-    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    gproji_reset_mesh(form);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
     if (gproji_form_ready(form)) {

@@ -479,7 +479,7 @@ static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles,
 
 GPROJT_TEST(refused) {
     static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {1, 2};
-    static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
+    static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1}, nowhere[] = {0, 1e71, 0, 0, 0, 0};
     static const int32_t outside[] = {3, 99}, two[] = {3, 4};
     gproj_mesh *mesh = gprojt_roof(4, 0);
     gproj_form *form = gproj_form_create(mesh, NULL), *standing;
@@ -505,6 +505,9 @@ GPROJT_TEST(refused) {
     handles.weight = endless;
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "the weights of handle 0");
     handles.weight = NULL;
+    handles.position = nowhere;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "coordinate y of handle 0 is 1e+71");
+    handles.position = NULL;
     options.residual_bound = -1;
     gprojt_check_refusal(form, &handles, &options, GPROJ_ERROR_ARGUMENT, "a residual bound of -1");
     gprojt_check_refusal(NULL, &handles, NULL, GPROJ_ERROR_MEMORY, "there is no object");
@@ -550,6 +553,13 @@ GPROJT_TEST(misused) {
     GPROJT_CHECK(gproj_drag_get_info(NULL).handles == 0 && gproj_drag_memory(NULL).used == 0);
     GPROJT_CHECK(gproj_drag_error(NULL)->code != GPROJ_OK);
     gproj_drag_cancel(NULL);
+    memcpy(stage.start, stage.mesh->position, 3 * (size_t)stage.mesh->vertex_count * sizeof *stage.start);
+    drag = gprojt_grab(&stage, 1, &v);
+    gprojt_pull(&stage, drag, v, 0.1);
+    gproj_add_fairness(stage.form, 0.1);
+    gproj_drag_cancel(drag); /* the mesh at least is as before */
+    GPROJT_CHECK(memcmp(stage.start, stage.mesh->position,
+                        3 * (size_t)stage.mesh->vertex_count * sizeof *stage.start) == 0);
     free(state);
     gprojt_clear_stage(&stage);
 }

@@ -134,6 +134,9 @@ GPROJT_TEST(frames_can_be_left) {
     gproj_step_stop(NULL);
     free(kept);
     gproj_form_destroy(form);
+    form = gproj_form_create(NULL, NULL);
+    gproj_step_stop(form); /* a form without a mesh has no system */
+    gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
 
