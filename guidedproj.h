@@ -120,19 +120,22 @@
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
 
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
-     is destroyed. There are no globals. Iterations after the first allocate nothing. Every allocation may fail: the
-     call returns an error and nothing leaks.
+     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing. Every
+     allocation may fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh
+     from a mesh, a curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to
+     the curves and surfaces that were added to it, and a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
-     by different threads at the same time; one object by one thread at a time. Reading an object that no one changes is
-     always safe.
+     by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
+     drag are one object in this. Reading an object that no one changes is always safe.
 
    DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
      run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
      gproj_cholesky_info) and GPROJ_USE_CBLAS may differ in the last digits. GPROJ_NO_SIMD leaves only the compiler.
 
    ERRORS   See >>api-error: code, place, sentence. Objects that are built up keep their first error, so one check is
-     enough. Misuse that only a programmer can cause is reported like everything else.
+     enough; others (gproj_edit, gproj_drag, states) refuse a call and are as before. Misuse that only a programmer can
+     cause is reported like everything else.
 
    REFERENCES
      Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4),
@@ -229,7 +232,7 @@ typedef struct gproj_memory {
     X(ERROR_NON_MANIFOLD, "a mesh is not a manifold")               \
     X(ERROR_NON_ORIENTABLE, "a mesh has no consistent orientation") \
     X(ERROR_SIZE, "a count is too large")                           \
-    X(ERROR_STATE, "a call came before the one it depends on")
+    X(ERROR_STATE, "a call came before another one that it depends on, or during one that excludes it")
 
 typedef enum gproj_code {
 #define GPROJ_X(name, sentence) GPROJ_##name,
@@ -737,7 +740,7 @@ typedef struct gproj_edit {
     const int32_t *face_number;
 } gproj_edit;
 
-/* The mesh is copied. */
+/* An edit of a mesh, which is copied. NULL: there is no mesh, or no memory. */
 GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
 GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
@@ -1368,17 +1371,19 @@ typedef struct gproj_drag_info {
 } gproj_drag_info;
 
 /* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
-   one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6), which
-   stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`, nothing
-   has changed. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 6 right-hand sides
-   for each handle. */
+   one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6),
+   which stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`,
+   nothing has changed: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER for what is wrong with handles and options,
+   GPROJ_ERROR_NUMBER where what must hold cannot be linearised, GPROJ_ERROR_STATE during a solve or another drag, and
+   before forces have values. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 6
+   right-hand sides for each handle. */
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
    handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. Errors, which change nothing: GPROJ_ERROR_STATE (rows were added), GPROJ_ERROR_NUMBER (a position is not
-   finite or beyond 1e70); and GPROJ_ERROR_NUMBER where everything was to be linearised anew and could not: then the drag
-   moves nothing any more, and can be ended or cancelled. */
+   each handle and variable; no allocation. Errors, which change nothing: GPROJ_ERROR_STATE (rows were added),
+   GPROJ_ERROR_NUMBER (a position is not finite or beyond 1e70); and GPROJ_ERROR_NUMBER where everything was to be
+   linearised anew and could not: then the drag moves nothing any more, and can be ended or cancelled. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
 /* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
    all rows. */
@@ -1394,8 +1399,8 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
    mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. (Where something was added to the
-   form against the rule, only the mesh.) */
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. (Where something was added to
+   the form against the rule, only the mesh.) */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1415,14 +1420,16 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    The bytes are the same on all machines; they may be written to a file. */
 
-/* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a
-   solve. 0 after an error of the form. */
+/* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
+   error of the form. */
 GPROJ_API size_t gproj_state_size(gproj_form *form);
-/* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. */
+/* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. Errors: GPROJ_ERROR_ARGUMENT
+   (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or that of the form. */
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
-/* Restores it. Refused, with a sentence and without a change, where the bytes are no state, are damaged or cut off, or
-   belong to another form; and during a drag. Callbacks of a solve in frames stay those of the one that is on in the form;
-   there are none where none is. */
+/* Restores it. Refused, with a sentence and without a change, where the bytes are no state, are damaged or cut off
+   (GPROJ_ERROR_SYNTAX), or belong to another form (GPROJ_ERROR_ARGUMENT); and during a solve or a drag
+   (GPROJ_ERROR_STATE). Without memory the form has that error. Callbacks of a solve in frames stay those of the one
+   that is on in the form; there are none where none is on. */
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error);
 
 #ifdef __cplusplus
@@ -2147,6 +2154,14 @@ GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_give(&heap, object, 1, size);
 }
 
+/* The account of an object by its public part, `offset` bytes from its beginning; zeros where there is none. */
+GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) {
+    gproji_heap heap;
+    memset(&heap, 0, sizeof heap);
+    if (part) memcpy(&heap, (const char *)part - offset, sizeof heap);
+    return heap.account;
+}
+
 /* The accounts of an object and its parts, added up. The peak is that of the parts, as if they came together. */
 GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->used += part.used;
@@ -2361,7 +2376,8 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
 
-/* Twice the area of the triangle of points i, j, k in the plane, two numbers of xy each, positive when counter-clockwise. */
+/* Twice the area of the triangle of points i, j, k in the plane, two numbers of xy each, positive when
+   counter-clockwise. */
 GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
     const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -5377,11 +5393,7 @@ GPROJ_API const gproj_error *gproj_cholesky_error(const gproj_cholesky *cholesky
     return cholesky ? &cholesky->error : &none;
 }
 
-GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky) {
-    gproj_memory memory;
-    memset(&memory, 0, sizeof memory);
-    return cholesky ? cholesky->own.account : memory;
-}
+GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky) { return gproji_account_of(cholesky, 0); }
 
 GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *cholesky) {
     return cholesky ? cholesky->permutation : NULL;
@@ -10096,11 +10108,7 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
 }
 
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
-    gproj_memory none;
-    memset(&none, 0, sizeof none);
-    if (!mesh) return none;
-    return ((const gproji_mesh_object *)(const void *)((const char *)mesh - offsetof(gproji_mesh_object, mesh)))
-        ->heap.account;
+    return gproji_account_of(mesh, offsetof(gproji_mesh_object, mesh));
 }
 
 /* -- questions -- */
@@ -10969,12 +10977,7 @@ GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
 }
 
 GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
-    gproj_memory none;
-    memset(&none, 0, sizeof none);
-    if (!stencil) return none;
-    return ((const gproji_stencil_object *)(const void *)((const char *)stencil -
-                                                          offsetof(gproji_stencil_object, stencil)))
-        ->heap.account;
+    return gproji_account_of(stencil, offsetof(gproji_stencil_object, stencil));
 }
 
 /* Makes room for `entries` entries; false when there is no memory. */
@@ -13019,11 +13022,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
 }
 
 GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
-    gproj_memory none;
-    memset(&none, 0, sizeof none);
-    if (!edit) return none;
-    return ((const gproji_edit_object *)(const void *)((const char *)edit - offsetof(gproji_edit_object, edit)))
-        ->heap.account;
+    return gproji_account_of(edit, offsetof(gproji_edit_object, edit));
 }
 
 /* -- from an edit to a mesh -- */
@@ -20609,11 +20608,7 @@ GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag) {
     return drag ? &drag->error : gproji_no_object();
 }
 
-GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) {
-    gproj_memory memory;
-    memset(&memory, 0, sizeof memory);
-    return drag ? drag->own.account : memory;
-}
+GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) { return gproji_account_of(drag, 0); }
 
 /* -- begin -- */
 
