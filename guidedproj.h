@@ -12,8 +12,8 @@
      projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them see
-       also >>api-edit, >>api-subdivide and >>api-fill);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them there
+       are >>api-edit, >>api-subdivide and >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -2171,9 +2171,9 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one piece of work, all given back by one call. */
+/* A pool holds the blocks of one piece of work, or of one object, all given back by one call. */
 enum {
-    GPROJI_POOL_BLOCKS = 48
+    GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
 typedef struct gproji_pool {
     gproji_heap *heap;
@@ -2333,6 +2333,8 @@ GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_
 
 /* ============================================================================================================
    >>vector   3-vectors, points in the plane, sums. Uses platform. */
+
+#define GPROJI_PI 3.141592653589793
 
 GPROJI_INLINE void gproji_copy3(const double a[3], double out[3]) { out[0] = a[0], out[1] = a[1], out[2] = a[2]; }
 GPROJI_INLINE void gproji_set3(double x, double y, double z, double out[3]) { out[0] = x, out[1] = y, out[2] = z; }
@@ -10935,7 +10937,7 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
 #endif /* GPROJ_NO_STDIO */
 
 /* ============================================================================================================
-   >>subdivide   Subdivision by stencils. Uses platform, memory, error, mesh.
+   >>subdivide   Subdivision by stencils. Uses platform, memory, error, vector, mesh.
 
    Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
    subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
@@ -11148,7 +11150,7 @@ GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t v
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     double n = gproj_mesh_valence(mesh, vertex), ring;
     if (level->scheme == GPROJ_LOOP) {
-        double c = 0.375 + 0.25 * cos(6.283185307179586 / n);
+        double c = 0.375 + 0.25 * cos(2 * GPROJI_PI / n);
         ring = share * (0.625 - c * c) / n;
         gproji_rows_add(rows, vertex, share - n * ring);
     } else {
@@ -14672,10 +14674,10 @@ enum {
     GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
 };
 
-#define GPROJI_REFLEX 3.403392041388943 /* 195 degrees: corners beyond are cut */
-#define GPROJI_FLAT 2.879793265790644   /* 165 degrees: corners beyond get two faces */
-#define GPROJI_OBTUSE 2.356194490192345 /* 135 degrees: at the ends of a cut, corners below */
-#define GPROJI_RIGHT 1.570796326794897
+#define GPROJI_REFLEX (195 * GPROJI_PI / 180) /* corners beyond are cut */
+#define GPROJI_FLAT (165 * GPROJI_PI / 180)   /* corners beyond get two faces */
+#define GPROJI_OBTUSE (135 * GPROJI_PI / 180) /* at the ends of a cut, corners below */
+#define GPROJI_RIGHT (GPROJI_PI / 2)
 
 typedef struct gproji_pattern {
     int32_t sides;
@@ -15136,7 +15138,7 @@ GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q
     double u[2], v[2], angle;
     u[0] = b[0] - a[0], u[1] = b[1] - a[1], v[0] = c[0] - a[0], v[1] = c[1] - a[1];
     angle = atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
-    return angle < 0 ? angle + 6.283185307179586 : angle;
+    return angle < 0 ? angle + 2 * GPROJI_PI : angle;
 }
 
 /* -- the curve -- */
@@ -15226,10 +15228,10 @@ GPROJI_INTERNAL bool gproji_make_corners(gproji_filling *f) {
     return true;
 }
 
-GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
+/* The options, but for what depends on the corners and sides that are found. */
+GPROJI_INTERNAL gproj_code gproji_check_fill_options(const gproji_filling *f) {
     const gproj_fill_options *o = &f->options;
     int32_t i;
-    bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "%d corners%s; give at least 2, or none to have them found", o->corner_count,
@@ -15240,7 +15242,7 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     if (o->variant < 0)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
                            o->variant);
-    for (i = 0; i < o->corner_count && taken; ++i) {
+    for (i = 0; i < o->corner_count; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
             return gproji_fail(f->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, c,
@@ -15249,8 +15251,20 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
                                "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
                                c, before);
-        taken = gproji_ints_add(f->heap, &f->corner, c);
     }
+    if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
+        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
+                           o->edge_length);
+    return GPROJ_OK;
+}
+
+/* The corners given, or found, or made; as many are the sides. */
+GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
+    const gproj_fill_options *o = &f->options;
+    int32_t i;
+    bool taken = true;
+    for (i = 0; i < o->corner_count && taken; ++i) taken = gproji_ints_add(f->heap, &f->corner, o->corners[i]);
     for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
         if (gproji_is_curve_corner(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
     if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
@@ -15358,10 +15372,6 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     int32_t side, from, to, *edges;
     gproj_code code;
     f->edge_length = f->options.edge_length;
-    if (!(f->edge_length >= 0) || !gproji_is_finite(f->edge_length))
-        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
-                           f->edge_length);
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
     if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
     for (side = 0; side < f->sides; ++side) {
@@ -15420,8 +15430,9 @@ GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) 
 
 /* The vertices of the boundary, and the first patch: all of it. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
-    gproj_code code = gproji_find_corners(f);
+    gproj_code code = gproji_check_fill_options(f);
     int32_t side, i, j;
+    if (!code) code = gproji_find_corners(f);
     if (!code) code = gproji_divide_sides(f);
     if (code) return code;
     f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
@@ -16128,7 +16139,7 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     for (i = 0; i < n; ++i) {
         double angle = gproji_inner_angle(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
                                           f->quad.data[gproji_quad_previous(i)]) *
-                       57.29577951308232;
+                       (180 / GPROJI_PI);
         if (i == 0 || angle < info->min_angle) info->min_angle = angle;
         if (i == 0 || angle > info->max_angle) info->max_angle = angle;
     }
