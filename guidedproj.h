@@ -2385,11 +2385,14 @@ GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
+/* a'b; four sums, so that none has to wait for the one before. */
 GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
-    double sum = 0;
-    size_t i;
-    for (i = 0; i < count; ++i) sum += a[i] * b[i];
-    return sum;
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+    for (; i < count; ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
@@ -6860,7 +6863,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
 /* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
-   error, parallel, vector (sums), dense, symbolic, cholesky.
+   error, parallel, vector, dense, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
 
@@ -8194,40 +8197,30 @@ GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t strid
     }
 }
 
-/* a'b; four sums, so that none has to wait for the one before. */
-GPROJI_INTERNAL double gproji_wide_dot(int64_t count, const double *a, const double *b) {
-    double sum[4] = {0, 0, 0, 0};
-    int64_t i, k;
-    for (i = 0; i + 4 <= count; i += 4)
-        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
-    for (; i < count; ++i) sum[0] += a[i] * b[i];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
 /* I + Y'Y, factored. `wide`: columns of Y. */
 GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
     int32_t i, k;
     for (i = 0; i < wide; ++i)
         for (k = 0; k <= i; ++k)
             s->wide_matrix[(int64_t)i * s->wide_count + k] =
-                gproji_wide_dot(s->variable_count, gproji_wide_side(s, i), gproji_wide_side(s, k)) + (k == i);
+                gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), (size_t)s->variable_count) + (k == i);
     gproji_wide_factor(s->wide_matrix, wide, s->wide_count, 1);
 }
 
 /* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
 GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
-    int64_t n = s->variable_count, i;
-    double parts = sqrt(gproji_wide_dot(n, z, z));
+    size_t n = (size_t)s->variable_count, i;
+    double parts = sqrt(gproji_dot(z, z, n));
     int32_t k;
-    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_wide_dot(n, gproji_wide_side(s, k), z);
+    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_dot(gproji_wide_side(s, k), z, n);
     gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
     for (k = 0; k < wide; ++k) {
         const double *side = gproji_wide_side(s, k);
         double m = s->wide_vector[k];
         for (i = 0; i < n; ++i) z[i] -= m * side[i];
-        parts += fabs(m) * sqrt(gproji_wide_dot(n, side, side));
+        parts += fabs(m) * sqrt(gproji_dot(side, side, n));
     }
-    return parts / gproji_fmax(sqrt(gproji_wide_dot(n, z, z)), DBL_MIN);
+    return parts / gproji_fmax(sqrt(gproji_dot(z, z, n)), DBL_MIN);
 }
 
 /* The right-hand sides of a step: -gradient, and U. Returns the number of wide rows. */
