@@ -1188,7 +1188,8 @@ static int32_t innermost_vertex(const gproj_mesh *mesh) {
     return best;
 }
 
-/* An auxiliary projection: one vertex goes up, the boundary stays, and fairness guides the others. */
+/* An auxiliary projection: one vertex goes up, the boundary stays, and fairness guides the others. Closeness only decides
+   what fairness leaves open; what has to hold is linear, so few iterations do. */
 static bool lift(tool *t) {
     int32_t vertex = innermost_vertex(t->mesh);
     gproj_form *form;
