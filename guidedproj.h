@@ -1376,7 +1376,8 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
    handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. An error (rows were added, a position is not finite) changes nothing. */
+   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
+   not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
 /* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
    all rows. */
@@ -1392,7 +1393,8 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
    mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. */
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were added
+   during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -20316,6 +20318,8 @@ struct gproj_drag {
     double *from;             /* columns: the caller's positions of the handles at the beginning */
     double *gram;             /* handles x handles: S'S */
     double *first;            /* 3 * vertex_count: the vertices at the beginning */
+    double *begun;            /* variables: x before the drag */
+    double *last;             /* variables: x before a move */
     double *base;             /* variables: x where the rows were linearised */
     double *held;             /* columns: S'v there */
     double *wanted;           /* columns: S'v as the handles want it */
@@ -20536,9 +20540,8 @@ GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     return true;
 }
 
-/* Says why that failed. Without freedom nothing moves any more. */
-GPROJI_INTERNAL gproj_code gproji_fail_linearising(gproj_drag *drag, gproj_error *error) {
-    drag->info.freedom = 0;
+/* Says why that failed. */
+GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                        "drag: what must hold cannot be linearised here: its numbers are too large or too different");
@@ -20586,23 +20589,48 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     return drag->error.code == GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
+/* Refuses places of handles that no vertex of a mesh could have. */
+GPROJI_INTERNAL bool gproji_places_are_valid(const double *positions, int32_t handles, gproj_error *error) {
     int32_t i;
+    for (i = 0; i < 3 * handles; ++i) {
+        if (fabs(positions[i]) <= GPROJI_COORDINATE_MAX) continue;
+        gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, i / 3,
+                    "drag: the position of handle %d is not a finite number, or beyond 1e70", i / 3);
+        return false;
+    }
+    return true;
+}
+
+/* Linearises anew where the move has led, and goes on from there to the handles. Where that cannot be done, the move has
+   not been: everything is linearised anew where it began. Without freedom nothing moves any more. */
+GPROJI_INTERNAL bool gproji_renew_drag(gproj_drag *drag) {
+    if (gproji_linearise_drag(drag, true)) {
+        gproji_follow_handles(drag);
+        return true;
+    }
+    gproji_fail_linearising(drag, &drag->error);
+    memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
+    if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+    return false;
+}
+
+GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
+    double behind, bound;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
-    if (!gproji_drag_is_usable(drag)) return drag->error.code;
-    for (i = 0; i < drag->columns; ++i)
-        if (!gproji_is_finite(positions[i]))
-            return gproji_fail(&drag->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, i / 3,
-                               "drag: the position of handle %d is not a finite number", i / 3);
+    if (!gproji_drag_is_usable(drag) || !gproji_places_are_valid(positions, drag->info.handles, &drag->error))
+        return drag->error.code;
+    behind = drag->info.behind;
+    bound = drag->options.residual_bound;
+    memcpy(drag->last, drag->form->system->x, (size_t)drag->variables * sizeof *drag->last);
     gproji_set_wanted(drag, positions);
     gproji_follow_handles(drag);
-    if (drag->options.residual_bound > 0 && gproji_see_constraints(drag) > drag->options.residual_bound) {
-        if (!gproji_linearise_drag(drag, true)) gproji_fail_linearising(drag, &drag->error);
-        gproji_follow_handles(drag);
+    if (bound > 0 && !(gproji_see_constraints(drag) <= bound) && !gproji_renew_drag(drag)) {
+        drag->info.behind = behind;
+        return drag->error.code;
     }
     gproji_store_positions(drag->form, drag->form->before);
-    return drag->error.code;
+    return GPROJ_OK;
 }
 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
@@ -20661,7 +20689,7 @@ GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gpro
             return false;
         }
     }
-    return true;
+    return !h->position || gproji_places_are_valid(h->position, h->count, error);
 }
 
 /* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
@@ -20706,6 +20734,8 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->from = (double *)gproji_pool_take(pool, m, sizeof *drag->from);
     drag->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *drag->gram);
     drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
+    drag->begun = (double *)gproji_pool_take(pool, n, sizeof *drag->begun);
+    drag->last = (double *)gproji_pool_take(pool, n, sizeof *drag->last);
     drag->base = (double *)gproji_pool_take(pool, n, sizeof *drag->base);
     drag->held = (double *)gproji_pool_take(pool, m, sizeof *drag->held);
     drag->wanted = (double *)gproji_pool_take(pool, m, sizeof *drag->wanted);
@@ -20717,9 +20747,9 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
     drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->base &&
-           drag->held && drag->wanted && drag->motion && drag->lift && drag->pull && drag->work && drag->amount &&
-           drag->name && drag->schedule && drag->state;
+    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->begun &&
+           drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
+           drag->work && drag->amount && drag->name && drag->schedule && drag->state;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
@@ -20736,6 +20766,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     form->solve.on = form->solve.finished = false;
     s->late = 0;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(drag->begun, s->x, (size_t)drag->variables * sizeof *drag->begun);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_restart_planes(form);
@@ -20801,8 +20832,12 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
 }
 
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
+    gproj_form *form;
     if (!drag) return;
-    gproji_read_state(drag->form, drag->state, drag->state_size, NULL);
+    form = drag->form;
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(form->system->x, drag->begun, (size_t)drag->variables * sizeof *drag->begun);
+    gproji_read_state(form, drag->state, drag->state_size, NULL); /* not where rows were added, or after an error */
     gproji_destroy_drag(drag);
 }
 
