@@ -1235,8 +1235,9 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one gproj_solve.
    Between two frames weights may be changed and targets moved; vertices are moved by targets, or before another
    gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve, gproj_drag_begin
-   and another gproj_step_begin. Where groups or rows were added in between it fails. options->time_budget counts the
-   seconds inside all steps. */
+   and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure, such as
+   seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts the seconds
+   inside all steps. */
 GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_step_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
@@ -19692,10 +19693,20 @@ GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gpro
     return form->solve.on;
 }
 
-GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on; }
+GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
 GPROJ_API void gproj_step_stop(gproj_form *form) {
     if (form && !form->system->solving) form->solve.on = form->solve.finished = false;
+}
+
+/* Refuses a step; if a solve is on it ends with that, for a program may step for as long as it is on. */
+GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code code, const char *sentence) {
+    gproj_result result = gproji_refused_result(code, sentence);
+    if (!solve->on) return result;
+    solve->on = false;
+    solve->finished = true;
+    solve->loop.result = result;
+    return result;
 }
 
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
@@ -19703,14 +19714,11 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
     if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
-        return gproji_refused_result(GPROJ_ERROR_ARGUMENT,
-                                     "step: seconds must not be negative, and need a clock in the host");
-    if (solve->on && !gproji_has_structure(form->system, solve->structure)) {
-        solve->on = false;
-        solve->finished = true;
-        solve->loop.result = gproji_refused_result(
-            GPROJ_ERROR_STATE, "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
-    }
+        return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
+                                 "step: seconds must not be negative, and need a clock in the host");
+    if (solve->on && !gproji_has_structure(form->system, solve->structure))
+        return gproji_end_frames(solve, GPROJ_ERROR_STATE,
+                                 "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
     return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing was begun, call gproj_step_begin before");
