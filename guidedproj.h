@@ -11009,7 +11009,8 @@ GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, c
 GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine) {
     int32_t i, d;
     int64_t k;
-    for (i = 0; stencil && i < stencil->row_count; ++i) {
+    if (!stencil || !coarse || !fine) return;
+    for (i = 0; i < stencil->row_count; ++i) {
         for (d = 0; d < size; ++d) {
             double sum = 0;
             for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k)
