@@ -1238,8 +1238,9 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one gproj_solve.
    Between two frames weights may be changed and targets moved; vertices are moved by targets, or before another
    gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve, gproj_drag_begin
-   and another gproj_step_begin. Where groups or rows were added in between it fails. options->time_budget counts the
-   seconds inside all steps. */
+   and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure, such as
+   seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts the seconds
+   inside all steps. */
 GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_step_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
@@ -1381,9 +1382,8 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
    handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. Errors, which change nothing: GPROJ_ERROR_STATE (rows were added),
-   GPROJ_ERROR_NUMBER (a position is not finite or beyond 1e70); and GPROJ_ERROR_NUMBER where everything was to be
-   linearised anew and could not: then the drag moves nothing any more, and can be ended or cancelled. */
+   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
+   not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
 /* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
    all rows. */
@@ -1399,8 +1399,8 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
    mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. (Where something was added to
-   the form against the rule, only the mesh.) */
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were added
+   during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -11029,7 +11029,8 @@ GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, c
 GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine) {
     int32_t i, d;
     int64_t k;
-    for (i = 0; stencil && i < stencil->row_count; ++i) {
+    if (!stencil || !coarse || !fine) return;
+    for (i = 0; i < stencil->row_count; ++i) {
         for (d = 0; d < size; ++d) {
             double sum = 0;
             for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k)
@@ -19676,10 +19677,20 @@ GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gpro
     return form->solve.on;
 }
 
-GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on; }
+GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
 GPROJ_API void gproj_step_stop(gproj_form *form) {
     if (form && form->system && !form->system->solving) form->solve.on = form->solve.finished = false;
+}
+
+/* Refuses a step; if a solve is on it ends with that, for a program may step for as long as it is on. */
+GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code code, const char *sentence) {
+    gproj_result result = gproji_refused_result(code, sentence);
+    if (!solve->on) return result;
+    solve->on = false;
+    solve->finished = true;
+    solve->loop.result = result;
+    return result;
 }
 
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
@@ -19687,14 +19698,11 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
     if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
-        return gproji_refused_result(GPROJ_ERROR_ARGUMENT,
-                                     "step: seconds must not be negative, and need a clock in the host");
-    if (solve->on && !gproji_has_structure(form->system, solve->structure)) {
-        solve->on = false;
-        solve->finished = true;
-        solve->loop.result = gproji_refused_result(
-            GPROJ_ERROR_STATE, "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
-    }
+        return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
+                                 "step: seconds must not be negative, and need a clock in the host");
+    if (solve->on && !gproji_has_structure(form->system, solve->structure))
+        return gproji_end_frames(solve, GPROJ_ERROR_STATE,
+                                 "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
     return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing was begun, call gproj_step_begin before");
@@ -20304,6 +20312,8 @@ struct gproj_drag {
     double *from;             /* columns: the caller's positions of the handles at the beginning */
     double *gram;             /* handles x handles: S'S */
     double *first;            /* 3 * vertex_count: the vertices at the beginning */
+    double *begun;            /* variables: x before the drag */
+    double *last;             /* variables: x before a move */
     double *base;             /* variables: x where the rows were linearised */
     double *held;             /* columns: S'v there */
     double *wanted;           /* columns: S'v as the handles want it */
@@ -20524,9 +20534,8 @@ GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     return true;
 }
 
-/* Says why that failed. Without freedom nothing moves any more. */
-GPROJI_INTERNAL gproj_code gproji_fail_linearising(gproj_drag *drag, gproj_error *error) {
-    drag->info.freedom = 0;
+/* Says why that failed. */
+GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                        "drag: what must hold cannot be linearised here: its numbers are too large or too different");
@@ -20581,19 +20590,37 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     return drag->error.code == GPROJ_OK;
 }
 
+/* Linearises anew where the move has led, and goes on from there to the handles. Where that cannot be done, the move has
+   not been: everything is linearised anew where it began. Without freedom nothing moves any more. */
+GPROJI_INTERNAL bool gproji_renew_drag(gproj_drag *drag) {
+    if (gproji_linearise_drag(drag, true)) {
+        gproji_follow_handles(drag);
+        return true;
+    }
+    gproji_fail_linearising(drag, &drag->error);
+    memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
+    if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+    return false;
+}
+
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
+    double behind, bound;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
-    if (!gproji_drag_is_usable(drag)) return drag->error.code;
-    if (gproji_check_handle_positions(drag->info.handles, positions, &drag->error)) return drag->error.code;
+    if (!gproji_drag_is_usable(drag) ||
+        gproji_check_handle_positions(drag->info.handles, positions, &drag->error) != GPROJ_OK)
+        return drag->error.code;
+    behind = drag->info.behind;
+    bound = drag->options.residual_bound;
+    memcpy(drag->last, drag->form->system->x, (size_t)drag->variables * sizeof *drag->last);
     gproji_set_wanted(drag, positions);
     gproji_follow_handles(drag);
-    if (drag->options.residual_bound > 0 && gproji_see_constraints(drag) > drag->options.residual_bound) {
-        if (!gproji_linearise_drag(drag, true)) gproji_fail_linearising(drag, &drag->error);
-        gproji_follow_handles(drag);
+    if (bound > 0 && !(gproji_see_constraints(drag) <= bound) && !gproji_renew_drag(drag)) {
+        drag->info.behind = behind;
+        return drag->error.code;
     }
     gproji_store_positions(drag->form, drag->form->before);
-    return drag->error.code;
+    return GPROJ_OK;
 }
 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
@@ -20693,6 +20720,8 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->from = (double *)gproji_pool_take(pool, m, sizeof *drag->from);
     drag->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *drag->gram);
     drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
+    drag->begun = (double *)gproji_pool_take(pool, n, sizeof *drag->begun);
+    drag->last = (double *)gproji_pool_take(pool, n, sizeof *drag->last);
     drag->base = (double *)gproji_pool_take(pool, n, sizeof *drag->base);
     drag->held = (double *)gproji_pool_take(pool, m, sizeof *drag->held);
     drag->wanted = (double *)gproji_pool_take(pool, m, sizeof *drag->wanted);
@@ -20704,9 +20733,9 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
     drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->base &&
-           drag->held && drag->wanted && drag->motion && drag->lift && drag->pull && drag->work && drag->amount &&
-           drag->name && drag->schedule && drag->state;
+    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->begun &&
+           drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
+           drag->work && drag->amount && drag->name && drag->schedule && drag->state;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
@@ -20723,6 +20752,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     form->solve.on = form->solve.finished = false;
     s->late = 0;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(drag->begun, s->x, (size_t)drag->variables * sizeof *drag->begun);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_restart_planes(form);
@@ -20793,9 +20823,12 @@ GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
 }
 
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
+    gproj_form *form;
     if (!drag) return;
-    if (gproji_read_state(drag->form, drag->state, drag->state_size, NULL) != GPROJ_OK)
-        gproji_reset_mesh(drag->form); /* something was added to the form, which is not that of the state any more */
+    form = drag->form;
+    gproji_reset_mesh(form);
+    memcpy(form->system->x, drag->begun, (size_t)drag->variables * sizeof *drag->begun);
+    gproji_read_state(form, drag->state, drag->state_size, NULL); /* not where rows were added, or after an error */
     gproji_destroy_drag(drag);
 }
 

@@ -406,6 +406,37 @@ GPROJT_TEST(a_long_drag) {
     gprojt_clear_stage(&stage);
 }
 
+/* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
+GPROJT_TEST(a_wild_move) {
+    static const double far[] = {1e5, 1e20, 1e69};
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh), k;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    double *kept, p[3], behind;
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 0.01;
+    drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    gprojt_pull(&stage, drag, v, 0.2 * stage.edge);
+    kept = gprojt_keep(stage.mesh);
+    behind = gproj_drag_get_info(drag).behind;
+    for (k = 0; k < 3; ++k) {
+        memcpy(p, stage.start + 3 * v, sizeof p);
+        p[2] = far[k];
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "cannot be linearised here"));
+        GPROJT_CHECK(gprojt_unmoved(stage.mesh, kept) && gproj_drag_get_info(drag).behind == behind);
+        GPROJT_CHECK(gproj_drag_residual(drag) <= 0.011);
+    }
+    gprojt_pull(&stage, drag, v, 0.3 * stage.edge);
+    GPROJT_CHECK(gproj_drag_get_info(drag).behind < 1e-9 && gproj_drag_residual(drag) <= 0.011);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    free(kept);
+    gprojt_clear_stage(&stage);
+}
+
 /* -- cost, and cancelling -- */
 
 GPROJT_TEST(moves_allocate_nothing) {
@@ -467,6 +498,35 @@ GPROJT_TEST(cancelled_to_the_bit) {
         }
 }
 
+/* Additions during a drag, and errors of the form, do not keep it from being cancelled: the mesh and the forces are what
+   they were. */
+GPROJT_TEST(cancelled_after_additions) {
+    int32_t v, outside = 99;
+    int addition;
+    for (addition = 0; addition < 4; ++addition) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(5, 0.05), GPROJT_STANDING, NULL);
+        gproj_system *s = gproj_form_system(stage.form);
+        size_t count = (size_t)gproj_system_variable_count(s), bytes = count * sizeof(double);
+        double *x = (double *)malloc(bytes);
+        gproj_drag *drag;
+        v = gprojt_middle(stage.mesh);
+        memcpy(x, gproj_system_values(s), bytes);
+        drag = gprojt_grab(&stage, 1, &v);
+        gprojt_pull(&stage, drag, v, 0.2);
+        if (addition == 0) gproj_add_closeness(stage.form, 1);
+        if (addition == 1) gprojt_add_linear(s, 0, 3 * v, 1, 0, v);
+        if (addition == 2) gproj_system_add_variables(s, 3, 3, NULL);
+        if (addition == 3) gproj_add_fixed(stage.form, 1, &outside, 1);
+        GPROJT_CHECK(!gprojt_unmoved(stage.mesh, stage.start));
+        gproj_drag_cancel(drag);
+        GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start));
+        GPROJT_CHECK(memcmp(gproj_system_values(s), x, bytes) == 0);
+        if (addition == 0) GPROJT_CHECK(gproj_solve(stage.form, 20, NULL).outcome == GPROJ_CONVERGED);
+        free(x);
+        gprojt_clear_stage(&stage);
+    }
+}
+
 /* -- misuse -- */
 
 static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles, const gproj_drag_options *options,
@@ -479,7 +539,8 @@ static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles,
 
 GPROJT_TEST(refused) {
     static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {1, 2};
-    static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1}, nowhere[] = {0, 1e71, 0, 0, 0, 0};
+    static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
+    static const double astray[] = {0, 0, 0, 0, NAN, 0}, far[] = {0, 0, -1e71};
     static const int32_t outside[] = {3, 99}, two[] = {3, 4};
     gproj_mesh *mesh = gprojt_roof(4, 0);
     gproj_form *form = gproj_form_create(mesh, NULL), *standing;
@@ -505,8 +566,12 @@ GPROJT_TEST(refused) {
     handles.weight = endless;
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "the weights of handle 0");
     handles.weight = NULL;
-    handles.position = nowhere;
-    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "coordinate y of handle 0 is 1e+71");
+    handles.count = 2;
+    handles.position = astray;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "coordinate y of handle 1");
+    handles.count = 1;
+    handles.position = far;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "beyond 1e70");
     handles.position = NULL;
     options.residual_bound = -1;
     gprojt_check_refusal(form, &handles, &options, GPROJ_ERROR_ARGUMENT, "a residual bound of -1");
@@ -540,6 +605,9 @@ GPROJT_TEST(misused) {
     p[1] = HUGE_VAL;
     GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "handle 0"));
+    p[1] = -1e100;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "beyond 1e70"));
     GPROJT_CHECK(gproj_drag_move(drag, NULL) == GPROJ_ERROR_ARGUMENT);
     gprojt_pull(&stage, drag, v, 0.1); /* that was no harm */
     gproj_add_fairness(stage.form, 0.1);
@@ -558,8 +626,8 @@ GPROJT_TEST(misused) {
     gprojt_pull(&stage, drag, v, 0.1);
     gproj_add_fairness(stage.form, 0.1);
     gproj_drag_cancel(drag); /* the mesh at least is as before */
-    GPROJT_CHECK(memcmp(stage.start, stage.mesh->position,
-                        3 * (size_t)stage.mesh->vertex_count * sizeof *stage.start) == 0);
+    GPROJT_CHECK(
+        memcmp(stage.start, stage.mesh->position, 3 * (size_t)stage.mesh->vertex_count * sizeof *stage.start) == 0);
     free(state);
     gprojt_clear_stage(&stage);
 }
@@ -677,8 +745,10 @@ int main(void) {
     GPROJT_RUN(a_closed_loop);
     GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
+    GPROJT_RUN(a_wild_move);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
+    GPROJT_RUN(cancelled_after_additions);
     GPROJT_RUN(refused);
     GPROJT_RUN(misused);
     GPROJT_RUN(what_cannot_be_linearised);

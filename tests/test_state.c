@@ -140,6 +140,27 @@ GPROJT_TEST(frames_can_be_left) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Whatever fails between frames, a loop that steps for as long as a solve is on comes to its end. */
+GPROJT_TEST(failures_end_frames) {
+    static const double seconds[] = {0.01, -1, NAN, HUGE_VAL, 0};
+    int32_t outside = 99;
+    int k;
+    for (k = 0; k < 5; ++k) {
+        gproj_mesh *mesh = gprojt_roof(5, 0.08);
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+        gproj_result result;
+        GPROJT_CHECK(gproj_step_begin(form, 20, NULL));
+        if (k == 4) gproj_add_fixed(form, 1, &outside, 1);
+        result = gproj_step(form, seconds[k]);
+        GPROJT_CHECK(result.outcome == GPROJ_FAILED && !gproj_step_is_on(form));
+        GPROJT_CHECK(strstr(result.message, k < 4 ? "need a clock" : "no vertex 99"));
+        GPROJT_CHECK(strcmp(gproj_step(form, 0).message, result.message) == 0); /* again */
+        GPROJT_CHECK(gproj_step_begin(form, 20, NULL) == (k < 4));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Targets that move between frames are followed. */
 GPROJT_TEST(frames_follow_targets) {
     gproj_mesh *mesh = gprojt_roof(6, 0.02);
@@ -481,6 +502,7 @@ int main(void) {
     GPROJT_RUN(frames_are_one_solve);
     GPROJT_RUN(frames_have_their_time);
     GPROJT_RUN(frames_can_be_left);
+    GPROJT_RUN(failures_end_frames);
     GPROJT_RUN(frames_follow_targets);
     GPROJT_RUN(resumed_to_the_same_bytes);
     GPROJT_RUN(resumed_with_forces_that_bend);

@@ -591,6 +591,8 @@ GPROJT_TEST(handles_move_what_they_should) {
     GPROJT_CHECK(gprojt_largest_move(moved->position, fine->position, fine->vertex_count) < 1e-14);
     GPROJT_CHECK(gproj_stencil_memory(stencil).used > 0 && gproj_stencil_memory(NULL).used == 0);
     gproj_stencil_apply(NULL, 3, NULL, NULL);
+    gproj_stencil_apply(stencil, 3, NULL, fine->position);
+    gproj_stencil_apply(stencil, 3, mesh->position, NULL);
     gproj_stencil_destroy(NULL);
     gproj_stencil_destroy(stencil);
     gproj_stencil_destroy(handles);

@@ -111,6 +111,7 @@ for sides in 4,4,,4 4,4,0,4 4,4, x 1.5; do
 done
 expect 2 "expected a height" grid.obj -o new.obj --planar --lift 0
 expect 2 "expected a height" grid.obj -o new.obj --planar --lift up
+expect 2 "expected a height" grid.obj -o new.obj --planar --lift 1e300
 expect 2 "--state is a file" grid.obj -o new.obj --planar --state -
 expect 3 "face 0 has 4 corners" grid.obj -o new.obj --planar --subdivide 1,loop
 expect 3 "more than a mesh can have" grid.obj -o new.obj --planar --subdivide 14
@@ -371,6 +372,9 @@ run --fill curve.obj -o filled.obj
 [ $status -eq 0 ] && cmp -s filled.obj same.obj && pass || fail "--fill of a polyline exits with $status: $(cat err.txt)"
 run --fill grid.obj -o filled.obj
 [ $status -eq 0 ] && [ "$(counts filled.obj)" = "81 64" ] && pass || fail "--fill of a mesh's boundary: $(counts filled.obj)"
+run --fill square.obj --sides 6,5,6,5 -o filled.obj
+run --fill filled.obj --sides 6,5,6,5 -o again.obj
+[ $status -eq 0 ] && [ "$(counts again.obj)" = "42 30" ] && pass || fail "--fill of what was filled: $(counts again.obj), exit $status"
 run --fill torus.obj -o none.obj
 [ $status -eq 3 ] && grep -q "no curve" err.txt && pass || fail "--fill without a curve exits with $status"
 run --fill curve.obj --lift 2 -o lifted.obj

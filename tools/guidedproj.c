@@ -457,8 +457,8 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
 
 static bool set_lift(tool *t, void *place, const char *name, const char *value) {
     double *lift = (double *)place;
-    if (read_number(value, strlen(value), lift) && fabs(*lift) > 0) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a height, not 0", name, value);
+    if (read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a height, not 0, of at most 1e50", name, value);
 }
 
 static bool set_threads(tool *t, void *place, const char *name, const char *value) {
@@ -632,7 +632,8 @@ static const tool_option options[] = {
     {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
 
     {0, "fill", "CURVE", false,
-     "instead of INPUT: quads fill the closed curve in this OBJ file, its first polyline, else its boundary, else all "
+     "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
+     "first polyline, closed, else all "
      "its vertices. The boundary's vertices come first",
      "where it begins", set_path, PLACE(fill)},
     {0, "sides", "N,N,...", false,
@@ -1111,12 +1112,22 @@ static char *load_file(tool *t, const char *path, size_t *length) {
     return text;
 }
 
-/* The points of the curve in a file: its first polyline, its first boundary loop, or all vertices. Their number. */
+/* The first closed polyline in a file, where there is none and no boundary the first one; -1: there is none. (The sides
+   of a filled curve are polylines, and none of them is closed.) */
+static int32_t curve_polyline(const gproj_mesh *file) {
+    int32_t k;
+    for (k = 0; k < file->polyline_count; ++k)
+        if (file->polyline_vertex[file->polyline_start[k]] == file->polyline_vertex[file->polyline_start[k + 1] - 1])
+            return k;
+    return file->polyline_count > 0 && file->loop_count == 0 ? 0 : -1;
+}
+
+/* The points of the curve in a file: of a polyline, its first boundary loop, or all vertices. Their number. */
 static int32_t take_curve(const gproj_mesh *file, double *point) {
-    int32_t count = 0, k, first, h;
-    if (file->polyline_count > 0) {
-        const int32_t *vertex = file->polyline_vertex + file->polyline_start[0];
-        count = file->polyline_start[1] - file->polyline_start[0];
+    int32_t count = 0, k, first, h, polyline = curve_polyline(file);
+    if (polyline >= 0) {
+        const int32_t *vertex = file->polyline_vertex + file->polyline_start[polyline];
+        count = file->polyline_start[polyline + 1] - file->polyline_start[polyline];
         count -= count > 1 && vertex[0] == vertex[count - 1];
         for (k = 0; k < count; ++k) memcpy(point + 3 * k, file->position + 3 * (size_t)vertex[k], 3 * sizeof *point);
     } else if (file->loop_count > 0) { /* backwards: a loop runs against the faces */
