@@ -1228,7 +1228,7 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 
        gproj_step_begin(form, 20, NULL);
        while (gproj_step_is_on(form)) {
-           result = gproj_step(form, 0.01);
+           result = gproj_step(form, 0.01); // by the host's clock; 0 seconds: one iteration
            draw(mesh);
        }
 
@@ -1344,10 +1344,12 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 typedef struct gproj_drag gproj_drag;
 
 /* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those of
-   its column of the subdivision. start NULL: handle k is vertex[k]. weight NULL: all are 1. */
+   its column of the subdivision. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column, t->weight,
+   NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL: handle k is
+   vertex[k]. weight NULL: all are 1. */
 typedef struct gproj_handles {
     int32_t count;
-    const int64_t *start; /* count + 1 entries, start[0] = 0 */
+    const int64_t *start; /* count + 1 entries, start[0] >= 0 */
     const int32_t *vertex;
     const double *weight;
     /* 3 * count: where the handles are now, in the mesh's units; NULL: at the weighted means of their vertices. */
@@ -1358,8 +1360,8 @@ typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew at
        the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs an
        evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
-    double residual_bound;
-    bool keep_wishes; /* at the release the form's own wishes guide, too */
+    double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
+    bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
 
 /* What a drag has come to. */
@@ -1396,7 +1398,8 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its shape, so that
    features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The form's own wishes
    rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag handles" to the form,
-   so it is analysed anew. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
+   so it is analysed anew. Where there was no room to follow (gproj_drag_residual well above 0.1) the handles may end far
+   from where they were dragged. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
    mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
 /* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were added
@@ -19705,7 +19708,7 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
                                  "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
-    return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing was begun, call gproj_step_begin before");
+    return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing is under way, call gproj_step_begin before");
 }
 
 /* ============================================================================================================
@@ -20655,7 +20658,7 @@ GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gpro
         double size = 0;
         e = h->start ? h->start[k] : k;
         end = h->start ? h->start[k + 1] : k + 1;
-        if ((k == 0 && e != 0) || e > end) {
+        if (e < 0 || e > end) {
             gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k, "drag: the list of handle %d is no list", k);
             return false;
         }
@@ -20681,10 +20684,10 @@ GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gpro
 /* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
 GPROJI_INTERNAL void gproji_copy_handles(gproj_drag *drag, const gproj_handles *h, double *column) {
     int32_t k, j, c, handles = h->count;
-    int64_t e;
-    for (k = 0; k <= handles; ++k) drag->start[k] = h->start ? h->start[k] : k;
-    memcpy(drag->vertex, h->vertex, (size_t)drag->start[handles] * sizeof *drag->vertex);
-    for (e = 0; e < drag->start[handles]; ++e) drag->weight[e] = h->weight ? h->weight[e] : 1;
+    int64_t e, first = h->start ? h->start[0] : 0;
+    for (k = 0; k <= handles; ++k) drag->start[k] = h->start ? h->start[k] - first : k;
+    memcpy(drag->vertex, h->vertex + first, (size_t)drag->start[handles] * sizeof *drag->vertex);
+    for (e = 0; e < drag->start[handles]; ++e) drag->weight[e] = h->weight ? h->weight[first + e] : 1;
     memset(column, 0, (size_t)drag->form->mesh->vertex_count * sizeof *column);
     for (k = 0; k < handles; ++k) {
         for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] += drag->weight[e];
@@ -20709,7 +20712,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     gproj_form *form = drag->form;
     gproji_pool *pool = &drag->pool;
     int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count,
-            entries = h->start ? h->start[h->count] : h->count;
+            entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;

@@ -537,8 +537,40 @@ static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles,
     if (!drag && !strstr(error.message, words)) printf("  '%s' is not '%s'\n", error.message, words);
 }
 
+/* The lists of handles may begin anywhere: a column of a stencil is one. */
+GPROJT_TEST(lists_that_begin_later) {
+    static const int64_t start[] = {2, 4};
+    static const int32_t vertex[] = {99999, -1, 12, 13};
+    static const double weight[] = {0, 0, 0.25, 0.75}, to[] = {2, 2, 1};
+    double *moved[2];
+    int32_t k;
+    for (k = 0; k < 2; ++k) {
+        gproj_mesh *mesh = gprojt_roof(4, 0);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_handles handles;
+        gproj_drag *drag;
+        size_t size = 3 * (size_t)mesh->vertex_count * sizeof(double);
+        int64_t from_zero[] = {0, 2};
+        memset(&handles, 0, sizeof handles);
+        handles.count = 1;
+        handles.start = k ? from_zero : start;
+        handles.vertex = k ? vertex + 2 : vertex;
+        handles.weight = k ? weight + 2 : weight;
+        gproj_add_planarity(form, 1);
+        drag = gproj_drag_begin(form, &handles, NULL, NULL);
+        GPROJT_REQUIRE(drag && gproj_drag_move(drag, to) == GPROJ_OK);
+        moved[k] = (double *)malloc(size);
+        memcpy(moved[k], mesh->position, size);
+        if (k) GPROJT_CHECK(memcmp(moved[0], moved[1], size) == 0);
+        gproj_drag_cancel(drag);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    free(moved[0]), free(moved[1]);
+}
+
 GPROJT_TEST(refused) {
-    static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {1, 2};
+    static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {-1, 0};
     static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
     static const double astray[] = {0, 0, 0, 0, NAN, 0}, far[] = {0, 0, -1e71};
     static const int32_t outside[] = {3, 99}, two[] = {3, 4};
@@ -749,6 +781,7 @@ int main(void) {
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
     GPROJT_RUN(cancelled_after_additions);
+    GPROJT_RUN(lists_that_begin_later);
     GPROJT_RUN(refused);
     GPROJT_RUN(misused);
     GPROJT_RUN(what_cannot_be_linearised);

@@ -102,13 +102,13 @@ GPROJT_TEST(frames_can_be_left) {
     gproj_handles handles = gprojt_vertex_handles(1, &v);
     double *kept;
     memset(&options, 0, sizeof options);
-    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing was begun"));
+    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing is under way"));
     gproj_step_begin(form, 20, NULL);
     gproj_step(form, 0);
     kept = gprojt_keep(mesh);
     gproj_step_stop(form);
     GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !gproj_step_is_on(form));
-    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing was begun"));
+    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing is under way"));
     gproj_step_begin(form, 20, NULL); /* by a solve, by a drag */
     gproj_solve(form, 2, NULL);
     GPROJT_CHECK(!gproj_step_is_on(form));
