@@ -19874,7 +19874,7 @@ GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, s
 /* The byte of a small number of eighths; -0 is none, it has a sign. */
 GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
     int32_t whole;
-    if (!(fabs(value) <= GPROJI_SMALL_MOST / 8.0)) return GPROJI_SMALL_NONE;
+    if (!(8 * fabs(value) <= (double)GPROJI_SMALL_MOST)) return GPROJI_SMALL_NONE;
     whole = (int32_t)(8 * value);
     if (whole != 8 * value || (whole == 0 && 1 / value < 0)) return GPROJI_SMALL_NONE;
     return (uint64_t)(whole + GPROJI_SMALL_MOST);
@@ -19883,7 +19883,7 @@ GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
 /* A number that is often a small one of eighths. */
 GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
     uint64_t small = gproji_pass_bytes(stream, gproji_comes_in(stream) ? 0 : gproji_small_byte(*value), 1);
-    double passed = ((double)(int32_t)small - GPROJI_SMALL_MOST) / 8;
+    double passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
