@@ -1122,6 +1122,35 @@ static int32_t curve_polyline(const gproj_mesh *file) {
     return file->polyline_count > 0 && file->loop_count == 0 ? 0 : -1;
 }
 
+/* Makes curves of a mesh's polylines, else of its boundary loops; the mesh's own loops for `loops`. */
+static bool add_curves(tool *t, const gproj_mesh *mesh, bool loops, const char *path) {
+    int32_t count = loops || mesh->polyline_count == 0 ? mesh->loop_count : mesh->polyline_count, i;
+    gproj_curve **more =
+        (gproj_curve **)realloc(t->curve, (size_t)(t->curve_count + count + 1) * sizeof(gproj_curve *));
+    gproj_error error;
+    if (!more) return fail_memory(t);
+    t->curve = more;
+    if (count == 0) return fail(t, EXIT_REFUSED, "%s: there is no curve: neither polylines nor a boundary", path);
+    for (i = 0; i < count; ++i) {
+        gproj_curve *curve = loops || mesh->polyline_count == 0 ? gproj_curve_from_loop(mesh, i, &t->host, &error)
+                                                                : gproj_curve_from_polyline(mesh, i, &t->host, &error);
+        if (!curve) return fail_library(t, path, &error);
+        t->curve[t->curve_count++] = curve;
+    }
+    return true;
+}
+
+/* The curve of first..last-1 that is nearest to a point. */
+static int32_t nearest_curve(const tool *t, int32_t first, int32_t last, const double *point, double *distance) {
+    int32_t i, best = first;
+    *distance = INFINITY;
+    for (i = first; i < last; ++i) {
+        double d = gproj_curve_closest(t->curve[i], point).distance;
+        if (d < *distance) *distance = d, best = i;
+    }
+    return best;
+}
+
 /* The points of the curve in a file: of a polyline, its first boundary loop, or all vertices. Their number. */
 static int32_t take_curve(const gproj_mesh *file, double *point) {
     int32_t count = 0, k, first, h, polyline = curve_polyline(file);
@@ -1177,24 +1206,14 @@ static bool subdivide(tool *t) {
     return t->mesh || fail_library(t, t->input, &error);
 }
 
-/* The vertex that is farthest from the boundary; -1 where there is none. */
-static int32_t innermost_vertex(const gproj_mesh *mesh) {
-    int32_t best = -1, v, l, h;
-    double farthest = 0;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        const double *p = mesh->position + 3 * (size_t)v, *q;
-        double nearest = INFINITY;
-        if (mesh->vertex_halfedge[v] < 0) continue;
-        for (l = 0; l < mesh->loop_count && nearest > farthest; ++l) {
-            h = mesh->loop_halfedge[l];
-            do {
-                q = mesh->position + 3 * (size_t)mesh->origin[h];
-                nearest = fmin(nearest, (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
-                                            (p[2] - q[2]) * (p[2] - q[2]));
-                h = mesh->next[h];
-            } while (h != mesh->loop_halfedge[l] && nearest > farthest);
-        }
-        if (nearest > farthest && nearest < INFINITY) farthest = nearest, best = v;
+/* The vertex inside that is farthest from the boundary, whose loops are the curves from `first` on; -1: there is none. */
+static int32_t innermost_vertex(const tool *t, int32_t first) {
+    int32_t best = -1, v;
+    double farthest = 0, distance;
+    for (v = 0; v < t->mesh->vertex_count; ++v) {
+        if (t->mesh->vertex_halfedge[v] < 0 || gproj_mesh_is_boundary_vertex(t->mesh, v)) continue;
+        nearest_curve(t, first, t->curve_count, t->mesh->position + 3 * (size_t)v, &distance);
+        if (distance > farthest && distance < INFINITY) farthest = distance, best = v;
     }
     return best;
 }
@@ -1202,10 +1221,12 @@ static int32_t innermost_vertex(const gproj_mesh *mesh) {
 /* An auxiliary projection: one vertex goes up, the boundary stays, and fairness guides the others. Closeness only decides
    what fairness leaves open; what has to hold is linear, so few iterations do. */
 static bool lift(tool *t) {
-    int32_t vertex = innermost_vertex(t->mesh);
+    int32_t first = t->curve_count, vertex = -1;
     gproj_form *form;
     gproj_result result;
     double target[3];
+    if (t->mesh->loop_count > 0 && !add_curves(t, t->mesh, true, t->input)) return false;
+    if (t->mesh->loop_count > 0) vertex = innermost_vertex(t, first);
     if (vertex < 0) return fail(t, EXIT_REFUSED, "%s: --lift needs a boundary, and vertices inside", t->input);
     memcpy(target, t->mesh->position + 3 * (size_t)vertex, sizeof target);
     target[2] += t->lift;
@@ -1355,35 +1376,6 @@ static bool add_moves(tool *t) {
     }
     free(vertex), free(place);
     return t->exit_code == 0;
-}
-
-/* Makes curves of a mesh's polylines, else of its boundary loops; the mesh's own loops for `loops`. */
-static bool add_curves(tool *t, const gproj_mesh *mesh, bool loops, const char *path) {
-    int32_t count = loops || mesh->polyline_count == 0 ? mesh->loop_count : mesh->polyline_count, i;
-    gproj_curve **more =
-        (gproj_curve **)realloc(t->curve, (size_t)(t->curve_count + count + 1) * sizeof(gproj_curve *));
-    gproj_error error;
-    if (!more) return fail_memory(t);
-    t->curve = more;
-    if (count == 0) return fail(t, EXIT_REFUSED, "%s: there is no curve: neither polylines nor a boundary", path);
-    for (i = 0; i < count; ++i) {
-        gproj_curve *curve = loops || mesh->polyline_count == 0 ? gproj_curve_from_loop(mesh, i, &t->host, &error)
-                                                                : gproj_curve_from_polyline(mesh, i, &t->host, &error);
-        if (!curve) return fail_library(t, path, &error);
-        t->curve[t->curve_count++] = curve;
-    }
-    return true;
-}
-
-/* The curve of first..last-1 that is nearest to a point. */
-static int32_t nearest_curve(const tool *t, int32_t first, int32_t last, const double *point, double *distance) {
-    int32_t i, best = first;
-    *distance = INFINITY;
-    for (i = first; i < last; ++i) {
-        double d = gproj_curve_closest(t->curve[i], point).distance;
-        if (d < *distance) *distance = d, best = i;
-    }
-    return best;
 }
 
 /* Every boundary vertex glides along the nearest of the curves from `first` on; corners that lie on it stay. */
