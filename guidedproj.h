@@ -83,7 +83,7 @@
        >>parallel       the host's threads
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
-       >>dense          panels and update matrices
+       >>dense          panels, update matrices, small matrices
        >>ordering       condensation, minimum degree
        >>dissection     nested dissection
        >>symbolic       elimination tree, column counts, supernodes
@@ -2813,9 +2813,9 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 }
 
 /* ============================================================================================================
-   >>dense   Dense parts of the Cholesky factorisation: panels, update matrices. Uses platform, parallel, kernels.
+   >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel, kernels.
 
-   All matrices are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
+   All matrices but the small ones are column-major. A front's panel has w pivot columns and its rows in "storage rows": first q empty
    ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
    a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
    rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns (the first block may
@@ -3148,6 +3148,36 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
         start = at == 0 ? 0 : at - shift;
         panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
                                  panel->inverse + start, skip, z + at);
+    }
+}
+
+/* -- small matrices, by rows -- */
+
+/* L L' = M in place. No pivot is less than `floor`, which is 1 for I plus a positive semidefinite matrix; where rounding
+   says so (columns that depend on each other), the pivot is what rounding lets be known. */
+GPROJI_INTERNAL void gproji_small_factor(double *m, int32_t n, int32_t stride, double floor) {
+    int32_t i, j, k;
+    for (i = 0; i < n; ++i) {
+        double *row = m + (int64_t)i * stride, least = gproji_fmax(floor, 8 * DBL_EPSILON * row[i]);
+        for (j = 0; j <= i; ++j) {
+            const double *other = m + (int64_t)j * stride;
+            double sum = row[j];
+            for (k = 0; k < j; ++k) sum -= row[k] * other[k];
+            row[j] = i == j ? sqrt(gproji_fmax(sum, least)) : sum / other[j];
+        }
+    }
+}
+
+/* b = (L L')^-1 b */
+GPROJI_INTERNAL void gproji_small_solve(const double *m, int32_t n, int32_t stride, double *b) {
+    int32_t i, k;
+    for (i = 0; i < n; ++i) {
+        for (k = 0; k < i; ++k) b[i] -= m[(int64_t)i * stride + k] * b[k];
+        b[i] /= m[(int64_t)i * stride + i];
+    }
+    for (i = n - 1; i >= 0; --i) {
+        for (k = i + 1; k < n; ++k) b[i] -= m[(int64_t)k * stride + i] * b[k];
+        b[i] /= m[(int64_t)i * stride + i];
     }
 }
 
@@ -8172,34 +8202,6 @@ GPROJI_INTERNAL void gproji_wide_ahead(gproj_system *s, const gproji_group *g, c
     s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
 }
 
-/* Factors the small matrix in place by rows: L L' = M. No pivot is less than `floor`, which is 1 for I plus a positive
-   semidefinite matrix; where rounding says so (rows that depend on each other), the pivot is what rounding lets be known.
-   */
-GPROJI_INTERNAL void gproji_wide_factor(double *m, int32_t n, int32_t stride, double floor) {
-    int32_t i, j, k;
-    for (i = 0; i < n; ++i) {
-        double *row = m + (int64_t)i * stride, least = gproji_fmax(floor, 8 * DBL_EPSILON * row[i]);
-        for (j = 0; j <= i; ++j) {
-            const double *other = m + (int64_t)j * stride;
-            double sum = row[j];
-            for (k = 0; k < j; ++k) sum -= row[k] * other[k];
-            row[j] = i == j ? sqrt(gproji_fmax(sum, least)) : sum / other[j];
-        }
-    }
-}
-
-GPROJI_INTERNAL void gproji_wide_solve(const double *m, int32_t n, int32_t stride, double *b) {
-    int32_t i, k;
-    for (i = 0; i < n; ++i) {
-        for (k = 0; k < i; ++k) b[i] -= m[(int64_t)i * stride + k] * b[k];
-        b[i] /= m[(int64_t)i * stride + i];
-    }
-    for (i = n - 1; i >= 0; --i) {
-        for (k = i + 1; k < n; ++k) b[i] -= m[(int64_t)k * stride + i] * b[k];
-        b[i] /= m[(int64_t)i * stride + i];
-    }
-}
-
 /* I + Y'Y, factored. `wide`: columns of Y. */
 GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
     int32_t i, k;
@@ -8207,7 +8209,7 @@ GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
         for (k = 0; k <= i; ++k)
             s->wide_matrix[(int64_t)i * s->wide_count + k] =
                 gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), (size_t)s->variable_count) + (k == i);
-    gproji_wide_factor(s->wide_matrix, wide, s->wide_count, 1);
+    gproji_small_factor(s->wide_matrix, wide, s->wide_count, 1);
 }
 
 /* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
@@ -8216,7 +8218,7 @@ GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double
     double parts = sqrt(gproji_dot(z, z, n));
     int32_t k;
     for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_dot(gproji_wide_side(s, k), z, n);
-    gproji_wide_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    gproji_small_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
     for (k = 0; k < wide; ++k) {
         const double *side = gproji_wide_side(s, k);
         double m = s->wide_vector[k];
@@ -20274,7 +20276,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 
 /* ============================================================================================================
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
-   vector, cholesky, system, loop, mesh, form, catalogue, guard, solve, state.
+   vector, dense, cholesky, system, loop, mesh, form, catalogue, guard, solve, state.
 
    Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
    in the tangent space that a force f at the handles' vertices brings about is its projection,
@@ -20509,10 +20511,10 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
         for (j = 0; j <= i; ++j)
             drag->work[(size_t)i * (size_t)rank + (size_t)j] =
                 gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
-    gproji_wide_factor(drag->work, rank, rank, DBL_MIN);
+    gproji_small_factor(drag->work, rank, rank, DBL_MIN);
     for (j = 0; j < m; ++j) {
         for (i = 0; i < rank; ++i) column[i] = drag->lift[(size_t)m * (size_t)i + (size_t)j];
-        gproji_wide_solve(drag->work, rank, rank, column);
+        gproji_small_solve(drag->work, rank, rank, column);
         for (i = 0; i < rank; ++i) drag->pull[(size_t)m * (size_t)i + (size_t)j] = column[i];
     }
 }
