@@ -2815,13 +2815,13 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 /* ============================================================================================================
    >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel, kernels.
 
-   All matrices but the small ones are column-major. A front's panel has w pivot columns and its rows in "storage rows":
-   first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the rows below begin at
-   a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block t has the storage
-   rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns (the first block may
-   have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every tile is whole and
-   aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is
-   never read.
+   All matrices but the small ones are column-major. A front's panel has w pivot columns and its rows in "storage
+   rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
+   rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
+   t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
+   (the first block may have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every
+   tile is whole and aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a
+   diagonal tile is never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
