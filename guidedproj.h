@@ -90,6 +90,7 @@
        >>cholesky       multifrontal factorisation, solves
        >>least-squares  linear least squares with bounds
        >>system         rows, groups, the matrix of the normal equations
+       >>schur          steps by multipliers, compilation
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
        >>text           OBJ and OFF
@@ -6950,6 +6951,7 @@ typedef struct gproji_group {
     gproj_refresh refresh;
     void *refresh_user;
     double weight; /* in the present iteration */
+    bool idle;     /* whenever the rows were compiled, its schedule was without weight */
     bool guard;    /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;  /* of the guard: a step may violate its rows by so much */
 
@@ -6979,6 +6981,39 @@ typedef struct gproji_hinge {
     double w2, phi, h, q;
 } gproji_hinge;
 
+/* Steps by multipliers: see >>schur. `nodes` are the system's. */
+typedef struct gproji_schur {
+    gproji_pool pool;
+    bool on;
+    bool passed_over; /* it would be on, but the matrix of all variables was asked for */
+    int32_t elements;
+    gproji_row_name *row; /* rows by elements, then those of single nodes by nodes */
+    int64_t *row_start;   /* elements + 1: the rows of each element in `row` */
+    int64_t *own_start;   /* nodes + 1: the rows of each node in `row` */
+    int32_t *auxiliary;   /* elements: the node of its auxiliary variables; -1: none */
+    uint8_t *closes;      /* elements: the gradients of its rows add up to nothing at its nodes */
+    int32_t *first;       /* elements + 1: the first multiplier of each */
+    int64_t *link_start;  /* elements + 1: the nodes that each joins are link_node[link_start[e]..] */
+    int32_t *link_node;
+    int64_t *link_value;  /* where in `value` the element's block of W for that node begins: multipliers x its size */
+    int64_t *entry_start; /* nodes + 1: the multipliers that meet at each node, in the order of their elimination */
+    int32_t *entry;
+    int32_t *entry_at;    /* their storage rows in the node's front */
+    int64_t *value_start; /* nodes + 1: where in `value` the node's rows of W begin: entries x its size */
+    int64_t *root_start;  /* nodes: where in `root` its L^-1 begins: size x size */
+    int64_t *front_start; /* fronts + 1: the nodes of front f are front_node[front_start[f]..] */
+    int32_t *front_node;
+    double *value;    /* W */
+    double *root;     /* L^-1, D = L L' */
+    double *side;     /* 1 + wide_count columns: r + W b, and W U; then z and Y */
+    double *share;    /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
+    double *metric;   /* nodes: 1 and the sum of these */
+    double *triangle; /* elements x triangle_size: R */
+    double *work;     /* chunks x most */
+    int32_t chunks, wide, triangle_size;
+    int64_t most; /* what one element needs of `work` */
+} gproji_schur;
+
 struct gproj_system {
     gproji_heap own;
     gproj_error error;
@@ -6993,8 +7028,9 @@ struct gproj_system {
     void *refuse_user;
     double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
     double *x;
-    int32_t *block; /* of each variable, the first variable of its block */
-    size_t x_capacity, block_capacity;
+    int32_t *block;     /* of each variable, the first variable of its block */
+    uint8_t *auxiliary; /* of each variable: is it what the others make of it, and may move as far as suits them? */
+    size_t x_capacity, block_capacity, auxiliary_capacity;
 
     gproji_group *group;
     int32_t group_count;
@@ -7022,6 +7058,7 @@ struct gproj_system {
     size_t wide_taken;   /* wide_count when the three were taken */
     gproji_hinge *hinge; /* the bounds' rows that a step may violate */
     size_t hinge_taken;  /* as many as all bounds have rows */
+    gproji_schur schur;
 };
 
 /* -- life and building -- */
@@ -7030,6 +7067,7 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system));
     if (!s) return NULL;
     gproji_error_clear(&s->error);
+    gproji_pool_start(&s->schur.pool, &s->own);
     if (host) s->host = *host;
     s->cholesky = gproj_cholesky_create(host);
     if (!s->cholesky) {
@@ -7065,6 +7103,11 @@ GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
     g->multiplier = NULL;
 }
 
+GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
+    gproji_pool_give_all(&s->schur.pool);
+    s->schur.on = false;
+}
+
 /* Ends the compiled state and gives its memory back. */
 GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     size_t n = (size_t)s->compiled_variables;
@@ -7090,6 +7133,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     s->sides = s->wide_matrix = s->wide_vector = NULL;
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
+    gproji_schur_forget(s);
     s->compiled = false;
 }
 
@@ -7106,6 +7150,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
     gproji_give(&s->own, s->x, s->x_capacity, sizeof *s->x);
     gproji_give(&s->own, s->block, s->block_capacity, sizeof *s->block);
+    gproji_give(&s->own, s->auxiliary, s->auxiliary_capacity, sizeof *s->auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
 }
@@ -7142,11 +7187,13 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 /* Makes room for so many more variables. */
 GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->block;
+    void *x = s->x, *block = s->block, *auxiliary = s->auxiliary;
     bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
     s->x = (double *)x;
     enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
     s->block = (int32_t *)block;
+    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->auxiliary_capacity, wanted, sizeof *s->auxiliary);
+    s->auxiliary = (uint8_t *)auxiliary;
     return enough;
 }
 
@@ -7177,10 +7224,16 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
         s->block[first + i] = first + i - i % block;
+        s->auxiliary[first + i] = 0;
     }
     gproji_system_forget(s);
     s->variable_count += count;
     return first;
+}
+
+/* Says that these variables are auxiliary. */
+GPROJI_INTERNAL void gproji_set_auxiliary(gproj_system *s, int32_t first, int32_t count) {
+    memset(s->auxiliary + first, 1, (size_t)count);
 }
 
 GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s ? s->variable_count : 0; }
@@ -7245,6 +7298,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     g->schedule = group->schedule;
     g->refresh = group->refresh;
     g->refresh_user = group->refresh_user;
+    g->idle = true;
     gproji_system_forget(s);
     return s->group_count++;
 }
@@ -7401,6 +7455,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
+    if (coefficients && !g->refresh && s->schur.on && !s->solving)
+        gproji_system_forget(s); /* rows that close might not */
     for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
     g->row[row].constant = constant;
     s->changed = true;
@@ -7644,23 +7700,38 @@ typedef struct gproji_meetings {
     size_t room;       /* of `adjacent` */
 } gproji_meetings;
 
-/* The graph from the incidence. mark: node_count entries. */
-GPROJI_INTERNAL bool gproji_find_meetings(gproj_system *s, const gproji_incidence *in, int64_t *mark,
+/* Room for the graph of so many nodes; false: none, and nothing is taken. */
+GPROJI_INTERNAL void gproji_give_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
+    gproji_give(heap, graph->start, nodes + 1, sizeof *graph->start);
+    gproji_give(heap, graph->size, nodes, sizeof *graph->size);
+    gproji_give(heap, graph->adjacent, graph->room, sizeof *graph->adjacent);
+}
+
+GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
+    memset(graph, 0, sizeof *graph);
+    graph->start = (int64_t *)gproji_take(heap, nodes + 1, sizeof *graph->start);
+    graph->size = (int32_t *)gproji_take(heap, nodes, sizeof *graph->size);
+    if (graph->start && graph->size) return true;
+    gproji_give_meetings(heap, graph, nodes);
+    return false;
+}
+
+/* The graph from the incidence, but for the nodes' sizes. mark: node_count entries. */
+GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, int64_t *mark,
                                           gproji_meetings *graph) {
     int64_t filled = 0, e, f;
     int32_t v;
-    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
-    for (v = 0; v < s->node_count; ++v) {
+    for (v = 0; v < in->node_count; ++v) mark[v] = -1;
+    for (v = 0; v < in->node_count; ++v) {
         size_t most = (size_t)filled; /* with all of the node's rows, as if they had nothing in common */
         void *room = graph->adjacent;
         bool enough;
         for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
             most += (size_t)(in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]]);
-        enough = gproji_reserve(&s->own, &room, &graph->room, most, sizeof *graph->adjacent);
+        enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
         graph->adjacent = (int32_t *)room;
         if (!enough) return false;
         graph->start[v] = filled;
-        graph->size[v] = s->node_first[v + 1] - s->node_first[v];
         mark[v] = v;
         for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
             for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
@@ -7670,38 +7741,34 @@ GPROJI_INTERNAL bool gproji_find_meetings(gproj_system *s, const gproji_incidenc
                 graph->adjacent[filled++] = other;
             }
     }
-    graph->start[s->node_count] = filled;
+    graph->start[in->node_count] = filled;
     return true;
 }
 
-/* Step 3: the graph of the nodes. */
+/* Step 4: the graph of the nodes. */
 GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
     gproji_incidence in;
     size_t nodes = (size_t)s->node_count;
     int64_t *mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
     bool done;
+    int32_t v;
     memset(&in, 0, sizeof in);
-    graph->start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *graph->start);
-    graph->size = (int32_t *)gproji_take(&s->own, nodes, sizeof *graph->size);
-    done = mark && graph->start && graph->size && gproji_incidence_take(s, &in, mark) &&
-           gproji_find_meetings(s, &in, mark, graph);
+    for (v = 0; v < s->node_count; ++v) graph->size[v] = s->node_first[v + 1] - s->node_first[v];
+    done = mark && gproji_incidence_take(s, &in, mark) && gproji_find_meetings(&s->own, &in, mark, graph);
     gproji_incidence_give(&s->own, &in);
     gproji_give(&s->own, mark, nodes, sizeof *mark);
     return done;
 }
 
-/* Step 4: its analysis for the factorisation. */
+/* Its analysis for the factorisation. */
 GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     gproji_meetings graph;
-    size_t nodes = (size_t)s->node_count;
-    memset(&graph, 0, sizeof graph);
+    if (!gproji_take_meetings(&s->own, &graph, (size_t)s->node_count)) return code;
     if (gproji_compile_graph(s, &graph))
         code =
             gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, graph.size, graph.start, graph.adjacent, NULL);
-    gproji_give(&s->own, graph.start, nodes + 1, sizeof *graph.start);
-    gproji_give(&s->own, graph.size, nodes, sizeof *graph.size);
-    gproji_give(&s->own, graph.adjacent, graph.room, sizeof *graph.adjacent);
+    gproji_give_meetings(&s->own, &graph, (size_t)s->node_count);
     return code;
 }
 
@@ -7805,20 +7872,24 @@ GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     }
 }
 
-GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
-    const int32_t *permutation = s->cholesky->permutation;
-    size_t n = (size_t)s->variable_count;
+GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     int32_t i;
-    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
-    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
-    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
-    if (!placing->column || !placing->where || !placing->front) return false;
-    gproji_invert(s->variable_count, permutation, placing->column);
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
         if (!g->local_at) return false;
     }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
+    const int32_t *permutation = s->cholesky->permutation;
+    size_t n = (size_t)s->variable_count;
+    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
+    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
+    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
+    if (!placing->column || !placing->where || !placing->front || !gproji_take_local_places(s)) return false;
+    gproji_invert(s->variable_count, permutation, placing->column);
     s->front_count = (size_t)s->cholesky->symbolic.fronts;
     s->front_row_room = placing->rows;
     s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
@@ -7917,32 +7988,10 @@ GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     return done;
 }
 
-/* All steps. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s) {
-    gproj_code code;
-    if (!gproji_compile_variables(s)) return GPROJ_ERROR_MEMORY;
-    code = gproji_compile_analysis(s);
-    if (code) return code;
-    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-    if (!gproji_compile_places(s) || !gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) ||
-        !gproji_take_hinges(s) || !gproji_cholesky_take_numeric(s->cholesky))
-        return GPROJ_ERROR_MEMORY;
-    return GPROJ_OK;
-}
-
-/* Makes the rows ready for iterations; nothing to do when they are. */
-GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s) {
-    gproj_code code;
-    if (s->compiled) return GPROJ_OK;
-    code = gproji_compile_steps(s);
-    if (code == GPROJ_OK) {
-        s->compiled = true;
-        return code;
-    }
-    gproji_system_forget(s);
-    if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
-        return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
-    return gproji_fail_memory(&s->error);
+/* Steps 4 and 5, for the matrix of all variables. */
+GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
+    gproj_code code = gproji_compile_analysis(s);
+    return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
 /* -- evaluation -- */
@@ -8301,8 +8350,967 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
 }
 
 /* ============================================================================================================
+   >>schur   Steps by multipliers, where these are the smaller system; compilation. Uses platform, memory, error,
+   parallel, vector, kernels, dense, symbolic, cholesky, system.
+
+   Where only constraints act there are fewer of them than variables, and it pays to solve for their multipliers. Rows
+   with a common auxiliary node (the normal of a face) are an element, with the other rows of that face; any other row
+   that joins nodes is one by itself. eps does not act on auxiliary variables, so those of an element are whatever suits
+   its rows best: of the rows w (phi + G dv + N dn) with other variables v and auxiliary ones n, an orthonormal basis Q of
+   what is orthogonal to the columns of w N leaves
+       r + C dv,   r = Q'w phi,   C = Q'w G.
+   A planar quad has five rows and a normal of three components, and the rows of its edges add up to nothing: one is left.
+   Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step makes
+       |r + C dv|^2 + dv'D dv + 2 dv'sum w^2 phi g
+   smallest. With D = L L', u = L'dv, W = C L'^-1, b = -L^-1 sum w^2 phi g that is
+       u = b - W'y,   (I + W W') y = r + W b,                                                                      (1)
+   with one unknown a quad instead of three a vertex and three a normal (range space method: Benzi, Golub, Liesen,
+   Numerical solution of saddle point problems, 2005). Then R'R dn = - N'w^2 (phi + G dv), where R is that of w N = Q R.
+   Wide rows are further multipliers m, with U = L^-1 (w g_1, w g_2, ...):
+       u = b - W'y - U m,   m = w phi + U'u;
+   they border the matrix of (1), and the Schur complement that is left for m is at least I.
+
+   E is not the identity: without eps on their normals, faces that become small would turn as they please. |R^-1|, with
+   weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices. So E is 1.1 to 1.5 where
+   edges have the length 1, and large at faces that are small or nearly straight.
+
+   The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
+   takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
+   (gproji_wake_groups). Solves for the nearest point and drags always take the matrix of all variables.
+
+   Invariant: with schur.on the factorisation's variables are the multipliers, and gproji_group.local_at says where a local
+   stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
+   (l + 1) GPROJI_BLOCK_MAX + k for the k-th of the element's l-th node; in a row with a single node, k. */
+
+static const double gproji_schur_most = 0.7;  /* so many multipliers a variable at most */
+static const double gproji_schur_share = 0.1; /* what |R^-1|^2 is multiplied by */
+enum {
+    GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
+    GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
+    GPROJI_ELEMENTS_PER_TASK = 512 /* nodes or elements */
+};
+
+/* -- compilation -- */
+
+enum {
+    GPROJI_NOWHERE = INT32_MIN
+};
+
+/* The entry of a row of a face, which joins nodes, in of_face; NULL: it is no such row. */
+GPROJI_INTERNAL int32_t *gproji_face_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                             int32_t *of_face) {
+    return g->place == GPROJ_PLACE_FACE && row->element >= 0 && row->element < s->node_count ? of_face + row->element
+                                                                                             : NULL;
+}
+
+/* Where a row belongs: its element, or -1 - node for the only node that it has, or GPROJI_NOWHERE. An auxiliary node makes
+   an element of its rows, and takes in other rows of the same face. element_of: of auxiliary nodes, of_face: of faces, -1
+   at first. False: it joins auxiliary variables of several elements. */
+GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                          int32_t *element_of, int32_t *of_face, int32_t *belongs) {
+    int32_t auxiliary = -1, kept = -1, *own;
+    bool many = false;
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) {
+        int32_t node = s->node[g->local_variable[l]];
+        int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
+        if (*seen >= 0 && *seen != node) {
+            if (seen == &auxiliary) return false;
+            many = true;
+        }
+        *seen = node;
+    }
+    *belongs = kept >= 0 && !g->idle ? -1 - kept : GPROJI_NOWHERE;
+    if (g->idle) return true;
+    if (row->wide) {
+        *belongs = GPROJI_NOWHERE;
+        return auxiliary < 0;
+    }
+    if (auxiliary < 0 && !many) return true;
+    own = auxiliary >= 0 ? &element_of[auxiliary] : gproji_face_element(s, g, row, of_face);
+    *belongs = own && *own >= 0 ? *own : s->schur.elements++;
+    if (own) *own = *belongs;
+    own = auxiliary >= 0 ? gproji_face_element(s, g, row, of_face) : NULL;
+    if (own) *own = *belongs;
+    return true;
+}
+
+/* The element or node of all rows, group by group. Groups that are without weight have none. False: nothing is gained. */
+GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, int32_t *element_of, int32_t *of_face, int32_t *belongs) {
+    int32_t i, r, v, kept = 0;
+    for (v = 0; v < s->node_count; ++v) element_of[v] = of_face[v] = -1;
+    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
+    s->schur.elements = 0;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r)
+            if (!gproji_schur_belongs(s, g, &g->row[r], element_of, of_face, belongs++) ||
+                s->schur.elements > gproji_schur_most * kept)
+                return false;
+    }
+    return s->schur.elements > 0;
+}
+
+/* Sorts the rows by their elements, and behind them those of single nodes by these. The starts have been cleared. */
+GPROJI_INTERNAL void gproji_schur_sort_rows(gproj_system *s, const int32_t *belongs) {
+    gproji_schur *d = &s->schur;
+    const int32_t *to = belongs;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++to) {
+            if (*to >= 0) d->row_start[*to + 2]++;
+            if (*to < 0 && *to != GPROJI_NOWHERE) d->own_start[1 - *to]++;
+        }
+    for (i = 0; i < d->elements; ++i) d->row_start[i + 2] += d->row_start[i + 1];
+    d->own_start[1] = d->row_start[d->elements + 1];
+    for (i = 0; i < s->node_count; ++i) d->own_start[i + 2] += d->own_start[i + 1];
+    d->own_start[0] = d->own_start[1];
+    for (i = 0, to = belongs; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++to) {
+            gproji_row_name name;
+            name.group = i, name.row = r;
+            if (*to >= 0) d->row[d->row_start[*to + 1]++] = name;
+            if (*to < 0 && *to != GPROJI_NOWHERE) d->row[d->own_start[-*to]++] = name;
+        }
+}
+
+/* The variable of a term that is no auxiliary one, or -1; *factor: what the term adds to the gradient there when the k-th
+   variable of a block is 1 + k / 3. */
+GPROJI_INTERNAL int32_t gproji_schur_kept(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                          const gproj_term *term, double *factor) {
+    int32_t first = gproji_variable_of(g, row, term->i), second = gproji_variable_of(g, row, term->j);
+    bool swap = second >= 0 && s->auxiliary[first];
+    int32_t i = swap ? second : first, j = swap ? first : second;
+    *factor = j < 0 ? term->a : term->a * (1 + (j - s->block[j]) / 3.0);
+    return s->auxiliary[i] ? -1 : i;
+}
+
+GPROJI_INTERNAL bool gproji_has_auxiliary(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l)
+        if (s->auxiliary[g->local_variable[l]]) return true;
+    return false;
+}
+
+/* Do the gradients of an element's rows with auxiliary variables add up to nothing at its nodes, whatever these variables
+   are? `sum`: of each variable, zeros on entry and on exit. Not where such rows are refreshed, and may change. */
+GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element, double *sum) {
+    const gproji_schur *d = &s->schur;
+    bool closes = d->row_start[element + 1] - d->row_start[element] > 1;
+    int64_t k, t;
+    int32_t pass;
+    for (pass = 0; pass < 3; ++pass)
+        for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k) {
+            const gproji_group *g = &s->group[d->row[k].group];
+            const gproji_row *row = &g->row[d->row[k].row];
+            for (t = row->term; t < row[1].term && gproji_has_auxiliary(s, g, row); ++t) {
+                double factor;
+                int32_t kept = gproji_schur_kept(s, g, row, &g->term[t], &factor);
+                if (kept < 0) continue;
+                if (pass == 0) sum[kept] += factor;
+                if (pass == 1 && (g->refresh || sum[kept] != 0)) closes = false;
+                if (pass == 2) sum[kept] = 0;
+            }
+        }
+    return closes;
+}
+
+/* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node; links:
+   NULL to count only. */
+GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark, int32_t *links) {
+    gproji_schur *d = &s->schur;
+    int64_t k, l, count = 0;
+    int32_t e, v;
+    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
+    for (e = 0; e < d->elements; ++e) {
+        d->link_start[e] = count;
+        d->auxiliary[e] = -1;
+        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
+            const gproji_group *g = &s->group[d->row[k].group];
+            const gproji_row *row = &g->row[d->row[k].row];
+            for (l = row->local; l < row[1].local; ++l) {
+                int32_t variable = g->local_variable[l], node = s->node[variable];
+                if (s->auxiliary[variable]) d->auxiliary[e] = node;
+                if (s->auxiliary[variable] || mark[node] == e) continue;
+                mark[node] = e;
+                if (links) links[count] = node;
+                ++count;
+            }
+        }
+    }
+    d->link_start[d->elements] = count;
+    return count;
+}
+
+/* What the columns of N, and that of the rows' sum where it is nothing, take from the rows of an element. */
+GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
+    int32_t node = s->schur.auxiliary[element];
+    return s->schur.closes[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
+}
+
+/* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
+   to pay. sum: work, of each variable; met: work, of each node. */
+GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, double *sum, int32_t *met) {
+    gproji_schur *d = &s->schur;
+    int32_t e, v, most = 0, kept = 0;
+    int64_t l;
+    for (v = 0; v < s->variable_count; ++v) {
+        kept += !s->auxiliary[v];
+        sum[v] = 0;
+    }
+    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    d->first[0] = 0;
+    for (e = 0; e < d->elements; ++e) {
+        int32_t left;
+        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e, sum);
+        left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
+        if (left < 1 || left > gproji_schur_most * kept - d->first[e]) return false;
+        d->first[e + 1] = d->first[e] + left;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) most = gproji_max(most, met[d->link_node[l]] += left);
+    }
+    return most <= GPROJI_SCHUR_MEETINGS;
+}
+
+/* Sorts rows, and finds what the elements join and leave. False: no memory, or d->on is false and it does not pay. */
+GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
+    gproji_schur *d = &s->schur;
+    double *sum;
+    int64_t elements = d->elements, nodes = s->node_count;
+    d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
+    d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
+    d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
+    d->auxiliary = (int32_t *)gproji_pool_take(&d->pool, elements, sizeof(int32_t));
+    d->closes = (uint8_t *)gproji_pool_take(&d->pool, elements, 1);
+    d->first = (int32_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int32_t));
+    d->link_start = (int64_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int64_t));
+    if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->closes || !d->first || !d->link_start)
+        return false;
+    gproji_schur_sort_rows(s, belongs);
+    d->link_node = (int32_t *)gproji_pool_take(&d->pool, gproji_schur_scan(s, mark, NULL), sizeof(int32_t));
+    sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *sum);
+    if (d->link_node && sum) {
+        gproji_schur_scan(s, mark, d->link_node);
+        d->on = gproji_schur_number(s, sum, mark);
+    }
+    gproji_give(&s->own, sum, (size_t)s->variable_count, sizeof *sum);
+    return d->link_node && sum;
+}
+
+/* Step 3 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
+GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
+    size_t nodes = (size_t)s->node_count, rows = (size_t)gproji_structure_of(s).rows;
+    int32_t *mark = (int32_t *)gproji_take(&s->own, 2 * nodes, sizeof *mark);
+    int32_t *belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
+    bool enough = mark && belongs;
+    if (enough && gproji_schur_classify(s, mark, mark + nodes, belongs))
+        enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+    gproji_give(&s->own, mark, 2 * nodes, sizeof *mark);
+    gproji_give(&s->own, belongs, rows, sizeof *belongs);
+    if (!s->schur.on) gproji_schur_forget(s);
+    return enough;
+}
+
+/* The elements at each node: the rows of an incidence whose nodes are the elements. */
+GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *in) {
+    const gproji_schur *d = &s->schur;
+    int64_t links = d->link_start[d->elements], k;
+    int32_t v, e;
+    in->node_count = d->elements;
+    in->row_count = s->node_count;
+    in->row_room = (size_t)s->node_count + 2;
+    in->entry_room = in->node_entry_room = (size_t)links;
+    in->row_start = (int64_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
+    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
+    in->node_row = (int64_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
+    in->node_start = (int64_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
+    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start) return false;
+    for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
+    for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
+    for (e = 0; e < d->elements; ++e)
+        for (k = in->node_start[e] = d->link_start[e]; k < d->link_start[e + 1]; ++k) {
+            in->node_row[k] = d->link_node[k];
+            in->row_node[in->row_start[d->link_node[k] + 1]++] = e;
+        }
+    in->node_start[d->elements] = links;
+    return true;
+}
+
+/* Sorts the elements at each node by their elimination, and the nodes by the front of their first. */
+GPROJI_INTERNAL void gproji_schur_order(gproj_system *s, gproji_incidence *in) {
+    gproji_schur *d = &s->schur;
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t v, f;
+    int64_t a, b;
+    for (v = 0; v < s->node_count; ++v) {
+        int64_t begin = in->row_start[v], end = in->row_start[v + 1];
+        for (a = begin + 1; a < end; ++a) {
+            int32_t element = in->row_node[a];
+            for (b = a; b > begin && sy->place[in->row_node[b - 1]] > sy->place[element]; --b)
+                in->row_node[b] = in->row_node[b - 1];
+            in->row_node[b] = element;
+        }
+        if (begin < end) d->front_start[sy->front_of[sy->place[in->row_node[begin]]] + 2]++;
+    }
+    for (f = 0; f < sy->fronts; ++f) d->front_start[f + 2] += d->front_start[f + 1];
+    for (v = 0; v < s->node_count; ++v)
+        if (in->row_start[v] < in->row_start[v + 1])
+            d->front_node[d->front_start[sy->front_of[sy->place[in->row_node[in->row_start[v]]]] + 1]++] = v;
+}
+
+/* Where W has its blocks: node by node, in each the multipliers in the order of their elimination. */
+GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, const gproji_incidence *in) {
+    gproji_schur *d = &s->schur;
+    int64_t entry = 0, value = 0, a, l;
+    int32_t v, i;
+    for (v = 0; v < s->node_count; ++v) {
+        int32_t size = s->node_first[v + 1] - s->node_first[v];
+        d->entry_start[v] = entry, d->value_start[v] = value;
+        for (a = in->row_start[v]; a < in->row_start[v + 1]; ++a) {
+            int32_t e = in->row_node[a];
+            for (l = d->link_start[e]; d->link_node[l] != v; ++l) continue;
+            d->link_value[l] = value;
+            value += (int64_t)(d->first[e + 1] - d->first[e]) * size;
+            for (i = d->first[e]; i < d->first[e + 1]; ++i) d->entry[entry++] = i;
+        }
+    }
+    d->entry_start[v] = entry, d->value_start[v] = value;
+}
+
+/* The storage rows of the multipliers at each node, in its front. at: work, of each multiplier. */
+GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, int32_t *at) {
+    gproji_schur *d = &s->schur;
+    int32_t f;
+    int64_t k, i;
+    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
+        if (d->front_start[f] < d->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
+        for (k = d->front_start[f]; k < d->front_start[f + 1]; ++k)
+            for (i = d->entry_start[d->front_node[k]]; i < d->entry_start[d->front_node[k] + 1]; ++i)
+                d->entry_at[i] = at[d->entry[i]];
+    }
+}
+
+/* Where the locals of a row stand: `at` of their nodes, and which variable there. */
+GPROJI_INTERNAL void gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
+    gproji_group *g = &s->group[name.group];
+    const gproji_row *row = &g->row[name.row];
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) {
+        int32_t variable = g->local_variable[l], node = s->node[variable];
+        g->local_at[l] = at[node] + variable - s->node_first[node];
+    }
+}
+
+/* Where the locals of all rows stand: see the section's invariant. at: work, of each node. */
+GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
+    const gproji_schur *d = &s->schur;
+    int64_t k, l;
+    int32_t e;
+    memset(at, 0, (size_t)s->node_count * sizeof *at);
+    for (k = d->own_start[0]; k < d->own_start[s->node_count]; ++k) gproji_schur_place_row(s, d->row[k], at);
+    for (e = 0; e < d->elements; ++e) {
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
+            at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
+        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) gproji_schur_place_row(s, d->row[k], at);
+    }
+}
+
+/* Lets the terms of all rows name their locals. where: work, of each variable. */
+GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        for (r = 0; r < s->group[i].row_count; ++r) gproji_place_terms(&s->group[i], &s->group[i].row[r], where);
+        s->group[i].placed = true;
+    }
+}
+
+/* What the arrays need that depend on the analysis. */
+GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
+    gproji_schur *d = &s->schur;
+    gproji_pool *pool = &d->pool;
+    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries = 0, values = 0, roots = 0, l;
+    int32_t e, v, i;
+    d->most = d->triangle_size = 0;
+    for (e = 0; e < d->elements; ++e) {
+        int64_t rows = d->row_start[e + 1] - d->row_start[e], columns = gproji_schur_columns(s, e);
+        int64_t most =
+            rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * (d->link_start[e + 1] - d->link_start[e]);
+        int32_t size = (int32_t)columns - d->closes[e];
+        d->most = d->most > most ? d->most : most;
+        d->triangle_size = gproji_max(d->triangle_size, size * size);
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            v = d->link_node[l];
+            entries += d->first[e + 1] - d->first[e];
+            values += (int64_t)(d->first[e + 1] - d->first[e]) * (s->node_first[v + 1] - s->node_first[v]);
+        }
+    }
+    d->root_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+    for (i = 0; d->root_start && i < nodes; ++i) {
+        d->root_start[i] = roots;
+        roots += (int64_t)(s->node_first[i + 1] - s->node_first[i]) * (s->node_first[i + 1] - s->node_first[i]);
+    }
+    d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
+    d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
+    d->entry_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+    d->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+    d->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    d->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    d->front_start =
+        (int64_t *)gproji_pool_take_zeroed(pool, (int64_t)s->cholesky->symbolic.fronts + 2, sizeof(int64_t));
+    d->front_node = (int32_t *)gproji_pool_take(pool, nodes, sizeof(int32_t));
+    d->value = (double *)gproji_pool_take(pool, values, sizeof(double));
+    d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
+    d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * d->first[d->elements], sizeof(double));
+    d->share = (double *)gproji_pool_take(pool, d->first[d->elements], sizeof(double));
+    d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
+    d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
+    d->work = (double *)gproji_pool_take(pool, d->chunks * d->most, sizeof(double));
+    return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
+           d->front_start && d->front_node && d->value && d->root && d->side && d->share && d->metric && d->triangle &&
+           d->work;
+}
+
+/* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier. */
+GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, int64_t *mark, int32_t *at) {
+    const gproji_schur *d = &s->schur;
+    gproji_meetings graph;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    int32_t e;
+    if (!gproji_schur_incidence(s, in) || !gproji_take_meetings(&s->own, &graph, (size_t)d->elements)) return code;
+    for (e = 0; e < d->elements; ++e) graph.size[e] = d->first[e + 1] - d->first[e];
+    if (gproji_find_meetings(&s->own, in, mark, &graph))
+        code = gproji_cholesky_analyse_blocks(s->cholesky, d->elements, graph.size, graph.start, graph.adjacent, NULL);
+    gproji_give_meetings(&s->own, &graph, (size_t)d->elements);
+    if (code) return code;
+    if (!gproji_schur_take(s)) return GPROJ_ERROR_MEMORY;
+    gproji_schur_order(s, in);
+    gproji_schur_place_links(s, in);
+    gproji_schur_place_entries(s, at);
+    gproji_schur_place_locals(s, at);
+    gproji_schur_place_terms(s, at);
+    return GPROJ_OK;
+}
+
+/* Steps 4 and 5, for multipliers. */
+GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    gproji_incidence in;
+    size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
+    int64_t *mark = (int64_t *)gproji_take(&s->own, most, sizeof *mark);
+    int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
+    memset(&in, 0, sizeof in);
+    if (mark && at && gproji_take_local_places(s)) code = gproji_schur_arrange(s, &in, mark, at);
+    gproji_incidence_give(&s->own, &in);
+    gproji_give(&s->own, mark, most, sizeof *mark);
+    gproji_give(&s->own, at, most, sizeof *at);
+    return code;
+}
+
+/* Lets idle groups that have got a weight count; returns whether there were any. */
+GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
+    bool woken = false;
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
+        s->group[i].idle = false;
+        woken = true;
+    }
+    return woken;
+}
+
+/* All steps. whole: the matrix of all variables is needed. */
+GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
+    gproj_code code;
+    gproji_wake_groups(s);
+    if (!gproji_compile_variables(s) || !gproji_schur_decide(s)) return GPROJ_ERROR_MEMORY;
+    s->schur.passed_over = s->schur.on && whole;
+    if (s->schur.passed_over) gproji_schur_forget(s);
+    code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s);
+    if (code) return code;
+    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
+    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s) ||
+        !gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_ERROR_MEMORY;
+    return GPROJ_OK;
+}
+
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix of all variables, which is not
+   there where steps are found by multipliers. */
+GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
+    gproj_code code;
+    if (s->compiled && (s->schur.on || s->schur.passed_over) && (whole == s->schur.on || gproji_wake_groups(s)))
+        gproji_system_forget(s);
+    if (s->compiled) return GPROJ_OK;
+    code = gproji_compile_steps(s, whole);
+    if (code == GPROJ_OK) {
+        s->compiled = true;
+        return code;
+    }
+    gproji_system_forget(s);
+    if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
+        return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
+    return gproji_fail_memory(&s->error);
+}
+
+/* -- steps -- */
+
+/* x = K x for a node of `size` variables; K: a lower triangle, by rows. */
+GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
+    int32_t i, k;
+    for (i = size - 1; i >= 0; --i) {
+        double sum = 0;
+        for (k = 0; k <= i; ++k) sum += root[i * size + k] * x[k];
+        x[i] = sum;
+    }
+}
+
+/* x = K'x */
+GPROJI_INLINED void gproji_unwhiten(int32_t size, const double *root, double *x) {
+    int32_t i, k;
+    for (i = 0; i < size; ++i) {
+        double sum = 0;
+        for (k = i; k < size; ++k) sum += root[k * size + i] * x[k];
+        x[i] = sum;
+    }
+}
+
+/* A lower triangle of `size` rows becomes its inverse. */
+GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
+    int32_t i, j, k;
+    for (j = 0; j < size; ++j) {
+        root[j * size + j] = 1 / root[j * size + j];
+        for (i = j + 1; i < size; ++i) {
+            double sum = 0;
+            for (k = j; k < i; ++k) sum += root[i * size + k] * root[k * size + j];
+            root[i * size + j] = -sum / root[i * size + i];
+        }
+    }
+}
+
+/* The weight of a row in this step; 0 where it does not act. */
+GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_row *row) {
+    return g->weight > 0 && row->active ? g->weight * row->weight : 0;
+}
+
+/* The columns of an element that its multipliers are orthogonal to, m numbers each: first, where the rows add up to
+   nothing, how they do (without weight on one of them, that one); then w N. Returns the largest weight. */
+GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e, int32_t m, double *column) {
+    const gproji_schur *d = &s->schur;
+    const gproji_row_name *name = d->row + d->row_start[e];
+    double *normal = column + d->closes[e] * m, heaviest = 0;
+    int32_t i, idle = -1;
+    memset(column, 0, (size_t)m * (size_t)gproji_schur_columns(s, e) * sizeof *column);
+    for (i = 0; i < m; ++i) {
+        const gproji_group *g = &s->group[name[i].group];
+        const gproji_row *row = &g->row[name[i].row];
+        double w = gproji_acting_weight(g, row);
+        bool own = false, joins = false;
+        int64_t l;
+        for (l = row->local; l < row[1].local; ++l) {
+            int32_t at = g->local_at[l];
+            if (at < GPROJI_BLOCK_MAX)
+                normal[at * m + i] = w * g->local_gradient[l], own = true;
+            else
+                joins = true;
+        }
+        if (own) heaviest = gproji_fmax(heaviest, w);
+        if (!d->closes[e] || !own || !joins) continue;
+        if (!(w > 0)) idle = i;
+        column[i] = w > 0 ? 1 / w : 0;
+    }
+    for (i = 0; idle >= 0 && i < m; ++i) column[i] = i == idle;
+    return heaviest;
+}
+
+/* Householder's reflections that make `count` columns of m numbers triangular: the k-th is I - scale[k] v v', where v has
+   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. */
+GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
+    int32_t k, j, i;
+    for (k = 0; k < count; ++k) {
+        double *v = column + k * m, square = 0, length;
+        for (i = k; i < m; ++i) square += v[i] * v[i];
+        length = v[k] < 0 ? -sqrt(square) : sqrt(square);
+        scale[k] = square > 0 ? 1 / (square + v[k] * length) : 0;
+        diagonal[k] = -length;
+        v[k] += length;
+        for (j = k + 1; j < count; ++j) {
+            double *other = column + j * m, part = 0;
+            for (i = k; i < m; ++i) part += v[i] * other[i];
+            part *= scale[k];
+            for (i = k; i < m; ++i) other[i] -= part * v[i];
+        }
+    }
+}
+
+/* q: the j-th unit vector, reflected back. */
+GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *column, const double *scale, int32_t j,
+                                        double *q) {
+    int32_t k, i;
+    for (i = 0; i < m; ++i) q[i] = i == j;
+    for (k = count - 1; k >= 0; --k) {
+        const double *v = column + k * m;
+        double part = 0;
+        for (i = k; i < m; ++i) part += v[i] * q[i];
+        part *= scale[k];
+        for (i = k; i < m; ++i) q[i] -= part * v[i];
+    }
+}
+
+/* Keeps R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. Returns
+   the sum of the squares of R^-1. */
+GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t size, const double *column,
+                                            const double *diagonal, double *triangle) {
+    double sum = 0, unit[GPROJI_BLOCK_MAX];
+    int32_t i, j, k;
+    for (j = 0; j < size; ++j) {
+        double square = diagonal[j] * diagonal[j], all = square;
+        for (i = 0; i < j; ++i) {
+            triangle[i * size + j] = column[j * m + skipped + i];
+            all += triangle[i * size + j] * triangle[i * size + j];
+        }
+        triangle[j * size + j] = square > 8 * DBL_EPSILON * all ? 1 / diagonal[j] : 0;
+    }
+    for (j = 0; j < size; ++j) /* the columns of R^-1 */
+        for (i = j; i >= 0; --i) {
+            double x = i == j;
+            for (k = i + 1; k <= j; ++k) x -= triangle[i * size + k] * unit[k];
+            unit[i] = x * triangle[i * size + i];
+            sum += unit[i] * unit[i];
+        }
+    return sum;
+}
+
+/* The row of C that belongs to q, GPROJI_BLOCK_MAX numbers a node; returns its part of r. */
+GPROJI_INTERNAL double gproji_schur_project(const gproj_system *s, int32_t e, int32_t m, const double *q, double *c) {
+    const gproji_schur *d = &s->schur;
+    const gproji_row_name *name = d->row + d->row_start[e];
+    double right = 0;
+    int32_t i;
+    memset(c, 0, (size_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX * sizeof *c);
+    for (i = 0; i < m; ++i) {
+        const gproji_group *g = &s->group[name[i].group];
+        const gproji_row *row = &g->row[name[i].row];
+        double scale = q[i] * gproji_acting_weight(g, row);
+        int64_t l;
+        if (scale == 0) continue;
+        right += scale * row->phi;
+        for (l = row->local; l < row[1].local; ++l)
+            if (g->local_at[l] >= GPROJI_BLOCK_MAX)
+                c[g->local_at[l] - GPROJI_BLOCK_MAX] += scale * g->local_gradient[l];
+    }
+    return right;
+}
+
+typedef struct gproji_assembly {
+    gproj_system *system;
+    double epsilon2;
+} gproji_assembly;
+
+/* C, r and R of some elements, and what they add to eps^2 at their nodes. */
+GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
+    const gproji_assembly *assembly = (const gproji_assembly *)data;
+    gproj_system *s = assembly->system;
+    const gproji_schur *d = &s->schur;
+    double *work = d->work + chunk * d->most;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j;
+    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
+    for (; e < end; ++e) {
+        int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e);
+        int32_t closes = d->closes[e], links = (int32_t)(d->link_start[e + 1] - d->link_start[e]);
+        double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
+        double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
+        int64_t l;
+        if (m == 5 && count == 4)
+            gproji_reflect(5, 4, work, scale, diagonal);
+        else if (m == 6 && count == 4)
+            gproji_reflect(6, 4, work, scale, diagonal);
+        else
+            gproji_reflect(m, count, work, scale, diagonal);
+        if (count > closes)
+            share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
+                                         d->triangle + (int64_t)e * d->triangle_size);
+        share = gproji_fmin(share * heaviest * heaviest, 1 / assembly->epsilon2) * gproji_schur_share;
+        for (j = d->first[e]; j < d->first[e + 1]; ++j) {
+            if (m == 5 && count == 4)
+                gproji_reflect_back(5, 4, work, scale, 4, q);
+            else if (m == 6 && count == 4)
+                gproji_reflect_back(6, 4, work, scale, 4 + j - d->first[e], q);
+            else
+                gproji_reflect_back(m, count, work, scale, count + j - d->first[e], q);
+            d->side[j] = gproji_schur_project(s, e, m, q, c);
+            d->share[j] = share / (d->first[e + 1] - d->first[e]);
+            for (l = 0; l < links; ++l) {
+                int32_t v = d->link_node[d->link_start[e] + l], size = s->node_first[v + 1] - s->node_first[v];
+                memcpy(d->value + d->link_value[d->link_start[e] + l] + (int64_t)(j - d->first[e]) * size,
+                       c + l * GPROJI_BLOCK_MAX, (size_t)size * sizeof *c);
+            }
+        }
+    }
+}
+
+/* D and - sum w^2 phi g of a node, from its rows. */
+GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t size, double *root, double *b) {
+    const gproji_schur *d = &s->schur;
+    int64_t k;
+    int32_t i, j;
+    for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
+        const gproji_group *g = &s->group[d->row[k].group];
+        const gproji_row *row = &g->row[d->row[k].row];
+        const double *gradient = g->local_gradient + row->local;
+        const int32_t *at = g->local_at + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        double w2 = gproji_weight2(g, row);
+        if (!(g->weight > 0) || !row->active) continue;
+        for (i = 0; i < count; ++i) {
+            b[at[i]] -= w2 * row->phi * gradient[i];
+            for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
+        }
+    }
+}
+
+/* K, b and W of a node. */
+GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
+    const gproji_schur *d = &s->schur;
+    double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->value + d->value_start[v];
+    double share = 1;
+    int64_t k;
+    int32_t i;
+    for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
+    d->metric[v] = share;
+    for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? epsilon2 * share : 0;
+    if (d->own_start[v] < d->own_start[v + 1]) gproji_schur_own(s, v, size, root, b);
+    gproji_small_factor(root, size, size, DBL_MIN);
+    gproji_invert_triangle(root, size);
+    gproji_whiten(size, root, b);
+    for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
+}
+
+GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
+    const gproji_assembly *assembly = (const gproji_assembly *)data;
+    const gproj_system *s = assembly->system;
+    int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
+    int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
+    for (; v < end; ++v) {
+        int32_t size = s->node_first[v + 1] - s->node_first[v];
+        if (s->auxiliary[s->node_first[v]]) continue;
+        if (size == 3)
+            gproji_schur_node(s, v, 3, assembly->epsilon2);
+        else
+            gproji_schur_node(s, v, size, assembly->epsilon2);
+    }
+}
+
+/* r + W b of some elements. */
+GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
+    gproj_system *s = (gproj_system *)data;
+    const gproji_schur *d = &s->schur;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j, k;
+    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
+    int64_t l;
+    for (; e < end; ++e)
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            const double *w = d->value + d->link_value[l], *b = s->step + s->node_first[v];
+            for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
+                for (k = 0; k < size; ++k) d->side[j] += w[k] * b[k];
+        }
+}
+
+/* W W' at a node. */
+GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int32_t size, const gproji_panel *panel) {
+    const int32_t *at = d->entry_at + d->entry_start[v];
+    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), i, j, p;
+    const double *w = d->value + d->value_start[v];
+    for (j = 0; j < count; ++j) {
+        double *column = gproji_panel_column(panel, at[j]);
+        for (i = j; i < count; ++i) {
+            double sum = 0;
+            for (p = 0; p < size; ++p) sum += w[i * size + p] * w[j * size + p];
+            column[at[i]] += sum;
+        }
+    }
+}
+
+/* I + W W' of one front: see gproji_load. */
+GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel) {
+    const gproj_system *s = (const gproj_system *)user;
+    const gproji_schur *d = &s->schur;
+    int32_t j;
+    int64_t k;
+    for (k = d->front_start[front]; k < d->front_start[front + 1]; ++k) {
+        int32_t v = d->front_node[k], size = s->node_first[v + 1] - s->node_first[v];
+        if (size == 3)
+            gproji_schur_load_node(d, v, 3, panel);
+        else
+            gproji_schur_load_node(d, v, size, panel);
+    }
+    for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
+}
+
+/* U at a node, and its part of W U. */
+GPROJI_INLINED void gproji_schur_wide_node(const gproji_schur *d, int32_t v, int32_t size, double *u, double *product) {
+    const double *w = d->value + d->value_start[v];
+    int64_t i;
+    int32_t p;
+    gproji_whiten(size, d->root + d->root_start[v], u);
+    for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, w += size) {
+        double sum = 0;
+        for (p = 0; p < size; ++p) sum += w[p] * u[p];
+        product[d->entry[i]] += sum;
+    }
+}
+
+/* From w g_i, which are the system's sides, to U in their place and to W U. */
+GPROJI_INTERNAL void gproji_schur_wide(gproj_system *s) {
+    const gproji_schur *d = &s->schur;
+    int64_t multipliers = d->first[d->elements];
+    int32_t k, v;
+    for (k = 0; k < d->wide; ++k) {
+        double *u = gproji_wide_side(s, k), *product = d->side + (k + 1) * multipliers;
+        memset(product, 0, (size_t)multipliers * sizeof *product);
+        for (v = 0; v < s->node_count; ++v) {
+            int32_t size = s->node_first[v + 1] - s->node_first[v];
+            if (s->auxiliary[s->node_first[v]]) continue;
+            if (size == 3)
+                gproji_schur_wide_node(d, v, 3, u + s->node_first[v], product);
+            else
+                gproji_schur_wide_node(d, v, size, u + s->node_first[v], product);
+        }
+    }
+}
+
+/* From z = L^-1 (r + W b) and Y = L^-1 W U: m, and z - Y m. */
+GPROJI_INTERNAL void gproji_schur_border(gproj_system *s) {
+    const gproji_schur *d = &s->schur;
+    size_t n = (size_t)s->variable_count, multipliers = (size_t)d->first[d->elements], j;
+    int32_t i, k;
+    gproji_for_wide_rows(s, gproji_wide_value);
+    for (i = 0; i < d->wide; ++i) {
+        const double *y = d->side + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
+        for (k = 0; k <= i; ++k)
+            s->wide_matrix[(int64_t)i * s->wide_count + k] =
+                (k == i) + gproji_dot(u, gproji_wide_side(s, k), n) -
+                gproji_dot(y, d->side + (size_t)(k + 1) * multipliers, multipliers);
+        s->wide_vector[i] += gproji_dot(u, s->step, n) - gproji_dot(y, d->side, multipliers);
+    }
+    gproji_small_factor(s->wide_matrix, d->wide, s->wide_count, 1);
+    gproji_small_solve(s->wide_matrix, d->wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < d->wide; ++k) {
+        const double *y = d->side + (size_t)(k + 1) * multipliers;
+        for (j = 0; j < multipliers; ++j) d->side[j] -= s->wide_vector[k] * y[j];
+    }
+}
+
+/* dv of a node: K'(b - W'y - U m). */
+GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t size) {
+    const gproji_schur *d = &s->schur;
+    const double *w = d->value + d->value_start[v];
+    double *u = s->step + s->node_first[v];
+    int64_t i;
+    int32_t k, p;
+    for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, w += size)
+        for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->entry[i]];
+    for (k = 0; k < d->wide; ++k)
+        for (p = 0; p < size; ++p) u[p] -= s->wide_vector[k] * gproji_wide_side(s, k)[s->node_first[v] + p];
+    gproji_unwhiten(size, d->root + d->root_start[v], u);
+}
+
+GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
+    gproj_system *s = (gproj_system *)data;
+    int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
+    int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
+    for (; v < end; ++v) {
+        int32_t size = s->node_first[v + 1] - s->node_first[v];
+        if (s->auxiliary[s->node_first[v]]) continue;
+        if (size == 3)
+            gproji_schur_move_node(s, v, 3);
+        else
+            gproji_schur_move_node(s, v, size);
+    }
+}
+
+/* x = - (R'R)^-1 x */
+GPROJI_INLINED void gproji_solve_triangles(int32_t size, const double *triangle, double *x) {
+    int32_t i, k;
+    for (i = 0; i < size; ++i) {
+        x[i] = -x[i];
+        for (k = 0; k < i; ++k) x[i] -= triangle[k * size + i] * x[k];
+        x[i] *= triangle[i * size + i];
+    }
+    for (i = size - 1; i >= 0; --i) {
+        for (k = i + 1; k < size; ++k) x[i] -= triangle[i * size + k] * x[k];
+        x[i] *= triangle[i * size + i];
+    }
+}
+
+/* The auxiliary variables of some elements: R'R dn = - N'w^2 (phi + G dv). */
+GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
+    gproj_system *s = (gproj_system *)data;
+    const gproji_schur *d = &s->schur;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
+    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
+    for (; e < end; ++e) {
+        int32_t node = d->auxiliary[e], size, i;
+        double dn[GPROJI_BLOCK_MAX];
+        int64_t k, l;
+        if (node < 0) continue;
+        size = s->node_first[node + 1] - s->node_first[node];
+        memset(dn, 0, sizeof dn);
+        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
+            const gproji_group *g = &s->group[d->row[k].group];
+            const gproji_row *row = &g->row[d->row[k].row];
+            double w = gproji_acting_weight(g, row), left = row->phi;
+            if (w == 0) continue;
+            for (l = row->local; l < row[1].local; ++l)
+                if (g->local_at[l] >= GPROJI_BLOCK_MAX) left += g->local_gradient[l] * s->step[g->local_variable[l]];
+            left *= w * w;
+            for (l = row->local; l < row[1].local; ++l)
+                if (g->local_at[l] < GPROJI_BLOCK_MAX) dn[g->local_at[l]] += left * g->local_gradient[l];
+        }
+        gproji_solve_triangles(size, d->triangle + (int64_t)e * d->triangle_size, dn);
+        for (i = 0; i < size; ++i) s->step[s->node_first[node] + i] = dn[i];
+    }
+}
+
+/* Matrix and right-hand sides of a step. */
+GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
+    gproji_schur *d = &s->schur;
+    gproji_assembly assembly;
+    assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
+    memset(s->step, 0, (size_t)s->variable_count * sizeof *s->step);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
+    if (d->own_start[0] < d->own_start[s->node_count]) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
+    d->wide = gproji_for_wide_rows(s, gproji_wide_column);
+    gproji_schur_wide(s);
+}
+
+/* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
+GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
+    int32_t sides = s->schur.wide < s->cholesky->batch ? s->schur.wide + 1 : 0;
+    return gproji_cholesky_factor_with(s->cholesky, gproji_schur_load_front, s, sides, s->schur.side) == GPROJ_FACTORED;
+}
+
+/* The step. */
+GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
+    gproji_schur *d = &s->schur;
+    gproj_cholesky *c = s->cholesky;
+    if (d->wide == 0) {
+        gproji_cholesky_finish(c, d->side);
+    } else {
+        if (d->wide < c->batch)
+            memcpy(d->side, c->solution, ((size_t)d->wide + 1) * (size_t)d->first[d->elements] * sizeof *d->side);
+        else
+            gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
+        gproji_schur_border(s);
+        gproji_cholesky_backward(c, d->side, d->side);
+    }
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_move, s);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_follow, s);
+}
+
+/* ============================================================================================================
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
-   error, system.
+   error, system, schur.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
@@ -8459,12 +9467,13 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     return standing;
 }
 
-/* By how much rounding may change the value of a linear row. */
+/* By how much rounding may change the value of a linear row of a compiled group. */
 GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, const double *x) {
+    const int32_t *variable = g->local_variable + g->row[row].local;
     double sum = 0;
     int64_t t;
     for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[gproji_variable_of(g, &g->row[row], g->term[t].i)]);
+        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[variable[g->term[t].i]]);
     return 16 * DBL_EPSILON * sum;
 }
 
@@ -8498,10 +9507,24 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
 }
 
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
+GPROJI_INTERNAL bool gproji_find_schur_step(gproji_loop *loop, double epsilon) {
+    gproj_system *s = loop->system;
+    bool factored;
+    gproji_schur_assemble(s, epsilon);
+    gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
+    factored = gproji_schur_factor(s);
+    loop->iteration.attempts++;
+    gproji_lap(loop, GPROJ_PHASE_FACTOR);
+    if (factored) gproji_schur_finish(s);
+    gproji_lap(loop, GPROJ_PHASE_SOLVE);
+    return factored;
+}
+
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t wide;
     bool fused, factored;
+    if (s->schur.on) return gproji_find_schur_step(loop, epsilon);
     gproji_merit_gradient(s);
     wide = gproji_step_sides(s);
     fused = wide < s->cholesky->batch;
@@ -8774,10 +9797,21 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
+/* During a solve by multipliers a group may get its first weight: it has no place among them yet. False: an error. */
+GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    if (!s->schur.on || !gproji_wake_groups(s)) return true;
+    gproji_system_forget(s);
+    if (gproji_compile(s, false) != GPROJ_OK) return false;
+    gproji_linearise(loop);
+    return true;
+}
+
 /* What comes before iteration n: its weights, and rows that they or the caller have changed. */
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+    if (!gproji_place_woken(loop)) return;
     if (gproji_set_weights(s, n)) gproji_linearise(loop);
     s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
     loop->standing = gproji_take_standing(s);
@@ -9404,7 +10438,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
     loop->frame_first = loop->result.iterations;
     loop->paused = false;
     loop->started = loop->lap = gproji_now(s);
-    if (gproji_compile(s) == GPROJ_OK) {
+    if (gproji_compile(s, loop->options.nearest) == GPROJ_OK) {
         gproji_lap(loop, GPROJ_PHASE_ANALYSE);
         s->solving = true;
         if (loop->begun)
@@ -14088,44 +15122,38 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
     return sum;
 }
 
-/* The volume of one triangle of the mesh: a closed mesh, the tetrahedron with the origin, det(a, b, c) / 6; else the
-   prism over the plane z = -height, its area seen from above times its mean height. With `gradient` (9 numbers: of a,
-   b, c) the derivatives times `scale` are added to it. */
-GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], bool closed, double height, double scale,
-                                              double *const gradient[3]) {
-    double cross[3], seen, mean;
+/* The volume of one triangle of the mesh, with the vectorial area A: of a closed mesh, the tetrahedron with the origin,
+   a'A / 3; else the prism over the plane z = -height, A_z times its mean height. With `gradient` (of a, b, c) the
+   derivatives are added to it; those of a closed mesh, A / 3 each, are right for all triangles together. */
+GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], bool closed,
+                                              double height, double *const gradient[3]) {
+    double mean;
     int32_t k;
     if (closed) {
-        for (k = 0; gradient && k < 3; ++k) {
-            gproji_cross3(corner[(k + 1) % 3], corner[(k + 2) % 3], cross);
-            gproji_add_scaled3(scale / 6, cross, gradient[k]);
-        }
-        gproji_cross3(corner[1], corner[2], cross);
-        return gproji_dot3(corner[0], cross) / 6;
+        for (k = 0; gradient && k < 3; ++k) gproji_add_scaled3(1.0 / 3, area, gradient[k]);
+        return gproji_dot3(corner[0], area) / 3;
     }
-    seen = 0;
     mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
-    for (k = 0; k < 3; ++k) {
-        const double *a = corner[k], *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
-        seen += (a[0] * b[1] - a[1] * b[0]) / 2;
-        if (!gradient) continue;
-        gradient[k][0] += scale * mean * (b[1] - c[1]) / 2;
-        gradient[k][1] += scale * mean * (c[0] - b[0]) / 2;
+    for (k = 0; gradient && k < 3; ++k) {
+        const double *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
+        gradient[k][0] += mean * (b[1] - c[1]) / 2;
+        gradient[k][1] += mean * (c[0] - b[0]) / 2;
+        gradient[k][2] += area[2] / 3;
     }
-    for (k = 0; gradient && k < 3; ++k) gradient[k][2] += scale * seen / 3;
-    return seen * mean;
+    return area[2] * mean;
 }
 
-/* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height; adds `scale` times its
-   derivatives to `gradient`, 3 numbers a vertex, unless that is NULL. */
-GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
-                                     double *gradient) {
+/* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
+   areas; adds the volume's derivatives to `gradient`, 3 numbers a vertex, unless that is NULL. */
+GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
+                                     double *area) {
     bool closed = mesh->loop_count == 0;
-    double sum = 0, *slope[3];
+    double sum = 0, all = 0, *slope[3];
     const double *corner[3];
     int32_t f, k, h;
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t start = mesh->face_halfedge[f];
+        double face[3] = {0, 0, 0}, b[3], c[3], vector[3];
         for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
             size_t vertex[3];
             vertex[0] = (size_t)mesh->origin[start];
@@ -14135,14 +15163,21 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
                 corner[k] = position + 3 * vertex[k];
                 slope[k] = gradient ? gradient + 3 * vertex[k] : NULL;
             }
-            sum += gproji_triangle_volume(corner, closed, height, scale, gradient ? slope : NULL);
+            gproji_sub3(corner[1], corner[0], b);
+            gproji_sub3(corner[2], corner[0], c);
+            gproji_cross3(b, c, vector);
+            gproji_set3(vector[0] / 2, vector[1] / 2, vector[2] / 2, vector);
+            gproji_add_scaled3(1, vector, face);
+            sum += gproji_triangle_volume(corner, vector, closed, height, gradient ? slope : NULL);
         }
+        all += gproji_length3(face);
     }
+    if (area) *area = all;
     return sum;
 }
 
 GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
-    return mesh ? gproji_volume(mesh, mesh->position, 0, 1, NULL) : 0;
+    return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
 }
 
 GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count) {
@@ -16727,6 +17762,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(form->system, 3, 3, normal);
     if (n < 0) return;
+    gproji_set_auxiliary(form->system, n, 3);
     form->normal[face] = n;
     for (k = 0; k < 3; ++k) gproji_set_term(&term[k], n + k, n + k, 1);
     gproj_system_add_row(form->system, group, 3, term, -1, face);
@@ -17901,17 +18937,16 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     const gproji_part *part = (const gproji_part *)user;
     gproj_form *form = part->form;
     const double *x = gproj_system_values(system);
-    double height = form->centre[2] * form->scale, area = 0, constant;
-    int32_t count, t, f;
+    double height = form->centre[2] * form->scale, area, constant;
+    int32_t count, t;
     gproj_term *term = gproji_row_terms(system, group, 0, &count);
-    gproji_update_areas(form);
-    for (f = 0; f < form->mesh->face_count; ++f) area += gproji_length3(form->area + 3 * (size_t)f);
-    area = gproji_fmax(area, 1e-12);
     memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
-    constant = (gproji_volume(form->mesh, x, height, 1 / area, part->gradient) - part->target) / area;
+    constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
+    area = gproji_fmax(area, 1e-12);
+    constant /= area;
     for (t = 0; t < count; ++t) {
-        term[t].a = part->gradient[t];
-        constant -= part->gradient[t] * x[t];
+        term[t].a = part->gradient[t] / area;
+        constant -= term[t].a * x[t];
     }
     gproj_system_set_row(system, group, 0, NULL, constant);
 }
@@ -19714,14 +20749,14 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
 }
 
 /* ============================================================================================================
-   >>state   A form's state as a block of bytes. Uses platform, error, system, loop, curve, form, catalogue, statics,
-   guard.
+   >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
+   statics, guard.
 
    One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
    is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
    (coefficients, constants, weights), one byte for these.
 
-       8 bytes "gprojstA", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
+       8 bytes "gprojstB", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
 
    The fingerprint is a hash of what a form is made of: mesh, variables, rows with their terms' variables, but none of the
    numbers that the state has. A state is checked from its beginning to its end before any of it is read, so that what is
@@ -19936,6 +20971,15 @@ typedef enum gproji_passing {
 
 /* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
    any of a group that the library has added (`own`): they are set when a solve begins. */
+/* Whether a group has ever counted decides how steps are found: see gproji_wake_groups. */
+GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+    bool idle = g->idle;
+    gproji_pass_bool(stream, &idle);
+    if (stream->way != GPROJI_READ || idle == g->idle) return;
+    g->idle = idle;
+    form->system->schur.passed_over = true; /* to be decided anew */
+}
+
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
@@ -19945,6 +20989,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
     if (stream->way == GPROJI_READ) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
+    gproji_pass_idle(stream, form, g);
     if (own && !passing) return;
     if (passing || !g->refresh) gproji_pass_numbers(stream, g);
     gproji_pass_weights(stream, form, g);
@@ -19961,7 +21006,7 @@ GPROJI_INTERNAL void gproji_make_multipliers(gproji_stream *stream, gproj_form *
     bool all = s->compiled && s->sum;
     for (i = 0; i < s->group_count; ++i) all = all && s->group[i].multiplier;
     if (all || !gproji_comes_in(stream) || stream->wrong) return;
-    if (gproji_compile(s) == GPROJ_OK && gproji_start_multipliers(s)) return;
+    if (gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)) return;
     gproji_fail_memory(&form->error);
     gproji_spoil(stream, "out of memory");
 }
@@ -20182,7 +21227,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'A'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'B'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
@@ -20276,7 +21321,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 
 /* ============================================================================================================
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
-   vector, dense, cholesky, system, loop, mesh, form, catalogue, guard, solve, state.
+   vector, dense, cholesky, system, schur, loop, mesh, form, catalogue, guard, solve, state.
 
    Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
    in the tangent space that a force f at the handles' vertices brings about is its projection,
@@ -20763,7 +21808,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     gproji_restart_planes(form);
     memcpy(drag->first, s->x, 3 * (size_t)form->mesh->vertex_count * sizeof *drag->first);
     drag->structure = gproji_structure_of(s);
-    if (!gproji_form_ready(form) || gproji_compile(s) != GPROJ_OK ||
+    if (!gproji_form_ready(form) || gproji_compile(s, true) != GPROJ_OK ||
         !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
         return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
     return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);

@@ -14,7 +14,6 @@ int32_t gprojt_inside_force(const gproj_form *form, int32_t edge) { return form-
 int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex) { return form->statics->axes[vertex]; }
 double gprojt_inside_load_scale(const gproj_form *form) { return form->statics->load_scale; }
 
-double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
-                            double *gradient) {
-    return gproji_volume(mesh, position, height, scale, gradient);
+double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {
+    return gproji_volume(mesh, position, height, gradient, NULL);
 }

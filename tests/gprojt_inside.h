@@ -20,7 +20,6 @@ int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex);
 double gprojt_inside_load_scale(const gproj_form *form);
 
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
-double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double scale,
-                            double *gradient);
+double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);
 
 #endif

@@ -423,7 +423,7 @@ GPROJT_TEST(the_course_is_the_merit) {
     int32_t k;
     memset(&loop, 0, sizeof loop);
     loop.system = s;
-    GPROJT_REQUIRE(gproji_compile(s) == GPROJ_OK);
+    GPROJT_REQUIRE(gproji_compile(s, false) == GPROJ_OK);
     gproji_set_weights(s, 1);
     gproji_linearise(&loop);
     memcpy(s->saved, s->x, 2 * sizeof(double));

@@ -38,13 +38,14 @@ enum {
     BENCH_PHASES
 };
 
-/* The regularisation in every step: the systems are sum w^2 g g' + eps^2 I. */
+/* The regularisation in every step: the systems are sum w^2 g g' + eps^2 D. */
 #define BENCH_EPSILON 1e-3
 
 /* Rows phi + g'dx = 0 of weight w, linearised: row r has the gradients gradient[start[r]..start[r+1]-1] by the variables
    `variable`, ascending. */
 typedef struct bench_rows {
     int32_t variables, rows;
+    double *regularisation; /* of each variable, what is added to the diagonal */
     int64_t *start;
     int32_t *variable;
     double *gradient, *phi, *weight2;
@@ -138,6 +139,7 @@ static inline void bench_mesh_free(bench_mesh *mesh) {
 
 static inline void bench_rows_free(bench_rows *rows) {
     free(rows->start);
+    free(rows->regularisation);
     free(rows->variable);
     free(rows->gradient);
     free(rows->phi);

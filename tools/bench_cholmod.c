@@ -165,7 +165,7 @@ void bench_cholmod_destroy(bench_cholmod *c) {
     free(c);
 }
 
-/* value = sum w^2 g g' + eps^2 I, b = - sum w^2 phi g */
+/* value = sum w^2 g g' + eps^2 D, b = - sum w^2 phi g */
 static void bench_assemble(bench_cholmod *c, const bench_rows *rows) {
     const int32_t *place = c->place;
     double *value = c->value, *right = (double *)c->b->x;
@@ -185,7 +185,7 @@ static void bench_assemble(bench_cholmod *c, const bench_rows *rows) {
             place += b + 1;
         }
     }
-    for (j = 0; j < rows->variables; ++j) value[c->column_start[j + 1] - 1] += BENCH_EPSILON * BENCH_EPSILON;
+    for (j = 0; j < rows->variables; ++j) value[c->column_start[j + 1] - 1] += rows->regularisation[j];
 }
 
 bool bench_cholmod_step(bench_cholmod *c, const bench_rows *rows, double seconds[BENCH_PHASES], double *dx) {
@@ -205,7 +205,7 @@ bool bench_cholmod_refine(bench_cholmod *c, const bench_rows *rows, double *dx) 
     long double *residual = (long double *)bench_take((size_t)n, sizeof *residual);
     int64_t l;
     bool solved;
-    for (j = 0; j < n; ++j) residual[j] = -(long double)BENCH_EPSILON * BENCH_EPSILON * dx[j];
+    for (j = 0; j < n; ++j) residual[j] = -(long double)rows->regularisation[j] * dx[j];
     for (r = 0; r < rows->rows; ++r) { /* - w^2 (phi + g'dx) g */
         long double pull = rows->phi[r];
         for (l = rows->start[r]; l < rows->start[r + 1]; ++l)

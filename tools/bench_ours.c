@@ -160,7 +160,8 @@ static bool bench_takes_part(const gproji_group *g, const gproji_row *row) {
     return g->weight > 0 && row->weight > 0 && !row->wide;
 }
 
-static void bench_take_rows(const gproj_system *s, bench_rows *rows) {
+static void bench_take_rows(const bench_form *f, bench_rows *rows) {
+    const gproj_system *s = f->form->system;
     size_t count = 0, entries = 0;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
@@ -174,6 +175,7 @@ static void bench_take_rows(const gproj_system *s, bench_rows *rows) {
     rows->rows = (int32_t)count;
     rows->variables = s->variable_count;
     rows->start = (int64_t *)bench_take(count + 1, sizeof *rows->start);
+    rows->regularisation = (double *)bench_take((size_t)s->variable_count, sizeof *rows->regularisation);
     rows->phi = (double *)bench_take(count, sizeof *rows->phi);
     rows->weight2 = (double *)bench_take(count, sizeof *rows->weight2);
     rows->variable = (int32_t *)bench_take(entries, sizeof *rows->variable);
@@ -190,11 +192,21 @@ static void bench_insert(bench_rows *rows, int64_t start, int64_t end, int32_t v
     rows->gradient[end] = gradient;
 }
 
+/* eps^2 for all variables; where steps are found by multipliers, none for auxiliary ones and more at small faces. */
+static void bench_regularise(gproj_system *s, bench_rows *rows) {
+    int32_t v;
+    if (s->schur.on) gproji_schur_assemble(s, BENCH_EPSILON);
+    for (v = 0; v < s->variable_count; ++v) {
+        double metric = !s->schur.on ? 1 : s->auxiliary[v] ? 0 : s->schur.metric[s->node[v]];
+        rows->regularisation[v] = BENCH_EPSILON * BENCH_EPSILON * metric;
+    }
+}
+
 static void bench_rows_of_form(bench_form *f, bench_rows *rows) {
     const gproj_system *s = f->form->system;
     int64_t filled = 0, count = 0, l;
     int32_t i, r;
-    if (!rows->start) bench_take_rows(s, rows);
+    if (!rows->start) bench_take_rows(f, rows);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
@@ -208,6 +220,7 @@ static void bench_rows_of_form(bench_form *f, bench_rows *rows) {
         }
     }
     rows->start[count] = filled;
+    bench_regularise(f->form->system, rows);
 }
 
 static bool bench_load_mesh(const char *path, bench_mesh *mesh) {
