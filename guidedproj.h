@@ -8408,9 +8408,11 @@ GPROJI_INTERNAL int32_t *gproji_face_element(const gproj_system *s, const gproji
    at first. False: it joins auxiliary variables of several elements. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           int32_t *element_of, int32_t *of_face, int32_t *belongs) {
-    int32_t auxiliary = -1, kept = -1, *own;
+    int32_t auxiliary = -1, kept = -1, *own, *face;
     bool many = false;
     int64_t l;
+    *belongs = GPROJI_NOWHERE;
+    if (g->idle) return true;
     for (l = row->local; l < row[1].local; ++l) {
         int32_t node = s->node[g->local_variable[l]];
         int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
@@ -8420,18 +8422,16 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         }
         *seen = node;
     }
-    *belongs = kept >= 0 && !g->idle ? -1 - kept : GPROJI_NOWHERE;
-    if (g->idle) return true;
-    if (row->wide) {
-        *belongs = GPROJI_NOWHERE;
-        return auxiliary < 0;
+    if (row->wide) return auxiliary < 0;
+    if (auxiliary < 0 && !many) {
+        if (kept >= 0) *belongs = -1 - kept;
+        return true;
     }
-    if (auxiliary < 0 && !many) return true;
-    own = auxiliary >= 0 ? &element_of[auxiliary] : gproji_face_element(s, g, row, of_face);
+    face = gproji_face_element(s, g, row, of_face);
+    own = auxiliary >= 0 ? &element_of[auxiliary] : face;
     *belongs = own && *own >= 0 ? *own : s->schur.elements++;
     if (own) *own = *belongs;
-    own = auxiliary >= 0 ? gproji_face_element(s, g, row, of_face) : NULL;
-    if (own) *own = *belongs;
+    if (face) *face = *belongs;
     return true;
 }
 
