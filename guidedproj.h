@@ -582,7 +582,8 @@ GPROJ_API double *gproj_system_values(gproj_system *system);
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
-/* A new weight needs no new analysis; 0 switches a group off. */
+/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where the
+   steps of all others are found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
 /* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
@@ -1213,6 +1214,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
    the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
    written.
+
+   Where only constraints act, such as planarity, and wishes for single vertices, such as closeness, steps are found by the
+   multipliers of the constraints, which are several times fewer than the variables. Fairness, equilibrium, circular and
+   conical faces and options->nearest need the matrix of all variables. The same constraints are met, on paths that differ a
+   little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
    face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
