@@ -8729,30 +8729,38 @@ GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
     }
 }
 
-/* What the arrays need that depend on the analysis. */
-GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
+/* How much the elements need: `most` and `triangle_size`, and numbers of entries and of values of W. */
+GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int64_t *values) {
     gproji_schur *d = &s->schur;
-    gproji_pool *pool = &d->pool;
-    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries = 0, values = 0, roots = 0, l;
-    int32_t e, v, i;
+    int64_t l;
+    int32_t e;
     d->most = d->triangle_size = 0;
+    *entries = *values = 0;
     for (e = 0; e < d->elements; ++e) {
-        int64_t rows = d->row_start[e + 1] - d->row_start[e], columns = gproji_schur_columns(s, e);
-        int64_t most =
-            rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * (d->link_start[e + 1] - d->link_start[e]);
+        int64_t rows = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
+        int64_t columns = gproji_schur_columns(s, e), links = d->link_start[e + 1] - d->link_start[e];
+        int64_t most = rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * links;
         int32_t size = (int32_t)columns - d->closes[e];
         d->most = d->most > most ? d->most : most;
         d->triangle_size = gproji_max(d->triangle_size, size * size);
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            v = d->link_node[l];
-            entries += d->first[e + 1] - d->first[e];
-            values += (int64_t)(d->first[e + 1] - d->first[e]) * (s->node_first[v + 1] - s->node_first[v]);
-        }
+        *entries += left * links;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
+            *values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
     }
-    d->root_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+}
+
+/* What needs the analysis. */
+GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
+    gproji_schur *d = &s->schur;
+    gproji_pool *pool = &d->pool;
+    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries, values, roots = 0;
+    int32_t i;
+    gproji_schur_measure(s, &entries, &values);
+    d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (i = 0; d->root_start && i < nodes; ++i) {
+        int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
         d->root_start[i] = roots;
-        roots += (int64_t)(s->node_first[i + 1] - s->node_first[i]) * (s->node_first[i + 1] - s->node_first[i]);
+        roots += size * size;
     }
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
@@ -9007,50 +9015,61 @@ GPROJI_INTERNAL double gproji_schur_project(const gproj_system *s, int32_t e, in
 }
 
 typedef struct gproji_assembly {
-    gproj_system *system;
+    const gproj_system *system;
     double epsilon2;
 } gproji_assembly;
 
-/* C, r and R of some elements, and what they add to eps^2 at their nodes. */
-GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    gproj_system *s = assembly->system;
+/* Both for the numbers of a quad, alone or with another row, as constants: nearly all elements have these. */
+GPROJI_INTERNAL void gproji_reflect_element(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
+    if (m == 5 && count == 4)
+        gproji_reflect(5, 4, column, scale, diagonal);
+    else if (m == 6 && count == 4)
+        gproji_reflect(6, 4, column, scale, diagonal);
+    else
+        gproji_reflect(m, count, column, scale, diagonal);
+}
+
+GPROJI_INTERNAL void gproji_reflect_element_back(int32_t m, int32_t count, const double *column, const double *scale,
+                                                 int32_t j, double *q) {
+    if (m == 5 && count == 4)
+        gproji_reflect_back(5, 4, column, scale, j, q);
+    else if (m == 6 && count == 4)
+        gproji_reflect_back(6, 4, column, scale, j, q);
+    else
+        gproji_reflect_back(m, count, column, scale, j, q);
+}
+
+/* C, r and R of an element, and what it adds to E at its nodes. */
+GPROJI_INTERNAL void gproji_schur_element(const gproj_system *s, int32_t e, double epsilon2, double *work) {
     const gproji_schur *d = &s->schur;
-    double *work = d->work + chunk * d->most;
-    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j;
-    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    for (; e < end; ++e) {
-        int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e);
-        int32_t closes = d->closes[e], links = (int32_t)(d->link_start[e + 1] - d->link_start[e]);
-        double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
-        double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
-        int64_t l;
-        if (m == 5 && count == 4)
-            gproji_reflect(5, 4, work, scale, diagonal);
-        else if (m == 6 && count == 4)
-            gproji_reflect(6, 4, work, scale, diagonal);
-        else
-            gproji_reflect(m, count, work, scale, diagonal);
-        if (count > closes)
-            share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
-                                         d->triangle + (int64_t)e * d->triangle_size);
-        share = gproji_fmin(share * heaviest * heaviest, 1 / assembly->epsilon2) * gproji_schur_share;
-        for (j = d->first[e]; j < d->first[e + 1]; ++j) {
-            if (m == 5 && count == 4)
-                gproji_reflect_back(5, 4, work, scale, 4, q);
-            else if (m == 6 && count == 4)
-                gproji_reflect_back(6, 4, work, scale, 4 + j - d->first[e], q);
-            else
-                gproji_reflect_back(m, count, work, scale, count + j - d->first[e], q);
-            d->side[j] = gproji_schur_project(s, e, m, q, c);
-            d->share[j] = share / (d->first[e + 1] - d->first[e]);
-            for (l = 0; l < links; ++l) {
-                int32_t v = d->link_node[d->link_start[e] + l], size = s->node_first[v + 1] - s->node_first[v];
-                memcpy(d->value + d->link_value[d->link_start[e] + l] + (int64_t)(j - d->first[e]) * size,
-                       c + l * GPROJI_BLOCK_MAX, (size_t)size * sizeof *c);
-            }
+    int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e), j;
+    int32_t closes = d->closes[e], left = d->first[e + 1] - d->first[e];
+    double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
+    double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
+    int64_t l;
+    gproji_reflect_element(m, count, work, scale, diagonal);
+    if (count > closes)
+        share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
+                                     d->triangle + (int64_t)e * d->triangle_size);
+    share = gproji_schur_share * gproji_fmin(share * heaviest * heaviest, 1 / epsilon2);
+    for (j = 0; j < left; ++j) {
+        gproji_reflect_element_back(m, count, work, scale, count + j, q);
+        d->side[d->first[e] + j] = gproji_schur_project(s, e, m, q, c);
+        d->share[d->first[e] + j] = share / left;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            memcpy(d->value + d->link_value[l] + (int64_t)j * size, c + (l - d->link_start[e]) * GPROJI_BLOCK_MAX,
+                   (size_t)size * sizeof *c);
         }
     }
+}
+
+GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
+    const gproji_assembly *assembly = (const gproji_assembly *)data;
+    const gproji_schur *d = &assembly->system->schur;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
+    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
+    for (; e < end; ++e) gproji_schur_element(assembly->system, e, assembly->epsilon2, d->work + chunk * d->most);
 }
 
 /* D and - sum w^2 phi g of a node, from its rows. */
