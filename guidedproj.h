@@ -6956,10 +6956,12 @@ typedef struct gproji_group {
     gproj_schedule schedule;
     gproj_refresh refresh;
     void *refresh_user;
-    double weight; /* in the present iteration */
-    bool idle;     /* whenever the rows were compiled, its schedule was without weight */
-    bool guard;    /* a bound that acts on the steps only: no part of merit, residual and verdict */
-    double slack;  /* of the guard: a step may violate its rows by so much */
+    double weight;   /* in the present iteration */
+    bool idle;       /* whenever the rows were compiled, its schedule was without weight */
+    int32_t closing; /* the first so many rows close: those of an auxiliary node add up to nothing at the nodes that
+                        they join, as n'(v_i - v_j) does around a face */
+    bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
+    double slack;    /* of the guard: a step may violate its rows by so much */
 
     int32_t row_count;
     gproji_row *row;
@@ -6991,7 +6993,7 @@ typedef struct gproji_hinge {
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
-    bool passed_over; /* it would be on, but the matrix of all variables was asked for */
+    bool stale; /* `on` is to be decided anew, or is off only because the matrix of all variables was asked for */
     int32_t elements;
     gproji_row_name *row; /* rows by elements, then those of single nodes by nodes */
     int64_t *row_start;   /* elements + 1: the rows of each element in `row` */
@@ -7444,6 +7446,12 @@ GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group,
     return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
 }
 
+/* The group's rows do not close any more. */
+GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
+    g->closing = 0;
+    s->schur.stale = true;
+}
+
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
@@ -7461,8 +7469,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
-    if (coefficients && !g->refresh && s->schur.on && !s->solving)
-        gproji_system_forget(s); /* rows that close might not */
+    if (coefficients && row < g->closing) gproji_open_rows(s, g);
     for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
     g->row[row].constant = constant;
     s->changed = true;
@@ -8480,45 +8487,13 @@ GPROJI_INTERNAL void gproji_schur_sort_rows(gproj_system *s, const int32_t *belo
         }
 }
 
-/* The variable of a term that is no auxiliary one, or -1; *factor: what the term adds to the gradient there when the k-th
-   variable of a block is 1 + k / 3. */
-GPROJI_INTERNAL int32_t gproji_schur_kept(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          const gproj_term *term, double *factor) {
-    int32_t first = gproji_variable_of(g, row, term->i), second = gproji_variable_of(g, row, term->j);
-    bool swap = second >= 0 && s->auxiliary[first];
-    int32_t i = swap ? second : first, j = swap ? first : second;
-    *factor = j < 0 ? term->a : term->a * (1 + (j - s->block[j]) / 3.0);
-    return s->auxiliary[i] ? -1 : i;
-}
-
-GPROJI_INTERNAL bool gproji_has_auxiliary(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l)
-        if (s->auxiliary[g->local_variable[l]]) return true;
-    return false;
-}
-
-/* Do the gradients of an element's rows with auxiliary variables add up to nothing at its nodes, whatever these variables
-   are? `sum`: of each variable, zeros on entry and on exit. Not where such rows are refreshed, and may change. */
-GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element, double *sum) {
+/* Has the element closing rows? */
+GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element) {
     const gproji_schur *d = &s->schur;
-    bool closes = d->row_start[element + 1] - d->row_start[element] > 1;
-    int64_t k, t;
-    int32_t pass;
-    for (pass = 0; pass < 3; ++pass)
-        for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k) {
-            const gproji_group *g = &s->group[d->row[k].group];
-            const gproji_row *row = &g->row[d->row[k].row];
-            for (t = row->term; t < row[1].term && gproji_has_auxiliary(s, g, row); ++t) {
-                double factor;
-                int32_t kept = gproji_schur_kept(s, g, row, &g->term[t], &factor);
-                if (kept < 0) continue;
-                if (pass == 0) sum[kept] += factor;
-                if (pass == 1 && (g->refresh || sum[kept] != 0)) closes = false;
-                if (pass == 2) sum[kept] = 0;
-            }
-        }
-    return closes;
+    int64_t k;
+    for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k)
+        if (d->row[k].row < s->group[d->row[k].group].closing) return true;
+    return false;
 }
 
 /* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node; links:
@@ -8555,20 +8530,19 @@ GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t elemen
 }
 
 /* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
-   to pay. sum: work, of each variable; met: work, of each node. */
-GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, double *sum, int32_t *met) {
+   to pay. met: work, of each node. */
+GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
     int32_t e, v, most = 0, kept = 0;
     int64_t l;
     for (v = 0; v < s->variable_count; ++v) {
         kept += !s->auxiliary[v];
-        sum[v] = 0;
     }
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     d->first[0] = 0;
     for (e = 0; e < d->elements; ++e) {
         int32_t left;
-        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e, sum);
+        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e);
         left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
         if (left < 1 || left > gproji_schur_most * kept - d->first[e]) return false;
         d->first[e + 1] = d->first[e] + left;
@@ -8580,7 +8554,6 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, double *sum, int32_t *
 /* Sorts rows, and finds what the elements join and leave. False: no memory, or d->on is false and it does not pay. */
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
-    double *sum;
     int64_t elements = d->elements, nodes = s->node_count;
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
@@ -8593,13 +8566,10 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
         return false;
     gproji_schur_sort_rows(s, belongs);
     d->link_node = (int32_t *)gproji_pool_take(&d->pool, gproji_schur_scan(s, mark, NULL), sizeof(int32_t));
-    sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *sum);
-    if (d->link_node && sum) {
-        gproji_schur_scan(s, mark, d->link_node);
-        d->on = gproji_schur_number(s, sum, mark);
-    }
-    gproji_give(&s->own, sum, (size_t)s->variable_count, sizeof *sum);
-    return d->link_node && sum;
+    if (!d->link_node) return false;
+    gproji_schur_scan(s, mark, d->link_node);
+    d->on = gproji_schur_number(s, mark);
+    return true;
 }
 
 /* Step 3 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
@@ -8836,8 +8806,8 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
     gproj_code code;
     gproji_wake_groups(s);
     if (!gproji_compile_variables(s) || !gproji_schur_decide(s)) return GPROJ_ERROR_MEMORY;
-    s->schur.passed_over = s->schur.on && whole;
-    if (s->schur.passed_over) gproji_schur_forget(s);
+    s->schur.stale = s->schur.on && whole;
+    if (s->schur.stale) gproji_schur_forget(s);
     code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s);
     if (code) return code;
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
@@ -8851,7 +8821,7 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
    there where steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
     gproj_code code;
-    if (s->compiled && (s->schur.on || s->schur.passed_over) && (whole == s->schur.on || gproji_wake_groups(s)))
+    if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return GPROJ_OK;
     code = gproji_compile_steps(s, whole);
@@ -8927,7 +8897,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e,
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
-        if (!d->closes[e] || !own || !joins) continue;
+        if (!d->closes[e] || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
         column[i] = w > 0 ? 1 / w : 0;
     }
@@ -9825,7 +9795,7 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
 /* During a solve by multipliers a group may get its first weight: it has no place among them yet. False: an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    if (!s->schur.on || !gproji_wake_groups(s)) return true;
+    if (!s->schur.on || !(gproji_wake_groups(s) || s->schur.stale)) return true;
     gproji_system_forget(s);
     if (gproji_compile(s, false) != GPROJ_OK) return false;
     gproji_linearise(loop);
@@ -17825,6 +17795,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
+    if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
     return gproji_form_ready(form) ? group : -1;
 }
 
@@ -21002,7 +20973,7 @@ GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, g
     gproji_pass_bool(stream, &idle);
     if (stream->way != GPROJI_READ || idle == g->idle) return;
     g->idle = idle;
-    form->system->schur.passed_over = true; /* to be decided anew */
+    form->system->schur.stale = true; /* to be decided anew */
 }
 
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
