@@ -3724,19 +3724,20 @@ typedef struct gproji_nd_cut {
     int32_t weight; /* of a separator, not yet the smallest */
 } gproji_nd_cut;
 
-/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1; what
-   passes between them is at most its weight. Arcs lead from the exit to the entries of its neighbours, without limit. */
+/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
+   lead from the exit to the entries of its neighbours, without limit. What passes between entry and exit is at most the
+   node's capacity, its weight in whole units. A unit of flow is known by where it comes from: that is all that a search
+   for more needs. */
 typedef struct gproji_band {
     int32_t nodes;
     int32_t *id;         /* nodes: number in the part */
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
-    int32_t *weight;     /* nodes */
-    int32_t *through;    /* nodes: flow from entry to exit */
-    int32_t *turn;       /* states: the next step to try; see gproji_band_step */
+    int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *turn;       /* states: the next step to try; see gproji_band_next */
     int32_t *queue;      /* states; also the path that is looked for */
     int32_t *to;         /* arcs: the neighbour */
-    int32_t *mate;       /* arcs: the same arc the other way */
-    int32_t *flow;       /* arcs */
+    int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
     unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
     unsigned char *mark; /* states: GPROJI_BAND_... */
     void *block;         /* all of these arrays */
@@ -3744,6 +3745,7 @@ typedef struct gproji_band {
 } gproji_band;
 
 enum {
+    GPROJI_BAND_UNITS = 16, /* the largest capacity */
     GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
     GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
@@ -4232,21 +4234,20 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
     return false;
 }
 
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs) {
-    size_t ints = (size_t)nodes * 8 + 1 + (size_t)arcs * 3;
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs, int64_t units) {
+    size_t ints = (size_t)nodes * 8 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
     at = (int32_t *)band->block;
     band->id = at, at += nodes;
     band->start = at, at += nodes + 1;
-    band->weight = at, at += nodes;
-    band->through = at, at += nodes;
+    band->unit = at, at += nodes + 1;
+    band->load = at, at += nodes;
     band->turn = at, at += 2 * nodes;
     band->queue = at, at += 2 * nodes;
     band->to = at, at += arcs;
-    band->mate = at, at += arcs;
-    band->flow = at, at += arcs;
+    band->origin = at, at += units;
     band->ends = (unsigned char *)at;
     band->mark = band->ends + nodes;
     return true;
@@ -4258,8 +4259,9 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
     gproji_band *band = &nd->band;
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
-    int32_t stop = e + nd->here.inner[v], back = stop, k;
+    int32_t back = e + nd->here.inner[v], stop = back;
     band->start[i] = e;
+    band->ends[i] = 0;
     for (; list < end; ++list) {
         int32_t u = nd->number[*list];
         if (u < 0)
@@ -4270,78 +4272,100 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
             band->to[--back] = u;
     }
     while (back < stop) band->to[e++] = band->to[back++];
-    for (k = band->start[i]; k < e; ++k) {
-        int32_t u = band->to[k], mate = u < i ? band->start[u] : k;
-        band->flow[k] = 0;
-        if (u >= i) continue;
-        while (band->to[mate] != i) ++mate;
-        band->mate[k] = mate, band->mate[mate] = k;
-    }
     return e;
+}
+
+/* The capacity of a weight: in units of a common divisor of all weights, or, where these are many, of a part of the
+   largest one. */
+GPROJI_INTERNAL int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
+/* Finds the nodes of the band, in nd->queue, and their capacities, in nd->position. Returns how many nodes; adds up their
+   arcs and capacities. */
+GPROJI_INTERNAL int32_t gproji_nd_find_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                            int64_t *arcs, int64_t *units) {
+    int32_t i, nodes = 0, divisor = 0, largest = 0, *capacity = nd->position;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t a = nd->here.weight[i], b = divisor, rest;
+        nd->number[i] = -1;
+        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
+        nd->number[i] = nodes;
+        nd->queue[nodes++] = i;
+        *arcs += nd->here.inner[i];
+        largest = gproji_max(largest, a);
+        if (a == b) continue;
+        for (; b > 0; a = b, b = rest) rest = a % b;
+        divisor = a;
+    }
+    for (i = 0; i < nodes; ++i)
+        *units += capacity[i] = gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
+    return nodes;
 }
 
 /* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
-    int32_t i, nodes = 0, e = 0;
-    int64_t arcs = 0;
-    for (i = 0; i < nd->nodes; ++i) {
-        nd->number[i] = -1;
-        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
-        nd->number[i] = nodes;
-        nd->queue[nodes++] = i;
-        arcs += nd->here.inner[i];
-    }
-    if (arcs > INT32_MAX) return false;
-    if (!gproji_band_take(nd->heap, band, nodes, arcs)) {
+    int32_t i, e = 0, u = 0, nodes;
+    int64_t arcs = 0, units = 0;
+    nodes = gproji_nd_find_band(nd, cut, from, &arcs, &units);
+    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    if (!gproji_band_take(nd->heap, band, nodes, arcs, units)) {
         nd->failed = true;
         return false;
     }
     band->nodes = nodes;
     memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
-    memset(band->ends, 0, (size_t)nodes);
     for (i = 0; i < nodes; ++i) {
-        band->weight[i] = nd->here.weight[band->id[i]];
-        band->through[i] = 0;
+        band->load[i] = 0;
+        band->unit[i] = u;
+        u += nd->position[i];
         e = gproji_nd_band_arcs(nd, from, i, e);
     }
     band->start[nodes] = e;
+    band->unit[nodes] = u;
     return true;
 }
 
-/* How much more can flow from state s by its step c, and where to: along an arc, or backwards against the flow of one;
-   or to the node's other state, which is the step before its arcs and the one behind them. `back`: how much can come from
-   there. */
-GPROJI_INTERNAL int32_t gproji_band_step(const gproji_band *band, int32_t s, int32_t c, bool back, int32_t *to) {
-    int32_t v = s >> 1;
-    bool leaves = ((s & 1) != 0) != back; /* at an exit ahead, or at an entry back */
-    if (c < band->start[v] || c == band->start[v + 1]) {
-        *to = s ^ 1;
-        return leaves ? band->through[v] : band->weight[v] - band->through[v];
-    }
-    *to = 2 * band->to[c] + !(s & 1);
-    if (leaves) return INT32_MAX;
-    return band->flow[back ? c : band->mate[c]];
+GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
+    return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* The end of a state's steps. Along arcs nothing can go back from an entry, or come back to an exit, without flow. */
-GPROJI_INTERNAL int32_t gproji_band_end(const gproji_band *band, int32_t s, bool back) {
-    int32_t v = s >> 1;
-    if (((s & 1) != 0) == back && band->through[v] == 0) return band->start[v];
-    return band->start[v + 1];
+/* The next state to which more can flow from state s and that has not been seen, or -1: from an exit along an arc, then
+   back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
+   turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
+GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
+    int32_t v = s >> 1, c = band->turn[s], end, next = -1;
+    if (s & 1) {
+        for (end = band->start[v + 1]; c < end && band->mark[2 * band->to[c]]; ++c) continue;
+        if (c < end)
+            next = 2 * band->to[c];
+        else if (band->load[v] > 0 && !band->mark[2 * v])
+            next = 2 * v;
+    } else {
+        if (c < band->unit[v]) {
+            if (gproji_band_has_room(band, v) && !band->mark[s + 1]) return s + 1;
+            ++c;
+        }
+        for (end = band->unit[v] + band->load[v]; c < end; ++c)
+            if (band->origin[c] >= 0 && !band->mark[2 * band->origin[c] + 1]) break;
+        if (c < end) next = 2 * band->origin[c] + 1;
+    }
+    band->turn[s] = c;
+    return next;
 }
 
 /* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
 GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, *turn = band->turn, depth = 0;
+    int32_t *path = band->queue, depth = 0;
     path[0] = source;
     band->mark[source] = GPROJI_BAND_SOURCE;
     while (depth >= 0) {
-        int32_t s = path[depth], end = gproji_band_end(band, s, false) + (s & 1), next = -1;
+        int32_t s = path[depth], next;
         if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
-        for (; turn[s] < end; ++turn[s])
-            if (gproji_band_step(band, s, turn[s], false, &next) > 0 && !band->mark[next]) break;
-        if (turn[s] < end) {
+        next = gproji_band_next(band, s);
+        if (next >= 0) {
             band->mark[next] = GPROJI_BAND_SOURCE;
             path[++depth] = next;
         } else {
@@ -4351,23 +4375,22 @@ GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source)
     return -1;
 }
 
-/* Sends as much as possible along the path; its states may be seen again. */
+/* Sends a unit along the path; its states may be seen again. */
 GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
     const int32_t *path = band->queue;
-    int32_t k, amount = INT32_MAX, to;
+    int32_t k, from = -1; /* the exit that was passed last */
     for (k = 0; k < depth; ++k) {
-        int32_t room = gproji_band_step(band, path[k], band->turn[path[k]], false, &to);
-        if (room < amount) amount = room;
-    }
-    for (k = 0; k < depth; ++k) {
-        int32_t s = path[k], c = band->turn[s];
-        if ((path[k + 1] ^ s) == 1)
-            band->through[s >> 1] += s & 1 ? -amount : amount;
-        else if (s & 1)
-            band->flow[c] += amount;
-        else
-            band->flow[band->mate[c]] -= amount;
+        int32_t s = path[k], v = s >> 1;
+        bool turns = (path[k + 1] ^ s) == 1;
         band->mark[s] = 0;
+        if (s & 1)
+            from = v;
+        else if (turns) /* another unit passes; */
+            band->origin[band->unit[v] + band->load[v]++] = from;
+        else if (k > 0 && path[k - 1] == (s ^ 1)) /* one less; */
+            band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
+        else /* one comes from elsewhere */
+            band->origin[band->turn[s]] = from;
     }
     band->mark[path[depth]] = 0;
 }
@@ -4379,7 +4402,7 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     bool found = false;
     memset(band->mark, 0, 2 * (size_t)band->nodes);
     for (i = 0; i < band->nodes; ++i) {
-        band->turn[2 * i] = band->start[i] - 1; /* at an entry the own exit first, at an exit the own entry last */
+        band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
@@ -4392,15 +4415,53 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     return found;
 }
 
-/* Marks what the states in the queue reach, or what reaches them. */
-GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark, bool back) {
-    int32_t head = 0, c, to;
+/* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
+GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
+    if (band->mark[s] & mark) return tail;
+    band->mark[s] |= mark;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* Marks what the states in the queue reach. */
+GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
     while (head < tail) {
-        int32_t s = band->queue[head++], end = gproji_band_end(band, s, back);
-        for (c = band->start[s >> 1] - 1; c < end; ++c) {
-            if (gproji_band_step(band, s, c, back, &to) <= 0 || (band->mark[to] & mark)) continue;
-            band->mark[to] |= mark;
-            band->queue[tail++] = to;
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+                if (band->origin[c] >= 0) tail = gproji_band_reach(band, 2 * band->origin[c] + 1, mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, s + 1, mark, tail);
+        }
+    }
+}
+
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Marks what reaches the states in the queue. */
+GPROJI_INTERNAL void gproji_band_spread_back(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c] + 1, mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, s + 1, mark, tail);
         }
     }
 }
@@ -4414,7 +4475,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
         band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
         band->queue[tail++] = 2 * i + 1;
     }
-    gproji_band_spread(band, tail, GPROJI_BAND_SINK, true);
+    gproji_band_spread_back(band, tail, GPROJI_BAND_SINK);
     for (i = tail = 0; i < states; ++i) {
         bool below = nd->best_position[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
@@ -4423,7 +4484,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
             band->queue[tail++] = i;
         }
     }
-    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE, false);
+    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
     return open > 0 ? 3 : 1;
 }
 
@@ -4450,8 +4511,9 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
     for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
     for (i = 0; i < band->nodes; ++i) {
-        weight[gproji_band_side(band, i, mark)] += band->weight[i];
-        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= band->weight[i]; /* counted among those below */
+        int32_t w = nd->here.weight[band->id[i]];
+        weight[gproji_band_side(band, i, mark)] += w;
+        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= w; /* counted among those below */
     }
     for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
     for (k = 0; k < nd->rims; ++k) {
