@@ -3687,12 +3687,15 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    neighbours. */
 
 enum {
-    GPROJI_ND_LEAF = 64,   /* nodes of a part that is not cut any more: bits of a word */
-    GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
-    GPROJI_ND_WORDS = 4,   /* for both */
-    GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
-    GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
+    GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
+    GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
+    GPROJI_ND_WORDS = 4,      /* for both */
+    GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_SAMPLES = 32,   /* nodes whose neighbours are looked at */
+    GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
+    GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
+    GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
 };
 
 /* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
@@ -3719,9 +3722,10 @@ typedef struct gproji_nd_cut {
     double cost;
     int32_t axis;
     int32_t at;
-    int32_t range;  /* positions are 0..range-1 */
-    double below;   /* weight of the nodes with position < at */
-    int32_t weight; /* of a separator, not yet the smallest */
+    int32_t range; /* positions are 0..range-1 */
+    double below;  /* weight of the nodes with position < at */
+    double weight; /* of a separator, not yet the smallest */
+
 } gproji_nd_cut;
 
 /* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
@@ -3771,15 +3775,16 @@ typedef struct gproji_nd {
     int32_t halos, *halo;            /* names */
     int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
     int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
-    int32_t *distance[4], *queue;    /* coordinates: x takes the place of the first, y of the third */
+    int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
     int32_t *number;                 /* in the band or in a side */
     int32_t *position, *best_position;
     unsigned char *side; /* 0, 1; 2: separator */
     /* by position; how much more there is than at the position before */
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
-    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
+    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    double reach[4][4];            /* see gproji_nd_sample */
     gproji_band band;
 } gproji_nd;
 
@@ -4046,6 +4051,23 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
     return best;
 }
 
+/* x = d_a - d_b and y = d_c - d_d in the pairing of the four starts that spreads the nodes most: starts at opposite ends
+   are paired, also where all are equally far from each other. */
+GPROJI_INTERNAL void gproji_nd_pair_distances(gproji_nd *nd) {
+    static const unsigned char pair[3][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
+    int32_t *const *d = nd->distance, i, p, best = 0;
+    int64_t spread, most = -1;
+    for (p = 0; p < 3; ++p) {
+        const int32_t *a = d[pair[p][0]], *b = d[pair[p][1]], *c = d[pair[p][2]], *e = d[pair[p][3]];
+        for (i = 0, spread = 0; i < nd->nodes; ++i) spread += abs(a[i] - b[i]) + abs(c[i] - e[i]);
+        if (spread > most) most = spread, best = p;
+    }
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t x = d[pair[best][0]][i] - d[pair[best][1]][i], y = d[pair[best][2]][i] - d[pair[best][3]][i];
+        d[0][i] = x, d[1][i] = y;
+    }
+}
+
 /* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
    nodes a search reaches; when these are not all, there are none. */
 GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
@@ -4058,7 +4080,7 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
     for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[2][i] -= d[3][i];
+    gproji_nd_pair_distances(nd);
     return reached;
 }
 
@@ -4094,57 +4116,66 @@ GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3
            gproji_nd_rest(nd, weight[1], halo[1] + s);
 }
 
+/* The four directions' parts of x and y. */
+GPROJI_INLINE int32_t gproji_nd_direction(int32_t axis, int32_t part) {
+    return axis < 2 ? axis == part : axis == 3 && part == 1 ? -1 : 1;
+}
+
 /* In a direction, 0 to 3: neighbours differ by at most that much. */
 GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
 
-/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many. */
-GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position) {
-    static const signed char factor[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    int32_t fx = factor[axis][0], fy = factor[axis][1], i, least = INT32_MAX, most = INT32_MIN, shift = 0;
+/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
+   positions are halved so many times. */
+GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
+    int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
+    int32_t least = INT32_MAX, most = INT32_MIN;
     for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[2][i];
+        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[1][i];
         position[i] = p;
         if (p < least) least = p;
         if (p > most) most = p;
     }
-    while ((most - least) >> shift >= nd->nodes) ++shift;
-    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> shift;
-    return ((most - least) >> shift) + 1;
+    for (*shift = 0; (most - least) >> *shift >= nd->nodes;) ++*shift;
+    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> *shift;
+    return ((most - least) >> *shift) + 1;
 }
 
-/* Chooses thresholds that leave 0.3 to 0.7 of the weight below, some tenth apart, and marks the positions near them. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t range, int32_t jump) {
-    double below = 0, next = 0.3 * nd->weight;
-    int32_t t, r;
-    memset(nd->near, 0, (size_t)range + 1);
-    for (t = 1; t < range; ++t) {
-        below += nd->sum[t - 1];
-        if (below < next || below > 0.7 * nd->weight) continue;
-        next = below + 0.1 * nd->weight;
-        for (r = t > jump ? t - jump : 0; r < t + jump && r < range; ++r) nd->near[r] |= 1;
-        nd->near[t] = 3;
+/* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
+   positions higher. */
+GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
+    int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0;
+    memset(nd->reach, 0, sizeof nd->reach);
+    for (i = step / 2; i < nd->nodes; i += step, ++count) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        int32_t most[4] = {0, 0, 0, 0};
+        for (; list < end; ++list)
+            for (axis = 0; axis < 4; ++axis) {
+                int32_t up = gproji_nd_direction(axis, 0) * (nd->distance[0][*list] - nd->distance[0][i]) +
+                             gproji_nd_direction(axis, 1) * (nd->distance[1][*list] - nd->distance[1][i]);
+                if (up > most[axis]) most[axis] = up;
+            }
+        for (axis = 0; axis < 4; ++axis)
+            for (k = 0; k < most[axis]; ++k) nd->reach[axis][k] += 1;
     }
+    for (axis = 0; axis < 4; ++axis)
+        for (k = 0; k < 4; ++k) nd->reach[axis][k] /= count;
 }
 
-/* For all thresholds at once, what has neighbours across: in the part, ... */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list = adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
-        if (!nd->near[p]) continue;
-        for (; list < end; ++list) {
-            int32_t q = position[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
-        }
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
+/* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
+   those of the sample; on the side where that is less. */
+GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_t t, int32_t range, int32_t shift) {
+    double low = nd->sum[t - 1], high = nd->sum[t];
+    int32_t k;
+    if (shift > 0) return low < high ? low : high;
+    low *= nd->reach[axis][0], high *= nd->reach[axis][0];
+    for (k = 1; k < 4; ++k) {
+        if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
+        if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
     }
+    return low < high ? low : high;
 }
 
-/* ... and in the halo. */
+/* Halo nodes next to nodes below each threshold, and above. */
 GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
     int32_t k, *least = nd->halo_least, *most = nd->halo_most;
     for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
@@ -4163,32 +4194,84 @@ GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position
     }
 }
 
+/* The cost of a cut with `below` below it and a separator that takes from both sides. */
+GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double below, double separator,
+                                                const double halo[2]) {
+    double weight[3];
+    weight[0] = below - separator / 2, weight[1] = nd->weight - below - separator / 2, weight[2] = separator;
+    return gproji_nd_cost(nd, weight, halo);
+}
+
+/* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
+   are not most of the part, the best ones by guess. Marks the positions near them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
+    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (8 * jump), t, k;
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, next = 0.3 * nd->weight, halo[2];
+    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
+    halo[0] = 0, halo[1] = nd->halo_weight;
+    memset(nd->near, 0, (size_t)range + 1);
+    for (t = 1; t < range && below <= 0.7 * nd->weight; ++t) {
+        double own;
+        below += nd->sum[t - 1];
+        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
+        if (below < next || below > 0.7 * nd->weight) continue;
+        next = below + 0.1 * nd->weight;
+        own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
+        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
+        cost[k] = own, at[k] = t;
+        count = gproji_min(count + 1, most);
+    }
+    for (k = 0; k < count; ++k) {
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->near[t] |= 1;
+        nd->near[at[k]] = 3;
+    }
+}
+
+/* For all thresholds at once, what has neighbours across. */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->low, *high = nd->high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list, *end;
+        if (!nd->near[p]) continue;
+        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
+        for (; list < end; ++list) {
+            int32_t q = position[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
+        }
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
+    }
+}
+
 /* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
 GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
-    int32_t *position = nd->position, *sum = nd->sum, range = gproji_nd_project(nd, axis, position), i, t;
+    int32_t *position = nd->position, *sum = nd->sum, shift, range = gproji_nd_project(nd, axis, position, &shift), i,
+            t;
     double below = 0, low = 0, high = 0, halo[2];
     size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
-    bool better = false;
+    bool better = false, exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
     memset(sum, 0, bytes);
     memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
     memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
     for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
-    gproji_nd_choose_thresholds(nd, range, gproji_nd_jump(axis));
-    gproji_nd_count_inner(nd, position);
     gproji_nd_count_halo(nd, position);
+    gproji_nd_choose_thresholds(nd, axis, range, shift);
+    if (exact) gproji_nd_count_inner(nd, position);
     halo[0] = 0, halo[1] = nd->halo_weight;
     for (t = 1; t < range; ++t) {
-        double weight[3], cost;
+        double separator, cost;
         below += sum[t - 1];
         low += nd->low[t], high += nd->high[t];
         halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
         if (nd->near[t] != 3) continue;
-        weight[0] = below, weight[1] = nd->weight - below, weight[2] = low < high ? low : high;
-        weight[low < high ? 0 : 1] -= weight[2];
-        cost = gproji_nd_cost(nd, weight, halo);
+        separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
+        cost = gproji_nd_threshold_cost(nd, below, separator, halo);
         if (cost >= best->cost) continue;
         best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
-        best->weight = (int32_t)weight[2];
+        best->weight = separator;
         better = true;
     }
     if (!better) return;
@@ -4234,7 +4317,8 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
     return false;
 }
 
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs, int64_t units) {
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
+                                      int64_t units) {
     size_t ints = (size_t)nodes * 8 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
@@ -4667,16 +4751,27 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
     gproji_pool_give_all(&pool);
 }
 
+/* Has the part a rim, as open meshes have: many nodes with few neighbours? */
+GPROJI_INTERNAL bool gproji_nd_is_open(const gproji_nd *nd) {
+    const int32_t *inner = nd->here.inner;
+    int64_t all = 0;
+    int32_t i, few = 0;
+    for (i = 0; i < nd->nodes; ++i) all += inner[i];
+    for (i = 0; i < nd->nodes; ++i) few += (int64_t)inner[i] * 4 * nd->nodes < 3 * all;
+    return (double)few * few > nd->nodes;
+}
+
 /* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
-   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
    nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && !gproji_nd_is_open(nd) ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
         reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
         if (reached < nd->nodes) break;
+        gproji_nd_sample(nd);
         for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
         if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
     }
