@@ -4051,23 +4051,6 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
     return best;
 }
 
-/* x = d_a - d_b and y = d_c - d_d in the pairing of the four starts that spreads the nodes most: starts at opposite ends
-   are paired, also where all are equally far from each other. */
-GPROJI_INTERNAL void gproji_nd_pair_distances(gproji_nd *nd) {
-    static const unsigned char pair[3][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
-    int32_t *const *d = nd->distance, i, p, best = 0;
-    int64_t spread, most = -1;
-    for (p = 0; p < 3; ++p) {
-        const int32_t *a = d[pair[p][0]], *b = d[pair[p][1]], *c = d[pair[p][2]], *e = d[pair[p][3]];
-        for (i = 0, spread = 0; i < nd->nodes; ++i) spread += abs(a[i] - b[i]) + abs(c[i] - e[i]);
-        if (spread > most) most = spread, best = p;
-    }
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t x = d[pair[best][0]][i] - d[pair[best][1]][i], y = d[pair[best][2]][i] - d[pair[best][3]][i];
-        d[0][i] = x, d[1][i] = y;
-    }
-}
-
 /* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
    nodes a search reaches; when these are not all, there are none. */
 GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
@@ -4080,7 +4063,7 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
     for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    gproji_nd_pair_distances(nd);
+    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
     return reached;
 }
 
