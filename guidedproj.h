@@ -5375,42 +5375,83 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
 }
 
 enum {
-    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
+    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,     /* per node; see gproji_forecast */
+    GPROJI_DISSECT_LEAST = 2500,        /* nodes of a graph for which a forecast is made */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 /* Condensed nodes, then the others by dissection. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
-    gproji_heap *heap = an->keep->heap;
-    gproji_condensation condensed;
-    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
-    bool done = gproji_condense(&condensed, heap, an->graph);
-    for (k = 0; done && k < condensed.count; ++k) {
-        order[k] = condensed.first[k];
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, const gproji_condensation *condensed) {
+    int32_t *order = an->out->order, *rest = order + condensed->count, k, total = an->out->columns;
+    for (k = 0; k < condensed->count; ++k) {
+        order[k] = condensed->first[k];
         total -= an->graph->weight[order[k]];
     }
-    rest = order + condensed.count;
-    done = done && gproji_dissect(heap, &condensed.rest, total, rest);
-    for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
-    gproji_pool_give_all(&condensed.pool);
-    return done;
+    if (!gproji_dissect(an->keep->heap, &condensed->rest, total, rest)) return false;
+    for (k = 0; k < condensed->rest.nodes; ++k) rest[k] = condensed->first[condensed->count + rest[k]];
+    return true;
 }
 
-/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
-   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
-GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
-    gproji_symbolic *out = an->out;
-    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
-    double flops;
-    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
-    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
-        if (!gproji_dissected_order(an)) return false;
-        gproji_count_factor(an, keep_order);
-        if (out->flops < flops) return true;
+/* What dissection will cost in the plane, up to a factor: of w variables, each next to d others, separators have about
+   sqrt(w d), and the flops are about the cube of that. On meshes they are 15 to 40 times as many. */
+GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
+    double all = 0, next = 0;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) {
+        double weight = graph->weight[i];
+        all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
+    return next / 8 * sqrt(next / 8);
+}
+
+/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes some three
+   times as long and spares a fifth of the flops: it is tried where that pays within about four factorisations, which
+   minimum degree tells, and alone where the forecast says so and what comes out is as on meshes. */
+GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, gproji_condensation *condensed) {
+    gproji_symbolic *out = an->out;
+    gproji_heap *heap = an->keep->heap;
+    int32_t *order;
+    bool counted = false;
+    double flops, forecast;
+    if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_condense(condensed, heap, an->graph)) return false;
+        forecast = gproji_forecast(&condensed->rest);
+        if (forecast > (double)GPROJI_DISSECT_FORECAST * out->nodes) {
+            if (!gproji_dissected_order(an, condensed)) return false;
+            gproji_count_factor(an, keep_order);
+            if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
+            counted = true;
+        }
+    }
+    order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
+    if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
+        if (!gproji_dissected_order(an, condensed)) return false;
+        gproji_count_factor(an, keep_order);
+        counted = true;
+    }
+    if (counted && out->flops < flops) return true;
     if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
     gproji_count_factor(an, keep_order);
     return true;
+}
+
+/* Finds an order, and gives back the condensed graph. Without `best`, by dissection. */
+GPROJI_INTERNAL bool gproji_condensed_order(gproji_analysis *an, bool keep_order, bool best) {
+    gproji_condensation condensed;
+    bool done;
+    memset(&condensed, 0, sizeof condensed);
+    gproji_pool_start(&condensed.pool, an->keep->heap);
+    if (best) {
+        done = gproji_better_order(an, keep_order, &condensed);
+    } else {
+        done = gproji_condense(&condensed, an->keep->heap, an->graph) && gproji_dissected_order(an, &condensed);
+        if (done) gproji_count_factor(an, keep_order);
+    }
+    gproji_pool_give_all(&condensed.pool);
+    return done;
 }
 
 /* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
@@ -5419,11 +5460,10 @@ GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_choles
     gproji_symbolic *out = an->out;
     gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
     if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_DISSECTION) {
-        if (!gproji_dissected_order(an)) return false;
-    } else if (ordering == GPROJ_ORDERING_AMD) {
+    if (ordering == GPROJ_ORDERING_BEST || ordering == GPROJ_ORDERING_DISSECTION)
+        return gproji_condensed_order(an, options->disable_postorder, ordering == GPROJ_ORDERING_BEST);
+    if (ordering == GPROJ_ORDERING_AMD) {
         if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
     } else {
         for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
