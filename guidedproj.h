@@ -3763,6 +3763,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
+    bool open;           /* see gproji_has_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -3889,6 +3890,22 @@ GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
 
 /* -- parts -- */
 
+/* Has the graph a rim, as open meshes have: many nodes with few neighbours? Light nodes do not count. */
+GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
+    double all = 0, count = 0, degrees = 0, few = 0;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        degrees += (double)(graph->start[i + 1] - graph->start[i]), count += 1;
+    }
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        few += (double)(graph->start[i + 1] - graph->start[i]) * count < 0.75 * degrees;
+    }
+    return few * few > count;
+}
+
 /* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
    memory. */
 GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
@@ -3919,6 +3936,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
+    nd->open = gproji_has_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -4734,21 +4752,11 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
     gproji_pool_give_all(&pool);
 }
 
-/* Has the part a rim, as open meshes have: many nodes with few neighbours? */
-GPROJI_INTERNAL bool gproji_nd_is_open(const gproji_nd *nd) {
-    const int32_t *inner = nd->here.inner;
-    int64_t all = 0;
-    int32_t i, few = 0;
-    for (i = 0; i < nd->nodes; ++i) all += inner[i];
-    for (i = 0; i < nd->nodes; ++i) few += (int64_t)inner[i] * 4 * nd->nodes < 3 * all;
-    return (double)few * few > nd->nodes;
-}
-
 /* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
    other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
    nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && !gproji_nd_is_open(nd) ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && !nd->open ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
@@ -5394,8 +5402,8 @@ GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, const gproji_co
 }
 
 /* What dissection will cost in the plane, up to a factor: where n nodes of weight w have d neighbours each, a separator
-   has about sqrt(n d) nodes, and the flops are about the cube of its weight. On meshes they are 15 to 40 times what this
-   says. */
+   has about sqrt(n d) nodes, and the flops are about the cube of its weight; around closed meshes the first ones need two
+   lines. On meshes the flops are 15 to 40 times what this says. */
 GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
     double all = 0, next = 0, square;
     int32_t i;
@@ -5404,7 +5412,7 @@ GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
         all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
     square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
-    return square * sqrt(square);
+    return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
 }
 
 /* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes some three
