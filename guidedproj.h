@@ -3691,7 +3691,7 @@ enum {
     GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
     GPROJI_ND_WORDS = 4,      /* for both */
     GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_SAMPLES = 32,   /* nodes whose neighbours are looked at */
+    GPROJI_ND_SAMPLES = 64,   /* nodes whose neighbours are looked at */
     GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
     GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
     GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
@@ -4206,7 +4206,7 @@ GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double belo
 /* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
    are not most of the part, the best ones by guess. Marks the positions near them. */
 GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
-    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (8 * jump), t, k;
+    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
     double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, next = 0.3 * nd->weight, halo[2];
     most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
     halo[0] = 0, halo[1] = nd->halo_weight;
@@ -4282,12 +4282,12 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *b
 
 /* -- the smallest separator in a band -- */
 
-/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than a quarter of
+/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than 0.3 of
    the part's; and each rim keeps about a quarter of the weight behind it. */
 GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
     const int32_t *sum = nd->best_sum;
     int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
-    double most = gproji_fmin(12.0 * cut->weight, 0.25 * nd->weight), band = 0, below = 0, above;
+    double most = gproji_fmin(12.0 * cut->weight, 0.3 * nd->weight), band = 0, below = 0, above;
     for (i = 0; i < low; ++i) below += sum[i];
     for (; i < high; ++i) band += sum[i];
     above = nd->weight - below - band;
