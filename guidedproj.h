@@ -4764,7 +4764,7 @@ GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
         if (reached < nd->nodes) break;
         gproji_nd_sample(nd);
         for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
-        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+        if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
