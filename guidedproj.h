@@ -3674,8 +3674,10 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
      coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
                   c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
                   these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
-     cut          The best of some thresholds of the four. A side's cost is estimated from its weight and that of its
-                  halo, the separators next to it, which become rows of all its fronts.
+     cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
+                  guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
+                  cost is estimated from its weight and that of its halo, the separators next to it, which become rows
+                  of all its fronts.
      separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
                   cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
                   in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
@@ -3725,7 +3727,6 @@ typedef struct gproji_nd_cut {
     int32_t range; /* positions are 0..range-1 */
     double below;  /* weight of the nodes with position < at */
     double weight; /* of a separator, not yet the smallest */
-
 } gproji_nd_cut;
 
 /* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
@@ -4144,22 +4145,26 @@ GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int
 /* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
    positions higher. */
 GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
-    int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0;
-    memset(nd->reach, 0, sizeof nd->reach);
+    const int32_t *x = nd->distance[0], *y = nd->distance[1];
+    int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
+    memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
         int32_t most[4] = {0, 0, 0, 0};
-        for (; list < end; ++list)
-            for (axis = 0; axis < 4; ++axis) {
-                int32_t up = gproji_nd_direction(axis, 0) * (nd->distance[0][*list] - nd->distance[0][i]) +
-                             gproji_nd_direction(axis, 1) * (nd->distance[1][*list] - nd->distance[1][i]);
-                if (up > most[axis]) most[axis] = up;
-            }
-        for (axis = 0; axis < 4; ++axis)
-            for (k = 0; k < most[axis]; ++k) nd->reach[axis][k] += 1;
+        for (; list < end; ++list) {
+            int32_t dx = x[*list] - x[i], dy = y[*list] - y[i];
+            most[0] = gproji_max(most[0], dx), most[1] = gproji_max(most[1], dy);
+            most[2] = gproji_max(most[2], dx + dy), most[3] = gproji_max(most[3], dx - dy);
+        }
+        for (axis = 0; axis < 4; ++axis) found[axis][most[axis]]++;
     }
-    for (axis = 0; axis < 4; ++axis)
-        for (k = 0; k < 4; ++k) nd->reach[axis][k] /= count;
+    for (axis = 0; axis < 4; ++axis) {
+        int32_t more = 0;
+        for (k = 4; k > 0; --k) {
+            more += found[axis][k];
+            nd->reach[axis][k - 1] = (double)more / count;
+        }
+    }
 }
 
 /* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
