@@ -4102,6 +4102,9 @@ GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
 
 /* -- cuts -- */
 
+/* Rounds to seven digits, so that cuts are equally good on all machines if they are: some fuse products and sums. */
+GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
+
 /* What the elimination of a part is thought to cost in flops: the solution of
      f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
    which is its separator's front, with the halo's rows, and twice a half. */
@@ -4114,8 +4117,8 @@ GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
 GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
     double s = weight[2], h = nd->halo_weight;
     if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
-    return s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
-           gproji_nd_rest(nd, weight[1], halo[1] + s);
+    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
+                           gproji_nd_rest(nd, weight[1], halo[1] + s));
 }
 
 /* The four directions' parts of x and y. */
@@ -4178,7 +4181,7 @@ GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_
         if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
         if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
     }
-    return low < high ? low : high;
+    return gproji_coarsely(low < high ? low : high);
 }
 
 /* Halo nodes next to nodes below each threshold, and above. */
@@ -4212,16 +4215,16 @@ GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double belo
    are not most of the part, the best ones by guess. Marks the positions near them. */
 GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
     int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
-    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, next = 0.3 * nd->weight, halo[2];
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
     most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
     halo[0] = 0, halo[1] = nd->halo_weight;
     memset(nd->near, 0, (size_t)range + 1);
-    for (t = 1; t < range && below <= 0.7 * nd->weight; ++t) {
+    for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
         double own;
         below += nd->sum[t - 1];
         halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (below < next || below > 0.7 * nd->weight) continue;
-        next = below + 0.1 * nd->weight;
+        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
+        last = below;
         own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
         for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
         cost[k] = own, at[k] = t;
