@@ -3681,8 +3681,10 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
      coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
                   c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
                   these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
-     cut          The best of some thresholds of the four. A side's cost is estimated from its weight and that of its
-                  halo, the separators next to it, which become rows of all its fronts.
+     cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
+                  guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
+                  cost is estimated from its weight and that of its halo, the separators next to it, which become rows
+                  of all its fronts.
      separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
                   cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
                   in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
@@ -3694,12 +3696,15 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    neighbours. */
 
 enum {
-    GPROJI_ND_LEAF = 64,   /* nodes of a part that is not cut any more: bits of a word */
-    GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
-    GPROJI_ND_WORDS = 4,   /* for both */
-    GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
-    GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
+    GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
+    GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
+    GPROJI_ND_WORDS = 4,      /* for both */
+    GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_SAMPLES = 64,   /* nodes whose neighbours are looked at */
+    GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
+    GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
+    GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
 };
 
 /* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
@@ -3726,24 +3731,25 @@ typedef struct gproji_nd_cut {
     double cost;
     int32_t axis;
     int32_t at;
-    int32_t range;  /* positions are 0..range-1 */
-    double below;   /* weight of the nodes with position < at */
-    int32_t weight; /* of a separator, not yet the smallest */
+    int32_t range; /* positions are 0..range-1 */
+    double below;  /* weight of the nodes with position < at */
+    double weight; /* of a separator, not yet the smallest */
 } gproji_nd_cut;
 
-/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1; what
-   passes between them is at most its weight. Arcs lead from the exit to the entries of its neighbours, without limit. */
+/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
+   lead from the exit to the entries of its neighbours, without limit. What passes between entry and exit is at most the
+   node's capacity, its weight in whole units. A unit of flow is known by where it comes from: that is all that a search
+   for more needs. */
 typedef struct gproji_band {
     int32_t nodes;
     int32_t *id;         /* nodes: number in the part */
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
-    int32_t *weight;     /* nodes */
-    int32_t *through;    /* nodes: flow from entry to exit */
-    int32_t *turn;       /* states: the next step to try; see gproji_band_step */
+    int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *turn;       /* states: the next step to try; see gproji_band_next */
     int32_t *queue;      /* states; also the path that is looked for */
     int32_t *to;         /* arcs: the neighbour */
-    int32_t *mate;       /* arcs: the same arc the other way */
-    int32_t *flow;       /* arcs */
+    int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
     unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
     unsigned char *mark; /* states: GPROJI_BAND_... */
     void *block;         /* all of these arrays */
@@ -3751,6 +3757,7 @@ typedef struct gproji_band {
 } gproji_band;
 
 enum {
+    GPROJI_BAND_UNITS = 16, /* the largest capacity */
     GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
     GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
@@ -3764,6 +3771,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
+    bool open;           /* see gproji_has_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -3776,15 +3784,16 @@ typedef struct gproji_nd {
     int32_t halos, *halo;            /* names */
     int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
     int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
-    int32_t *distance[4], *queue;    /* coordinates: x takes the place of the first, y of the third */
+    int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
     int32_t *number;                 /* in the band or in a side */
     int32_t *position, *best_position;
     unsigned char *side; /* 0, 1; 2: separator */
     /* by position; how much more there is than at the position before */
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
-    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
+    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    double reach[4][4];            /* see gproji_nd_sample */
     gproji_band band;
 } gproji_nd;
 
@@ -3889,6 +3898,22 @@ GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
 
 /* -- parts -- */
 
+/* Has the graph a rim, as open meshes have: many nodes with few neighbours? Light nodes do not count. */
+GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
+    double all = 0, count = 0, degrees = 0, few = 0;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        degrees += (double)(graph->start[i + 1] - graph->start[i]), count += 1;
+    }
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        few += (double)(graph->start[i + 1] - graph->start[i]) * count < 0.75 * degrees;
+    }
+    return few * few > count;
+}
+
 /* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
    memory. */
 GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
@@ -3919,6 +3944,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
+    nd->open = gproji_has_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -4063,7 +4089,7 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
     for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[2][i] -= d[3][i];
+    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
     return reached;
 }
 
@@ -4083,6 +4109,9 @@ GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
 
 /* -- cuts -- */
 
+/* Rounds to seven digits, so that cuts are equally good on all machines if they are: some fuse products and sums. */
+GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
+
 /* What the elimination of a part is thought to cost in flops: the solution of
      f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
    which is its separator's front, with the halo's rows, and twice a half. */
@@ -4095,61 +4124,74 @@ GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
 GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
     double s = weight[2], h = nd->halo_weight;
     if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
-    return s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
-           gproji_nd_rest(nd, weight[1], halo[1] + s);
+    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
+                           gproji_nd_rest(nd, weight[1], halo[1] + s));
+}
+
+/* The four directions' parts of x and y. */
+GPROJI_INLINE int32_t gproji_nd_direction(int32_t axis, int32_t part) {
+    return axis < 2 ? axis == part : axis == 3 && part == 1 ? -1 : 1;
 }
 
 /* In a direction, 0 to 3: neighbours differ by at most that much. */
 GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
 
-/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many. */
-GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position) {
-    static const signed char factor[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    int32_t fx = factor[axis][0], fy = factor[axis][1], i, least = INT32_MAX, most = INT32_MIN, shift = 0;
+/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
+   positions are halved so many times. */
+GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
+    int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
+    int32_t least = INT32_MAX, most = INT32_MIN;
     for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[2][i];
+        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[1][i];
         position[i] = p;
         if (p < least) least = p;
         if (p > most) most = p;
     }
-    while ((most - least) >> shift >= nd->nodes) ++shift;
-    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> shift;
-    return ((most - least) >> shift) + 1;
+    for (*shift = 0; (most - least) >> *shift >= nd->nodes;) ++*shift;
+    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> *shift;
+    return ((most - least) >> *shift) + 1;
 }
 
-/* Chooses thresholds that leave 0.3 to 0.7 of the weight below, some tenth apart, and marks the positions near them. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t range, int32_t jump) {
-    double below = 0, next = 0.3 * nd->weight;
-    int32_t t, r;
-    memset(nd->near, 0, (size_t)range + 1);
-    for (t = 1; t < range; ++t) {
-        below += nd->sum[t - 1];
-        if (below < next || below > 0.7 * nd->weight) continue;
-        next = below + 0.1 * nd->weight;
-        for (r = t > jump ? t - jump : 0; r < t + jump && r < range; ++r) nd->near[r] |= 1;
-        nd->near[t] = 3;
-    }
-}
-
-/* For all thresholds at once, what has neighbours across: in the part, ... */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list = adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
-        if (!nd->near[p]) continue;
+/* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
+   positions higher. */
+GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
+    const int32_t *x = nd->distance[0], *y = nd->distance[1];
+    int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
+    memset(found, 0, sizeof found);
+    for (i = step / 2; i < nd->nodes; i += step, ++count) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        int32_t most[4] = {0, 0, 0, 0};
         for (; list < end; ++list) {
-            int32_t q = position[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
+            int32_t dx = x[*list] - x[i], dy = y[*list] - y[i];
+            most[0] = gproji_max(most[0], dx), most[1] = gproji_max(most[1], dy);
+            most[2] = gproji_max(most[2], dx + dy), most[3] = gproji_max(most[3], dx - dy);
         }
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
+        for (axis = 0; axis < 4; ++axis) found[axis][most[axis]]++;
+    }
+    for (axis = 0; axis < 4; ++axis) {
+        int32_t more = 0;
+        for (k = 4; k > 0; --k) {
+            more += found[axis][k];
+            nd->reach[axis][k - 1] = (double)more / count;
+        }
     }
 }
 
-/* ... and in the halo. */
+/* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
+   those of the sample; on the side where that is less. */
+GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_t t, int32_t range, int32_t shift) {
+    double low = nd->sum[t - 1], high = nd->sum[t];
+    int32_t k;
+    if (shift > 0) return low < high ? low : high;
+    low *= nd->reach[axis][0], high *= nd->reach[axis][0];
+    for (k = 1; k < 4; ++k) {
+        if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
+        if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
+    }
+    return gproji_coarsely(low < high ? low : high);
+}
+
+/* Halo nodes next to nodes below each threshold, and above. */
 GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
     int32_t k, *least = nd->halo_least, *most = nd->halo_most;
     for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
@@ -4168,32 +4210,84 @@ GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position
     }
 }
 
+/* The cost of a cut with `below` below it and a separator that takes from both sides. */
+GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double below, double separator,
+                                                const double halo[2]) {
+    double weight[3];
+    weight[0] = below - separator / 2, weight[1] = nd->weight - below - separator / 2, weight[2] = separator;
+    return gproji_nd_cost(nd, weight, halo);
+}
+
+/* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
+   are not most of the part, the best ones by guess. Marks the positions near them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
+    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
+    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
+    halo[0] = 0, halo[1] = nd->halo_weight;
+    memset(nd->near, 0, (size_t)range + 1);
+    for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
+        double own;
+        below += nd->sum[t - 1];
+        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
+        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
+        last = below;
+        own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
+        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
+        cost[k] = own, at[k] = t;
+        count = gproji_min(count + 1, most);
+    }
+    for (k = 0; k < count; ++k) {
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->near[t] |= 1;
+        nd->near[at[k]] = 3;
+    }
+}
+
+/* For all thresholds at once, what has neighbours across. */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->low, *high = nd->high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list, *end;
+        if (!nd->near[p]) continue;
+        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
+        for (; list < end; ++list) {
+            int32_t q = position[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
+        }
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
+    }
+}
+
 /* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
 GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
-    int32_t *position = nd->position, *sum = nd->sum, range = gproji_nd_project(nd, axis, position), i, t;
+    int32_t *position = nd->position, *sum = nd->sum, shift, range = gproji_nd_project(nd, axis, position, &shift), i,
+            t;
     double below = 0, low = 0, high = 0, halo[2];
     size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
-    bool better = false;
+    bool better = false, exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
     memset(sum, 0, bytes);
     memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
     memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
     for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
-    gproji_nd_choose_thresholds(nd, range, gproji_nd_jump(axis));
-    gproji_nd_count_inner(nd, position);
     gproji_nd_count_halo(nd, position);
+    gproji_nd_choose_thresholds(nd, axis, range, shift);
+    if (exact) gproji_nd_count_inner(nd, position);
     halo[0] = 0, halo[1] = nd->halo_weight;
     for (t = 1; t < range; ++t) {
-        double weight[3], cost;
+        double separator, cost;
         below += sum[t - 1];
         low += nd->low[t], high += nd->high[t];
         halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
         if (nd->near[t] != 3) continue;
-        weight[0] = below, weight[1] = nd->weight - below, weight[2] = low < high ? low : high;
-        weight[low < high ? 0 : 1] -= weight[2];
-        cost = gproji_nd_cost(nd, weight, halo);
+        separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
+        cost = gproji_nd_threshold_cost(nd, below, separator, halo);
         if (cost >= best->cost) continue;
         best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
-        best->weight = (int32_t)weight[2];
+        best->weight = separator;
         better = true;
     }
     if (!better) return;
@@ -4203,12 +4297,12 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *b
 
 /* -- the smallest separator in a band -- */
 
-/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than a quarter of
+/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than 0.3 of
    the part's; and each rim keeps about a quarter of the weight behind it. */
 GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
     const int32_t *sum = nd->best_sum;
     int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
-    double most = gproji_fmin(12.0 * cut->weight, 0.25 * nd->weight), band = 0, below = 0, above;
+    double most = gproji_fmin(12.0 * cut->weight, 0.3 * nd->weight), band = 0, below = 0, above;
     for (i = 0; i < low; ++i) below += sum[i];
     for (; i < high; ++i) band += sum[i];
     above = nd->weight - below - band;
@@ -4239,21 +4333,21 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
     return false;
 }
 
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs) {
-    size_t ints = (size_t)nodes * 8 + 1 + (size_t)arcs * 3;
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
+                                      int64_t units) {
+    size_t ints = (size_t)nodes * 8 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
     at = (int32_t *)band->block;
     band->id = at, at += nodes;
     band->start = at, at += nodes + 1;
-    band->weight = at, at += nodes;
-    band->through = at, at += nodes;
+    band->unit = at, at += nodes + 1;
+    band->load = at, at += nodes;
     band->turn = at, at += 2 * nodes;
     band->queue = at, at += 2 * nodes;
     band->to = at, at += arcs;
-    band->mate = at, at += arcs;
-    band->flow = at, at += arcs;
+    band->origin = at, at += units;
     band->ends = (unsigned char *)at;
     band->mark = band->ends + nodes;
     return true;
@@ -4265,8 +4359,9 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
     gproji_band *band = &nd->band;
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
-    int32_t stop = e + nd->here.inner[v], back = stop, k;
+    int32_t back = e + nd->here.inner[v], stop = back;
     band->start[i] = e;
+    band->ends[i] = 0;
     for (; list < end; ++list) {
         int32_t u = nd->number[*list];
         if (u < 0)
@@ -4277,78 +4372,100 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
             band->to[--back] = u;
     }
     while (back < stop) band->to[e++] = band->to[back++];
-    for (k = band->start[i]; k < e; ++k) {
-        int32_t u = band->to[k], mate = u < i ? band->start[u] : k;
-        band->flow[k] = 0;
-        if (u >= i) continue;
-        while (band->to[mate] != i) ++mate;
-        band->mate[k] = mate, band->mate[mate] = k;
-    }
     return e;
+}
+
+/* The capacity of a weight: in units of a common divisor of all weights, or, where these are many, of a part of the
+   largest one. */
+GPROJI_INTERNAL int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
+/* Finds the nodes of the band, in nd->queue, and their capacities, in nd->position. Returns how many nodes; adds up their
+   arcs and capacities. */
+GPROJI_INTERNAL int32_t gproji_nd_find_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                            int64_t *arcs, int64_t *units) {
+    int32_t i, nodes = 0, divisor = 0, largest = 0, *capacity = nd->position;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t a = nd->here.weight[i], b = divisor, rest;
+        nd->number[i] = -1;
+        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
+        nd->number[i] = nodes;
+        nd->queue[nodes++] = i;
+        *arcs += nd->here.inner[i];
+        largest = gproji_max(largest, a);
+        if (a == b) continue;
+        for (; b > 0; a = b, b = rest) rest = a % b;
+        divisor = a;
+    }
+    for (i = 0; i < nodes; ++i)
+        *units += capacity[i] = gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
+    return nodes;
 }
 
 /* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
-    int32_t i, nodes = 0, e = 0;
-    int64_t arcs = 0;
-    for (i = 0; i < nd->nodes; ++i) {
-        nd->number[i] = -1;
-        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
-        nd->number[i] = nodes;
-        nd->queue[nodes++] = i;
-        arcs += nd->here.inner[i];
-    }
-    if (arcs > INT32_MAX) return false;
-    if (!gproji_band_take(nd->heap, band, nodes, arcs)) {
+    int32_t i, e = 0, u = 0, nodes;
+    int64_t arcs = 0, units = 0;
+    nodes = gproji_nd_find_band(nd, cut, from, &arcs, &units);
+    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    if (!gproji_band_take(nd->heap, band, nodes, arcs, units)) {
         nd->failed = true;
         return false;
     }
     band->nodes = nodes;
     memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
-    memset(band->ends, 0, (size_t)nodes);
     for (i = 0; i < nodes; ++i) {
-        band->weight[i] = nd->here.weight[band->id[i]];
-        band->through[i] = 0;
+        band->load[i] = 0;
+        band->unit[i] = u;
+        u += nd->position[i];
         e = gproji_nd_band_arcs(nd, from, i, e);
     }
     band->start[nodes] = e;
+    band->unit[nodes] = u;
     return true;
 }
 
-/* How much more can flow from state s by its step c, and where to: along an arc, or backwards against the flow of one;
-   or to the node's other state, which is the step before its arcs and the one behind them. `back`: how much can come from
-   there. */
-GPROJI_INTERNAL int32_t gproji_band_step(const gproji_band *band, int32_t s, int32_t c, bool back, int32_t *to) {
-    int32_t v = s >> 1;
-    bool leaves = ((s & 1) != 0) != back; /* at an exit ahead, or at an entry back */
-    if (c < band->start[v] || c == band->start[v + 1]) {
-        *to = s ^ 1;
-        return leaves ? band->through[v] : band->weight[v] - band->through[v];
-    }
-    *to = 2 * band->to[c] + !(s & 1);
-    if (leaves) return INT32_MAX;
-    return band->flow[back ? c : band->mate[c]];
+GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
+    return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* The end of a state's steps. Along arcs nothing can go back from an entry, or come back to an exit, without flow. */
-GPROJI_INTERNAL int32_t gproji_band_end(const gproji_band *band, int32_t s, bool back) {
-    int32_t v = s >> 1;
-    if (((s & 1) != 0) == back && band->through[v] == 0) return band->start[v];
-    return band->start[v + 1];
+/* The next state to which more can flow from state s and that has not been seen, or -1: from an exit along an arc, then
+   back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
+   turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
+GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
+    int32_t v = s >> 1, c = band->turn[s], end, next = -1;
+    if (s & 1) {
+        for (end = band->start[v + 1]; c < end && band->mark[2 * band->to[c]]; ++c) continue;
+        if (c < end)
+            next = 2 * band->to[c];
+        else if (band->load[v] > 0 && !band->mark[2 * v])
+            next = 2 * v;
+    } else {
+        if (c < band->unit[v]) {
+            if (gproji_band_has_room(band, v) && !band->mark[s + 1]) return s + 1;
+            ++c;
+        }
+        for (end = band->unit[v] + band->load[v]; c < end; ++c)
+            if (band->origin[c] >= 0 && !band->mark[2 * band->origin[c] + 1]) break;
+        if (c < end) next = 2 * band->origin[c] + 1;
+    }
+    band->turn[s] = c;
+    return next;
 }
 
 /* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
 GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, *turn = band->turn, depth = 0;
+    int32_t *path = band->queue, depth = 0;
     path[0] = source;
     band->mark[source] = GPROJI_BAND_SOURCE;
     while (depth >= 0) {
-        int32_t s = path[depth], end = gproji_band_end(band, s, false) + (s & 1), next = -1;
+        int32_t s = path[depth], next;
         if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
-        for (; turn[s] < end; ++turn[s])
-            if (gproji_band_step(band, s, turn[s], false, &next) > 0 && !band->mark[next]) break;
-        if (turn[s] < end) {
+        next = gproji_band_next(band, s);
+        if (next >= 0) {
             band->mark[next] = GPROJI_BAND_SOURCE;
             path[++depth] = next;
         } else {
@@ -4358,23 +4475,22 @@ GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source)
     return -1;
 }
 
-/* Sends as much as possible along the path; its states may be seen again. */
+/* Sends a unit along the path; its states may be seen again. */
 GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
     const int32_t *path = band->queue;
-    int32_t k, amount = INT32_MAX, to;
+    int32_t k, from = -1; /* the exit that was passed last */
     for (k = 0; k < depth; ++k) {
-        int32_t room = gproji_band_step(band, path[k], band->turn[path[k]], false, &to);
-        if (room < amount) amount = room;
-    }
-    for (k = 0; k < depth; ++k) {
-        int32_t s = path[k], c = band->turn[s];
-        if ((path[k + 1] ^ s) == 1)
-            band->through[s >> 1] += s & 1 ? -amount : amount;
-        else if (s & 1)
-            band->flow[c] += amount;
-        else
-            band->flow[band->mate[c]] -= amount;
+        int32_t s = path[k], v = s >> 1;
+        bool turns = (path[k + 1] ^ s) == 1;
         band->mark[s] = 0;
+        if (s & 1)
+            from = v;
+        else if (turns) /* another unit passes; */
+            band->origin[band->unit[v] + band->load[v]++] = from;
+        else if (k > 0 && path[k - 1] == (s ^ 1)) /* one less; */
+            band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
+        else /* one comes from elsewhere */
+            band->origin[band->turn[s]] = from;
     }
     band->mark[path[depth]] = 0;
 }
@@ -4386,7 +4502,7 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     bool found = false;
     memset(band->mark, 0, 2 * (size_t)band->nodes);
     for (i = 0; i < band->nodes; ++i) {
-        band->turn[2 * i] = band->start[i] - 1; /* at an entry the own exit first, at an exit the own entry last */
+        band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
@@ -4399,15 +4515,53 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     return found;
 }
 
-/* Marks what the states in the queue reach, or what reaches them. */
-GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark, bool back) {
-    int32_t head = 0, c, to;
+/* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
+GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
+    if (band->mark[s] & mark) return tail;
+    band->mark[s] |= mark;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* Marks what the states in the queue reach. */
+GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
     while (head < tail) {
-        int32_t s = band->queue[head++], end = gproji_band_end(band, s, back);
-        for (c = band->start[s >> 1] - 1; c < end; ++c) {
-            if (gproji_band_step(band, s, c, back, &to) <= 0 || (band->mark[to] & mark)) continue;
-            band->mark[to] |= mark;
-            band->queue[tail++] = to;
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+                if (band->origin[c] >= 0) tail = gproji_band_reach(band, 2 * band->origin[c] + 1, mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, s + 1, mark, tail);
+        }
+    }
+}
+
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Marks what reaches the states in the queue. */
+GPROJI_INTERNAL void gproji_band_spread_back(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c] + 1, mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, s + 1, mark, tail);
         }
     }
 }
@@ -4421,7 +4575,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
         band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
         band->queue[tail++] = 2 * i + 1;
     }
-    gproji_band_spread(band, tail, GPROJI_BAND_SINK, true);
+    gproji_band_spread_back(band, tail, GPROJI_BAND_SINK);
     for (i = tail = 0; i < states; ++i) {
         bool below = nd->best_position[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
@@ -4430,7 +4584,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
             band->queue[tail++] = i;
         }
     }
-    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE, false);
+    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
     return open > 0 ? 3 : 1;
 }
 
@@ -4457,8 +4611,9 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
     for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
     for (i = 0; i < band->nodes; ++i) {
-        weight[gproji_band_side(band, i, mark)] += band->weight[i];
-        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= band->weight[i]; /* counted among those below */
+        int32_t w = nd->here.weight[band->id[i]];
+        weight[gproji_band_side(band, i, mark)] += w;
+        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= w; /* counted among those below */
     }
     for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
     for (k = 0; k < nd->rims; ++k) {
@@ -4613,17 +4768,18 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
 }
 
 /* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
-   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
    nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && !nd->open ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
         reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
         if (reached < nd->nodes) break;
+        gproji_nd_sample(nd);
         for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
-        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+        if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
@@ -5242,42 +5398,85 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
 }
 
 enum {
-    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
+    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,     /* per node; see gproji_forecast */
+    GPROJI_DISSECT_LEAST = 2500,        /* nodes of a graph for which a forecast is made */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 /* Condensed nodes, then the others by dissection. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
-    gproji_heap *heap = an->keep->heap;
-    gproji_condensation condensed;
-    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
-    bool done = gproji_condense(&condensed, heap, an->graph);
-    for (k = 0; done && k < condensed.count; ++k) {
-        order[k] = condensed.first[k];
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, const gproji_condensation *condensed) {
+    int32_t *order = an->out->order, *rest = order + condensed->count, k, total = an->out->columns;
+    for (k = 0; k < condensed->count; ++k) {
+        order[k] = condensed->first[k];
         total -= an->graph->weight[order[k]];
     }
-    rest = order + condensed.count;
-    done = done && gproji_dissect(heap, &condensed.rest, total, rest);
-    for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
-    gproji_pool_give_all(&condensed.pool);
-    return done;
+    if (!gproji_dissect(an->keep->heap, &condensed->rest, total, rest)) return false;
+    for (k = 0; k < condensed->rest.nodes; ++k) rest[k] = condensed->first[condensed->count + rest[k]];
+    return true;
 }
 
-/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
-   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
-GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
-    gproji_symbolic *out = an->out;
-    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
-    double flops;
-    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
-    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
-        if (!gproji_dissected_order(an)) return false;
-        gproji_count_factor(an, keep_order);
-        if (out->flops < flops) return true;
+/* What dissection will cost in the plane, up to a factor: where n nodes of weight w have d neighbours each, a separator
+   has about sqrt(n d) nodes, and the flops are about the cube of its weight; around closed meshes the first ones need two
+   lines. On meshes the flops are 15 to 40 times what this says. */
+GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
+    double all = 0, next = 0, square;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) {
+        double weight = graph->weight[i];
+        all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
+    square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
+    return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
+}
+
+/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes some three
+   times as long and spares a fifth of the flops: it is tried where that pays within about four factorisations, which
+   minimum degree tells, and alone where the forecast says so and what comes out is as on meshes. */
+GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, gproji_condensation *condensed) {
+    gproji_symbolic *out = an->out;
+    gproji_heap *heap = an->keep->heap;
+    int32_t *order;
+    bool counted = false;
+    double flops, forecast;
+    if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_condense(condensed, heap, an->graph)) return false;
+        forecast = gproji_forecast(&condensed->rest);
+        if (forecast > (double)GPROJI_DISSECT_FORECAST * out->nodes) {
+            if (!gproji_dissected_order(an, condensed)) return false;
+            gproji_count_factor(an, keep_order);
+            if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
+            counted = true;
+        }
+    }
+    order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
+    if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
+        if (!gproji_dissected_order(an, condensed)) return false;
+        gproji_count_factor(an, keep_order);
+        counted = true;
+    }
+    if (counted && out->flops < flops) return true;
     if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
     gproji_count_factor(an, keep_order);
     return true;
+}
+
+/* Finds an order, and gives back the condensed graph. Without `best`, by dissection. */
+GPROJI_INTERNAL bool gproji_condensed_order(gproji_analysis *an, bool keep_order, bool best) {
+    gproji_condensation condensed;
+    bool done;
+    memset(&condensed, 0, sizeof condensed);
+    gproji_pool_start(&condensed.pool, an->keep->heap);
+    if (best) {
+        done = gproji_better_order(an, keep_order, &condensed);
+    } else {
+        done = gproji_condense(&condensed, an->keep->heap, an->graph) && gproji_dissected_order(an, &condensed);
+        if (done) gproji_count_factor(an, keep_order);
+    }
+    gproji_pool_give_all(&condensed.pool);
+    return done;
 }
 
 /* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
@@ -5286,11 +5485,10 @@ GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_choles
     gproji_symbolic *out = an->out;
     gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
     if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_DISSECTION) {
-        if (!gproji_dissected_order(an)) return false;
-    } else if (ordering == GPROJ_ORDERING_AMD) {
+    if (ordering == GPROJ_ORDERING_BEST || ordering == GPROJ_ORDERING_DISSECTION)
+        return gproji_condensed_order(an, options->disable_postorder, ordering == GPROJ_ORDERING_BEST);
+    if (ordering == GPROJ_ORDERING_AMD) {
         if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
     } else {
         for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
