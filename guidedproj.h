@@ -4671,8 +4671,8 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
-   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel is in
-   the factor, where its update matrix is in the work memory, and which fronts make up a task.
+   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): which fronts make up a task, and
+   where each front's panel and its update matrix are in the memory.
 
    A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
    (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
@@ -4680,7 +4680,7 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
    node among its pivots; all rows of a front are pivots or rows of its parent. */
 typedef struct gproji_front {
     int64_t panel;  /* where its panel begins in the values of L */
-    int64_t update; /* where its update matrix begins in the work memory */
+    int64_t update; /* where its update matrix begins, among them */
     int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
     int64_t side;   /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
     int32_t row_nodes;
@@ -4693,7 +4693,6 @@ typedef struct gproji_front {
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
     int32_t sibling;     /* next child of the same parent, or -1 */
-    int32_t depth;       /* 0 without parent */
 } gproji_front;
 
 typedef struct gproji_symbolic {
@@ -4712,8 +4711,8 @@ typedef struct gproji_symbolic {
     int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
     int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
     int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
-    int64_t work_size;     /* doubles for all update matrices */
     int64_t values_size;   /* doubles for all panels */
+    int64_t work_size;     /* doubles after them, for the update matrices that do not fit in between */
     int64_t side_size;     /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
@@ -4728,6 +4727,7 @@ enum {
 typedef struct gproji_analysis {
     const gproji_graph *graph;
     gproji_symbolic *out;
+    bool concurrent;        /* several tasks may be at work at the same time */
     gproji_pool *keep;      /* for what is kept */
     gproji_pool pool;       /* for what is not */
     int32_t *parent;        /* elimination tree, by place; -1: root */
@@ -5083,14 +5083,13 @@ GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
     }
 }
 
-/* Strides, offsets and children of the fronts; sums. */
-GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
+/* Strides, children and sides of the fronts; sums. */
+GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
     int32_t f;
     for (f = 0; f < out->fronts; ++f) out->front[f].child = out->front[f].sibling = -1;
     for (f = out->fronts - 1; f >= 0; --f) {
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
-        front->depth = out->front[front->parent].depth + 1;
         front->sibling = out->front[front->parent].child;
         out->front[front->parent].child = f;
     }
@@ -5099,7 +5098,6 @@ GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
         int64_t w = front->width;
         front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
-        front->panel = out->values_size;
         front->side = out->side_size;
         out->values_size += w * front->stride;
         out->side_size += front->below;
@@ -5164,38 +5162,102 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     return true;
 }
 
-/* The update matrices of one group, from `base` on in the work memory. Fronts of even depth stack theirs from the lower
-   end, those of odd depth from the upper end: a front's matrix is thus never on the same stack as its children's, which
-   it needs until its own is finished, and they are on top of theirs. Matrices that another group consumes stay.
-   Returns the end of the group's memory. */
-GPROJI_INTERNAL int64_t gproji_stack_updates(gproji_symbolic *out, const int32_t *group, int32_t g, int64_t base) {
-    int64_t top[2] = {0, 0}, most = 0;
-    int32_t k, c, pass;
-    for (pass = 0; pass < 2; ++pass) { /* the first pass finds the size */
-        top[0] = top[1] = 0;
-        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
-            gproji_front *front = &out->front[out->schedule[k]];
-            int32_t side = front->depth & 1;
-            int64_t size = gproji_update_entries(front->update_rows);
-            front->update = side ? base + most - top[side] - size : base + top[side];
-            top[side] += size;
-            if (pass == 0 && top[0] + top[1] > most) most = top[0] + top[1];
-            for (c = front->child; c >= 0; c = out->front[c].sibling)
-                if (group[c] == g) top[!side] -= gproji_update_entries(out->front[c].update_rows);
-        }
+/* The update matrices of a front's children, one after the other, in the order of the schedule: backwards in time the
+   last one is the first to go. Distances are from the end of the memory that panels and update matrices share. The
+   families that are there are a ring, ascending, closed by one more that has nothing. */
+typedef struct gproji_family {
+    int64_t low, high;
+    int32_t before, after; /* in the ring */
+} gproji_family;
+
+enum {
+    GPROJI_FAMILY_TRIES = 64 /* gaps in which a family's place is looked for */
+};
+
+/* Gives a front's children the first gap that is large enough; their `update` becomes the distance of their far ends.
+   Fronts' groups: `group`. */
+GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *group, gproji_family *family) {
+    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, top, c;
+    int64_t size = 0;
+    for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+        size += gproji_update_entries(out->front[c].update_rows);
+    if (size == 0) return;
+    for (; family[after].low - family[before].high < size; after = family[after].after) {
+        before = after;
+        if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
+        if (after == ring) break;
     }
-    return base + most;
+    family[f].before = before, family[f].after = after;
+    family[before].after = family[after].before = f;
+    family[f].low = family[f].high = family[before].high;
+    for (top = 0; top < 2; ++top) /* children of tasks come before those on top */
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            if ((group[c] == out->tasks) == top)
+                out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
+}
+
+/* The memory of schedule[begin..end-1] from `base` on; returns its end. The panels follow each other. An update matrix
+   lives from its front's turn to its parent's: it may be where later panels come, but not its parent's. So they are
+   placed from the end of the memory on, backwards in time, which begins with the largest ones, and leaves them little
+   more than what the last panels need. family: fronts + 1; zeros on entry. */
+GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
+                                            const int32_t *group, gproji_family *family) {
+    int64_t at = base, most;
+    int32_t k, c;
+    family[out->fronts].low = INT64_MAX;
+    family[out->fronts].before = family[out->fronts].after = out->fronts;
+    for (k = begin; k < end; ++k) {
+        gproji_front *front = &out->front[out->schedule[k]];
+        front->panel = at;
+        at += (int64_t)front->width * front->stride;
+    }
+    most = at;
+    for (k = end - 1; k >= begin; --k) {
+        int32_t f = out->schedule[k], parent = out->front[f].parent;
+        gproji_family *own = parent < 0 ? NULL : &family[parent];
+        gproji_place_family(out, f, group, family);
+        if (at + family[f].high > most) most = at + family[f].high;
+        at = out->front[f].panel;
+        if (!own || own->high == own->low) continue; /* its parent is in another group */
+        own->high -= gproji_update_entries(out->front[f].update_rows);
+        if (own->high > own->low) continue;
+        family[own->before].after = own->after;
+        family[own->after].before = own->before;
+    }
+    for (k = begin; k < end; ++k) {
+        int32_t f = out->schedule[k];
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            out->front[c].update = most - out->front[c].update;
+    }
+    return most;
+}
+
+/* Where all panels and update matrices are. Groups that may be at work at the same time share nothing; else one comes
+   after the other. */
+GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group) {
+    gproji_symbolic *out = an->out;
+    int32_t g;
+    int64_t end = 0;
+    gproji_family *family =
+        (gproji_family *)gproji_pool_take_zeroed(&an->pool, (int64_t)out->fronts + 1, sizeof(gproji_family));
+    if (!family) return false;
+    if (an->concurrent)
+        for (g = 0; g <= out->tasks; ++g)
+            end = gproji_place_fronts(out, out->task_start[g], out->task_start[g + 1], end, group, family);
+    else
+        end = gproji_place_fronts(out, 0, out->fronts, 0, group, family);
+    out->work_size = end - out->values_size;
+    return true;
 }
 
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t *sequence = an->a, *group = an->c, g, k;
-    gproji_place_panels(out);
+    gproji_size_panels(out);
     gproji_front_sequence(an, sequence);
     if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
     for (g = 0; g <= out->tasks; ++g) {
         int32_t most = 0;
-        out->work_size = gproji_stack_updates(out, group, g, out->work_size);
         for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
             int32_t c = out->front[out->schedule[k]].child;
             for (; c >= 0; c = out->front[c].sibling)
@@ -5203,7 +5265,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
         }
         out->pieces_start[g + 1] = out->pieces_start[g] + most;
     }
-    return true;
+    return gproji_place_all(an, group);
 }
 
 /* Entries and flops of the factor without any zeros of relaxed supernodes. */
@@ -5308,10 +5370,11 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     return gproji_layout(an);
 }
 
-/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN. All
-   that `out` holds is taken from the pool. False when there is no memory. */
+/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN.
+   concurrent: may tasks be at work at the same time? It takes more memory, and changes nothing else. All that `out`
+   holds is taken from the pool. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
-                                    const gproj_cholesky_options *options, const int32_t *permutation,
+                                    const gproj_cholesky_options *options, const int32_t *permutation, bool concurrent,
                                     gproji_symbolic *out) {
     gproji_analysis an;
     bool done;
@@ -5319,6 +5382,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     memset(out, 0, sizeof *out);
     an.graph = graph;
     an.out = out;
+    an.concurrent = concurrent;
     an.keep = keep;
     gproji_pool_start(&an.pool, keep->heap);
     out->columns = columns;
@@ -5332,8 +5396,8 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix on a
-   stack. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
+   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
    effect on the rows below is taken off. All that happens while the front is in the cache; right-hand sides that are
    known then take part.
 
@@ -5382,8 +5446,7 @@ struct gproj_cholesky {
     int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
 
-    double *values;       /* symbolic.values_size: all panels */
-    double *work;         /* symbolic.work_size: all update matrices */
+    double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
     gproji_piece *pieces; /* of a child, for each group of fronts */
     int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
@@ -5516,7 +5579,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     if (start) {
         start[0] = 0;
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, &c->symbolic) &&
+        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
+                              &c->symbolic) &&
                gproji_cholesky_permute(c, start, NULL);
     }
     gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
@@ -5773,7 +5837,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     }
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
     graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
-    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, &c->symbolic) ||
+    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
         !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
         return gproji_fail_memory(&c->error);
     gproji_cholesky_find_targets(c, x);
@@ -5818,16 +5882,15 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
     int64_t groups = (int64_t)sy->tasks + 1;
     if (c->values) return true;
-    c->work = gproji_take_aligned(&c->numeric, sy->work_size);
     c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
-    c->values = gproji_take_aligned(&c->numeric, sy->values_size);
+    c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->work && c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
+    if (c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -5856,7 +5919,7 @@ GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_f
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
-        add.panel = panel, add.piece = pieces, add.update = c->work + child->update, add.rows = child->update_rows;
+        add.panel = panel, add.piece = pieces, add.update = c->values + child->update, add.rows = child->update_rows;
         add.pieces = gproji_find_pieces(
             c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
             child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
@@ -5874,7 +5937,7 @@ GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_pan
 
 GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
     return gproji_make_panel(c->kernels, front->width, front->below, front->stride, c->values + front->panel,
-                             c->inverse + front->first, c->work + front->update);
+                             c->inverse + front->first, c->values + front->update);
 }
 
 /* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
