@@ -2447,12 +2447,13 @@ typedef struct gproji_kernels {
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* the pieces of `add` have gaps */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
-       and block rows. */
-    void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+       and block rows. Both are parts of a panel: `stride` leads from one column to the next, but after `left` columns,
+       and then after every GPROJI_BLOCK, it becomes less by GPROJI_STEP. */
+    void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
        diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
-    void (*solve)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+    void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
        column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
@@ -2496,6 +2497,14 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 8
 #else
 #define GPROJI_BLOCK 4
+#endif
+
+/* How many rows each block of GPROJI_BLOCK columns of a panel has less than the one before: those above its diagonal are
+   not stored. A BLAS wants them all. */
+#ifdef GPROJ_USE_CBLAS
+#define GPROJI_STEP 0
+#else
+#define GPROJI_STEP GPROJI_BLOCK
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -2575,6 +2584,9 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                   \
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
+#define GPROJI_TILE_NEXT                                                                                               \
+    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_STEP;                                                       \
+    a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
@@ -2585,28 +2597,30 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
-    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,    \
-                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                     \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b, ptrdiff_t stride, \
+                                                        int32_t left, double *c, ptrdiff_t ldc) {                      \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                           \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                                \
-        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
+        int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,         \
         const double *triangle, const double *inverse, int32_t skip) {                                                 \
         GPROJI_BEGIN(L)                                                                                                \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                          \
         GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)                \
@@ -2708,24 +2722,24 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,             \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {          \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
+                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc);                                                \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                 \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc);                                                 \
     }                                                                                                                  \
-    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,              \
-                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,             \
+    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
+                                                 ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
                                                  const double *triangle, const double *inverse, int32_t skip) {        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                          \
+            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                          \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                        \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                         \
+            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                         \
     }                                                                                                                  \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
@@ -2819,9 +2833,9 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
    rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
    t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every
-   tile is whole and aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a
-   diagonal tile is never read.
+   (the first block may have fewer than B). Pivot j stands in storage row j + q. What is above a block's own rows is not
+   stored (for GPROJI_BLOCK, not for B). Strides are multiples of B, so every tile is whole and aligned: what kernels
+   compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
@@ -2841,10 +2855,33 @@ GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all +
 /* The number of empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* A stride of at least `rows`: a multiple of B, and none that maps whole columns to the same few lines of a cache. */
+/* A stride of at least `rows`: a multiple of B, and where all columns have it, none that maps them to the same few lines
+   of a cache. */
 GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
     int32_t stride = gproji_round_up(rows, GPROJI_BLOCK);
-    return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+    return GPROJI_STEP == 0 && stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+}
+
+/* The column block of the pivot in storage row `at`; its columns from that one on. */
+GPROJI_INLINE int32_t gproji_panel_block(int32_t at) { return (int32_t)((uint32_t)at / GPROJI_BLOCK); }
+GPROJI_INLINE int32_t gproji_panel_left(int32_t at) { return GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)); }
+
+/* Its stride, in a panel whose first one has that stride. */
+GPROJI_INLINE ptrdiff_t gproji_panel_stride(int32_t stride, int32_t at) {
+    return stride - gproji_panel_block(at) * GPROJI_STEP;
+}
+
+/* Storage row r of the column of that pivot is at this offset + r, for rows that are stored. The columns of block s have
+   s GPROJI_STEP rows less than those of the first; the sum over all up to that column is taken off. */
+GPROJI_INLINE ptrdiff_t gproji_panel_offset(int32_t shift, int32_t stride, int32_t at) {
+    ptrdiff_t t = gproji_panel_block(at);
+    return (ptrdiff_t)(at - shift) * stride - t * (at + 1 - (t + 1) * (GPROJI_BLOCK / 2)) * GPROJI_STEP;
+}
+
+/* The number of entries of a panel with w pivots. */
+GPROJI_INTERNAL int64_t gproji_panel_entries(int32_t w, int32_t stride) {
+    int64_t blocks = gproji_pieces(w, GPROJI_BLOCK);
+    return (int64_t)w * stride - blocks * (blocks - 1) / 2 * (GPROJI_BLOCK * GPROJI_STEP);
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -2868,15 +2905,14 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of the kernels' block B; columns [first, last)
-   are being eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are
-   ends of column blocks (or 0). Where B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `shift` < B
-   empty rows stay. */
+/* A panel at work: w pivot columns in storage rows [top, rows); columns [first, last) are being eliminated as a chunk,
+   after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks (or 0). Where
+   B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `top` rows. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
-    int32_t w, shift, rows;
+    int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t stride;
+    int32_t stride;      /* of the first column block */
     int32_t update_rows; /* of the update matrix */
     double *values;
     double *inverse; /* w: inverses of the diagonal of L */
@@ -2888,36 +2924,47 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
     gproji_panel panel;
     int32_t block = kernels->block;
     panel.kernels = kernels;
-    panel.w = w, panel.shift = gproji_round_up(w, block) - w;
+    panel.w = w, panel.shift = gproji_panel_shift(w), panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
     panel.stride = stride, panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
-    panel.values = values + gproji_panel_shift(w) - panel.shift, panel.inverse = inverse, panel.update = update;
+    panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
 }
 
 GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
-    return panel->values + row + (ptrdiff_t)column * panel->stride;
+    return panel->values + gproji_panel_offset(panel->shift, panel->stride, column + panel->shift) + row;
 }
 
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = panel->w + shift;
-    if (at < pivot_end) return gproji_panel_at(panel, panel->shift - shift, at - shift);
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return panel->values + gproji_panel_offset(panel->shift, panel->stride, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* A strip of C -= A B': `columns` columns (a multiple of the block) whose diagonal begins at its corner, `rows` rows. A
-   has k columns and the strip's rows; B is the upper end of A. */
-GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t rows, int32_t columns, int32_t k,
-                                         const double *a, ptrdiff_t lda, double *c, ptrdiff_t ldc) {
-    int32_t begin, column;
-    for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
-        int32_t end = gproji_min(rows, begin + GPROJI_ROW_BLOCK);
-        for (column = 0; column < gproji_min(columns, end); column += kernels->block) {
+/* Its stride: that of all columns of its block, or of its strip of the update matrix. */
+GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return gproji_panel_stride(panel->stride, at);
+    return gproji_update_stride(panel->update_rows, at - pivot_end);
+}
+
+/* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
+   the update matrix, from storage row `at` on. */
+GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
+                                         int32_t last) {
+    const gproji_kernels *kernels = panel->kernels;
+    const double *l = gproji_panel_at(panel, 0, first);
+    int32_t left = gproji_panel_left(first + panel->shift), begin, stop, column;
+    ptrdiff_t stride = gproji_panel_stride(panel->stride, first + panel->shift);
+    for (begin = at; begin < panel->rows; begin = stop) {
+        stop = gproji_min(panel->rows, begin + GPROJI_ROW_BLOCK);
+        for (column = at; column < gproji_min(end, stop); column += kernels->block) {
             int32_t row = gproji_max(begin, column);
-            kernels->update(end - row, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
+            kernels->update(stop - row, last - first, l + row, l + column, stride, left,
+                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column));
         }
     }
 }
@@ -2925,36 +2972,40 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t 
 /* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
-    int32_t column = index * GPROJI_STRIP, rows = below - column, stride = panel->update_rows - column, first, last;
-    double *strip = panel->update + gproji_update_offset(panel->update_rows, column) + column;
+    int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
+    int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
         last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
-        gproji_strip_update(panel->kernels, rows, gproji_min(GPROJI_STRIP, rows), last - first,
-                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, stride);
+        gproji_strip_update(panel, at, end, first, last);
     }
 }
 
 /* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
-    gproji_strip_update(panel->kernels, panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column),
-                        panel->last - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                        gproji_panel_at(panel, row, column), panel->stride);
+    int32_t at = panel->last + panel->shift + index * GPROJI_STRIP;
+    int32_t end = gproji_min(at + GPROJI_STRIP, panel->w + panel->shift);
+    gproji_strip_update(panel, at, end, panel->first, panel->last);
+}
+
+/* The first storage row of the column block that begins with column `start`. */
+GPROJI_INLINE int32_t gproji_block_row(const gproji_panel *panel, int32_t start) {
+    return start == 0 ? panel->top : start + panel->shift;
 }
 
 /* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
 GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
-    int32_t skip = start == 0 ? panel->shift : 0, at = start == 0 ? 0 : start + panel->shift;
-    panel->kernels->solve(rows, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                          gproji_panel_at(panel, at, panel->first), panel->stride, gproji_panel_at(panel, row, start),
-                          panel->stride, gproji_panel_at(panel, at, start), panel->inverse + start, skip);
+    int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+    const double *l = gproji_panel_at(panel, 0, panel->first);
+    double *block = gproji_panel_at(panel, 0, start);
+    panel->kernels->solve(rows, start - panel->first, l + row, l + at, gproji_panel_stride(panel->stride, chunk),
+                          gproji_panel_left(chunk), block + row, gproji_panel_stride(panel->stride, at), block + at,
+                          panel->inverse + start, start + panel->shift - at);
 }
 
 /* The first column of the block after the one that begins with column `start`. */
 GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
-    return start + panel->kernels->block - (start == 0 ? panel->shift : 0);
+    return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
 /* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
@@ -2970,14 +3021,16 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
 /* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
 GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
-    int32_t block = kernels->block, shift = panel->shift, end = panel->last + shift, stride = panel->stride;
-    int32_t start, failed;
+    int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
     for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
-        int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
+        int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
         const double *strip = gproji_panel_at(panel, at, panel->first);
         double *corner = gproji_panel_at(panel, at, start);
-        if (k > 0) kernels->update(block, k, strip, stride, strip, stride, corner, stride);
-        failed = kernels->factor(corner, stride, panel->inverse + start, start == 0 ? shift : 0);
+        ptrdiff_t stride = gproji_panel_stride(panel->stride, at);
+        if (start > panel->first)
+            kernels->update(block, start - panel->first, strip, strip, gproji_panel_stride(panel->stride, chunk),
+                            gproji_panel_left(chunk), corner, stride);
+        failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
         if (failed >= 0) return start + failed;
         gproji_block_solve(panel, start, at + block, end - at - block);
     }
@@ -2995,11 +3048,17 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
+/* The pieces of a child's `below` rows in `groups` groups are at most so many. */
+GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
+    return 2 * groups + below / GPROJI_BLOCK + 2;
+}
+
 /* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
    on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
    columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
-   `pivot_end`, or beyond a strip of its update matrix. piece: 2 groups + below / 8 + 2 entries are enough. Returns
-   their number. */
+   `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
+   number. */
+
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
@@ -3016,7 +3075,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
                 if (kernels->spreads)
                     end = now->to + 8;
                 else if (target < pivot_end)
-                    end = pivot_end;
+                    end = target - target % GPROJI_BLOCK + GPROJI_BLOCK;
                 else
                     end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
             }
@@ -3041,23 +3100,14 @@ typedef struct gproji_addition {
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
     const gproji_panel *panel = add->panel;
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = shift + panel->w, k;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k;
     for (k = 0; k < add->pieces; ++k) {
         const gproji_piece *piece = add->piece + k;
         int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
         const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
-        ptrdiff_t stride = panel->stride;
-        double *target;
         if (first >= last) continue;
-        if (piece->to < pivot_end) { /* the panel has no columns, and maybe no rows, for its first rows */
-            target = gproji_panel_at(panel, panel->shift - shift, piece->to - shift);
-        } else {
-            stride = gproji_update_stride(panel->update_rows, piece->to - pivot_end);
-            target = panel->update + gproji_update_offset(panel->update_rows, piece->to - pivot_end) - pivot_end;
-        }
-        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin), target,
-                            stride);
+        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin),
+                            gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
     }
 }
 
@@ -3130,24 +3180,23 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
 /* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
    what it takes from the rows below. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift;
-    z += gproji_panel_shift(panel->w) - shift;
+    int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
-        int32_t skip = start == 0 ? shift : 0, at = start == 0 ? 0 : start + shift;
-        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                panel->inverse + start, skip, z + at);
+        int32_t at = gproji_block_row(panel, start);
+        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                gproji_panel_stride(panel->stride, at), panel->inverse + start,
+                                start + panel->shift - at, z + at);
     }
 }
 
 /* z = L^-T z on all storage rows of a panel, where the part below is known. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift, block = panel->kernels->block, at = panel->w + shift - block;
-    z += gproji_panel_shift(panel->w) - shift;
-    for (; at >= 0; at -= block) {
-        int32_t skip = at == 0 ? shift : 0;
-        start = at == 0 ? 0 : at - shift;
-        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                 panel->inverse + start, skip, z + at);
+    int32_t block = panel->kernels->block, at = panel->w + panel->shift - block;
+    for (; at >= panel->top; at -= block) {
+        int32_t start = gproji_max(at - panel->shift, 0);
+        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                 gproji_panel_stride(panel->stride, at), panel->inverse + start,
+                                 start + panel->shift - at, z + at);
     }
 }
 
@@ -4688,7 +4737,7 @@ typedef struct gproji_front {
     int32_t first;                  /* its first column of L */
     int32_t width;
     int32_t below;
-    int32_t stride;      /* of its panel, which has as many storage rows: see >>dense */
+    int32_t stride;      /* of its panel's first column block, which has as many storage rows: see >>dense */
     int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
@@ -5099,7 +5148,7 @@ GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
         front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->side = out->side_size;
-        out->values_size += w * front->stride;
+        out->values_size += gproji_panel_entries(front->width, front->stride);
         out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, front->stride);
@@ -5209,7 +5258,7 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     for (k = begin; k < end; ++k) {
         gproji_front *front = &out->front[out->schedule[k]];
         front->panel = at;
-        at += (int64_t)front->width * front->stride;
+        at += gproji_panel_entries(front->width, front->stride);
     }
     most = at;
     for (k = end - 1; k >= begin; --k) {
@@ -5261,7 +5310,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
         for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
             int32_t c = out->front[out->schedule[k]].child;
             for (; c >= 0; c = out->front[c].sibling)
-                most = gproji_max(most, 2 * out->front[c].row_nodes + out->front[c].below / 8 + 2);
+                most = gproji_max(most, gproji_pieces_most(out->front[c].row_nodes, out->front[c].below));
         }
         out->pieces_start[g + 1] = out->pieces_start[g] + most;
     }
@@ -5397,9 +5446,9 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    dense, ordering, symbolic.
 
    Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
-   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
-   effect on the rows below is taken off. All that happens while the front is in the cache; right-hand sides that are
-   known then take part.
+   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are
+   added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
+   in the cache; right-hand sides that are known then take part.
 
    Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
    of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
@@ -5804,16 +5853,17 @@ GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_comp
     int64_t r;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f];
+        int32_t shift = gproji_panel_shift(front->width);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
         for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
             int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
             if (late < front->first + front->width) {
-                at = late - front->first + gproji_panel_shift(front->width);
+                at = late - front->first + shift;
             } else {
                 place = sy->place[x->node_of[c->permutation[late]]];
                 at = position[place] + late - sy->column[place];
             }
-            c->target[r] = front->panel + (int64_t)(early - front->first) * front->stride + at;
+            c->target[r] = front->panel + gproji_panel_offset(shift, front->stride, early - front->first + shift) + at;
         }
     }
 }
@@ -5944,7 +5994,7 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = (int64_t)front->width * front->stride, i;
+    int64_t size = gproji_panel_entries(front->width, front->stride), i;
     if (c->symbolic.values_size <= GPROJI_CACHED) return;
     if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
     for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
@@ -5956,7 +6006,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
+    memset(panel.values, 0, (size_t)gproji_panel_entries(front->width, front->stride) * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
     gproji_add_children(c, front, &panel, parallel, pieces);
