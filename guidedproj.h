@@ -2448,7 +2448,7 @@ typedef struct gproji_kernels {
     bool spreads;      /* the pieces of `add` have gaps */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
        and block rows. Both are parts of a panel: `stride` leads from one column to the next, but after `left` columns,
-       and then after every GPROJI_BLOCK, it becomes less by GPROJI_STEP. */
+       and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
@@ -2497,14 +2497,6 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 8
 #else
 #define GPROJI_BLOCK 4
-#endif
-
-/* How many rows each block of GPROJI_BLOCK columns of a panel has less than the one before: those above its diagonal are
-   not stored. A BLAS wants them all. */
-#ifdef GPROJ_USE_CBLAS
-#define GPROJI_STEP 0
-#else
-#define GPROJI_STEP GPROJI_BLOCK
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -2585,7 +2577,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
 #define GPROJI_TILE_NEXT                                                                                               \
-    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_STEP;                                                       \
+    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
     a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
@@ -2597,8 +2589,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
-    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b, ptrdiff_t stride, \
-                                                        int32_t left, double *c, ptrdiff_t ldc) {                      \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
+                                                        ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
@@ -2833,14 +2825,15 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
    rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
    t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. What is above a block's own rows is not
-   stored (for GPROJI_BLOCK, not for B). Strides are multiples of B, so every tile is whole and aligned: what kernels
-   compute in empty rows is zero, and what they write above the diagonal of a diagonal tile is never read.
+   (the first block may have fewer than B). Pivot j stands in storage row j + q. Of what is above the diagonal most is not
+   stored: see gproji_shape. Strides are multiples of B, so every tile is whole and aligned: what kernels compute in empty
+   rows is zero, and what they write above the diagonal of a diagonal tile is never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,    /* so many columns, if they are the last, are taken off an update matrix together */
     GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
     GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
     GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
@@ -2855,33 +2848,56 @@ GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all +
 /* The number of empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* A stride of at least `rows`: a multiple of B, and where all columns have it, none that maps them to the same few lines
-   of a cache. */
-GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
-    int32_t stride = gproji_round_up(rows, GPROJI_BLOCK);
-    return GPROJI_STEP == 0 && stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+/* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
+   each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
+   multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
+   are. With a BLAS there is but one block. */
+typedef struct gproji_shape {
+    int32_t shift;  /* empty rows before the pivots */
+    int32_t stride; /* of the first block, and the number of storage rows */
+    int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
+} gproji_shape;
+
+GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
+    gproji_shape shape;
+    int32_t end = gproji_round_up(w, GPROJI_BLOCK);
+    shape.shift = end - w;
+    shape.stride = end + gproji_round_up(below, GPROJI_BLOCK);
+    shape.last = -1;
+#ifdef GPROJ_USE_CBLAS
+    shape.last = 0;
+#else
+    if (w <= GPROJI_NARROW) return shape;
+    shape.last = gproji_pieces(end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
+#endif
+    if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else whole columns share few cache lines */
+    return shape;
 }
 
-/* The column block of the pivot in storage row `at`; its columns from that one on. */
-GPROJI_INLINE int32_t gproji_panel_block(int32_t at) { return (int32_t)((uint32_t)at / GPROJI_BLOCK); }
-GPROJI_INLINE int32_t gproji_panel_left(int32_t at) { return GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)); }
-
-/* Its stride, in a panel whose first one has that stride. */
-GPROJI_INLINE ptrdiff_t gproji_panel_stride(int32_t stride, int32_t at) {
-    return stride - gproji_panel_block(at) * GPROJI_STEP;
+/* The first row that the column of the pivot in storage row `at` has. */
+GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
 }
 
-/* Storage row r of the column of that pivot is at this offset + r, for rows that are stored. The columns of block s have
-   s GPROJI_STEP rows less than those of the first; the sum over all up to that column is taken off. */
-GPROJI_INLINE ptrdiff_t gproji_panel_offset(int32_t shift, int32_t stride, int32_t at) {
-    ptrdiff_t t = gproji_panel_block(at);
-    return (ptrdiff_t)(at - shift) * stride - t * (at + 1 - (t + 1) * (GPROJI_BLOCK / 2)) * GPROJI_STEP;
+/* Its stride; and how many columns, eliminated together, have it: that one and those after it. */
+GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
+    return shape.stride - gproji_shape_first(shape, at);
+}
+GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
+}
+
+/* Storage row r of that column is at this offset + r, for rows that are stored: as if all were, less those that the
+   columns up to this one do not have. */
+GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
+    int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
+    return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
 }
 
 /* The number of entries of a panel with w pivots. */
-GPROJI_INTERNAL int64_t gproji_panel_entries(int32_t w, int32_t stride) {
-    int64_t blocks = gproji_pieces(w, GPROJI_BLOCK);
-    return (int64_t)w * stride - blocks * (blocks - 1) / 2 * (GPROJI_BLOCK * GPROJI_STEP);
+GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
+    int32_t end = w + shape.shift;
+    return gproji_shape_offset(shape, end) + gproji_shape_first(shape, end);
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -2912,43 +2928,50 @@ typedef struct gproji_panel {
     const gproji_kernels *kernels;
     int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t stride;      /* of the first column block */
+    gproji_shape shape;
     int32_t update_rows; /* of the update matrix */
     double *values;
     double *inverse; /* w: inverses of the diagonal of L */
     double *update;  /* the update matrix */
 } gproji_panel;
 
-GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, int32_t stride,
-                                               double *values, double *inverse, double *update) {
+GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
+                                               double *inverse, double *update) {
     gproji_panel panel;
     int32_t block = kernels->block;
     panel.kernels = kernels;
-    panel.w = w, panel.shift = gproji_panel_shift(w), panel.top = panel.shift & -block;
+    panel.shape = gproji_shape_of(w, below);
+    panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
-    panel.stride = stride, panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
+    panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
 }
 
 GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
-    return panel->values + gproji_panel_offset(panel->shift, panel->stride, column + panel->shift) + row;
+    return panel->values + gproji_shape_offset(panel->shape, column + panel->shift) + row;
 }
 
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->w + panel->shift;
-    if (at < pivot_end) return panel->values + gproji_panel_offset(panel->shift, panel->stride, at);
+    if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
 /* Its stride: that of all columns of its block, or of its strip of the update matrix. */
 GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->w + panel->shift;
-    if (at < pivot_end) return gproji_panel_stride(panel->stride, at);
+    if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
     return gproji_update_stride(panel->update_rows, at - pivot_end);
+}
+
+/* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
+   row. */
+GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
+    return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
 /* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
@@ -2957,8 +2980,9 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
                                          int32_t last) {
     const gproji_kernels *kernels = panel->kernels;
     const double *l = gproji_panel_at(panel, 0, first);
-    int32_t left = gproji_panel_left(first + panel->shift), begin, stop, column;
-    ptrdiff_t stride = gproji_panel_stride(panel->stride, first + panel->shift);
+    int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
+    int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
+    int32_t begin, stop, column;
     for (begin = at; begin < panel->rows; begin = stop) {
         stop = gproji_min(panel->rows, begin + GPROJI_ROW_BLOCK);
         for (column = at; column < gproji_min(end, stop); column += kernels->block) {
@@ -2975,7 +2999,8 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
     int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
-        last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
+        last = gproji_next_chunk(panel, first);
+        if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
         gproji_strip_update(panel, at, end, first, last);
     }
 }
@@ -2998,9 +3023,9 @@ GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, 
     int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
     const double *l = gproji_panel_at(panel, 0, panel->first);
     double *block = gproji_panel_at(panel, 0, start);
-    panel->kernels->solve(rows, start - panel->first, l + row, l + at, gproji_panel_stride(panel->stride, chunk),
-                          gproji_panel_left(chunk), block + row, gproji_panel_stride(panel->stride, at), block + at,
-                          panel->inverse + start, start + panel->shift - at);
+    panel->kernels->solve(rows, start - panel->first, l + row, l + at, gproji_shape_stride(panel->shape, chunk),
+                          gproji_shape_left(panel->shape, chunk), block + row, gproji_shape_stride(panel->shape, at),
+                          block + at, panel->inverse + start, start + panel->shift - at);
 }
 
 /* The first column of the block after the one that begins with column `start`. */
@@ -3024,12 +3049,12 @@ GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
     for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
         int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+        int32_t stride = gproji_shape_stride(panel->shape, at);
         const double *strip = gproji_panel_at(panel, at, panel->first);
         double *corner = gproji_panel_at(panel, at, start);
-        ptrdiff_t stride = gproji_panel_stride(panel->stride, at);
         if (start > panel->first)
-            kernels->update(block, start - panel->first, strip, strip, gproji_panel_stride(panel->stride, chunk),
-                            gproji_panel_left(chunk), corner, stride);
+            kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
+                            gproji_shape_left(panel->shape, chunk), corner, stride);
         failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
         if (failed >= 0) return start + failed;
         gproji_block_solve(panel, start, at + block, end - at - block);
@@ -3115,7 +3140,7 @@ GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
-    int32_t first = panel->first, last = panel->last, stride = panel->stride;
+    int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
     double *below = gproji_panel_at(panel, last + panel->shift, first);
     double *later = gproji_panel_at(panel, last + panel->shift, last);
@@ -3139,11 +3164,11 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
         int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows), ldc = panel->update_rows - first;
         next = first + columns;
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 1.0, strip,
-                    ldc);
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->shape.stride, 1.0,
+                    strip, ldc);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->stride, l2, panel->stride, 1.0, strip + columns, ldc);
+                        panel->shape.stride, l2, panel->shape.stride, 1.0, strip + columns, ldc);
     }
 }
 #else
@@ -3169,7 +3194,7 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     for (panel->last = 0; panel->last < panel->w;) {
         int32_t failed;
         panel->first = panel->last;
-        panel->last = gproji_min(panel->w, panel->first + GPROJI_CHUNK - (panel->first ? 0 : panel->shift));
+        panel->last = gproji_next_chunk(panel, panel->first);
         failed = gproji_chunk_pivots(panel);
         if (failed >= 0) return failed;
         gproji_chunk_finish(parallel, panel);
@@ -3184,7 +3209,7 @@ GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) 
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
         int32_t at = gproji_block_row(panel, start);
         panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start),
-                                gproji_panel_stride(panel->stride, at), panel->inverse + start,
+                                gproji_shape_stride(panel->shape, at), panel->inverse + start,
                                 start + panel->shift - at, z + at);
     }
 }
@@ -3195,7 +3220,7 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z)
     for (; at >= panel->top; at -= block) {
         int32_t start = gproji_max(at - panel->shift, 0);
         panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start),
-                                 gproji_panel_stride(panel->stride, at), panel->inverse + start,
+                                 gproji_shape_stride(panel->shape, at), panel->inverse + start,
                                  start + panel->shift - at, z + at);
     }
 }
@@ -4728,16 +4753,16 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
    whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
    node among its pivots; all rows of a front are pivots or rows of its parent. */
 typedef struct gproji_front {
-    int64_t panel;  /* where its panel begins in the values of L */
-    int64_t update; /* where its update matrix begins, among them */
-    int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
-    int64_t side;   /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
+    int64_t panel;   /* where its panel begins in the values of L */
+    int64_t entries; /* of its panel */
+    int64_t update;  /* where its update matrix begins, among the values of L */
+    int64_t rows;    /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int64_t side;    /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
     int32_t row_nodes;
     int32_t first_place, end_place; /* its pivot nodes */
     int32_t first;                  /* its first column of L */
     int32_t width;
     int32_t below;
-    int32_t stride;      /* of its panel's first column block, which has as many storage rows: see >>dense */
     int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
@@ -5145,13 +5170,14 @@ GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
     for (f = 0; f < out->fronts; ++f) {
         gproji_front *front = &out->front[f];
         int64_t w = front->width;
-        front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
+        front->entries = gproji_shape_entries(shape, front->width);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->side = out->side_size;
-        out->values_size += gproji_panel_entries(front->width, front->stride);
+        out->values_size += front->entries;
         out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
-        out->most_rows = gproji_max(out->most_rows, front->stride);
+        out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
 }
 
@@ -5258,7 +5284,7 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     for (k = begin; k < end; ++k) {
         gproji_front *front = &out->front[out->schedule[k]];
         front->panel = at;
-        at += gproji_panel_entries(front->width, front->stride);
+        at += front->entries;
     }
     most = at;
     for (k = end - 1; k >= begin; --k) {
@@ -5853,17 +5879,17 @@ GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_comp
     int64_t r;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f];
-        int32_t shift = gproji_panel_shift(front->width);
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
         for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
             int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
             if (late < front->first + front->width) {
-                at = late - front->first + shift;
+                at = late - front->first + shape.shift;
             } else {
                 place = sy->place[x->node_of[c->permutation[late]]];
                 at = position[place] + late - sy->column[place];
             }
-            c->target[r] = front->panel + gproji_panel_offset(shift, front->stride, early - front->first + shift) + at;
+            c->target[r] = front->panel + gproji_shape_offset(shape, early - front->first + shape.shift) + at;
         }
     }
 }
@@ -5986,7 +6012,7 @@ GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_pan
 }
 
 GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
-    return gproji_make_panel(c->kernels, front->width, front->below, front->stride, c->values + front->panel,
+    return gproji_make_panel(c->kernels, front->width, front->below, c->values + front->panel,
                              c->inverse + front->first, c->values + front->update);
 }
 
@@ -5994,7 +6020,7 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = gproji_panel_entries(front->width, front->stride), i;
+    int64_t size = front->entries, i;
     if (c->symbolic.values_size <= GPROJI_CACHED) return;
     if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
     for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
@@ -6006,7 +6032,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(panel.values, 0, (size_t)gproji_panel_entries(front->width, front->stride) * sizeof(double));
+    memset(panel.values, 0, (size_t)front->entries * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
     gproji_add_children(c, front, &panel, parallel, pieces);

@@ -807,7 +807,7 @@ static void change_owner(ownership *o, int64_t first, int64_t count, int32_t fro
 /* A front begins: its panel and its update matrix must be nobody's. */
 static void begin_front(ownership *o, int32_t f) {
     const gproji_front *front = &o->sy->front[f];
-    change_owner(o, front->panel, gproji_panel_entries(front->width, front->stride), 0, f + 1);
+    change_owner(o, front->panel, front->entries, 0, f + 1);
     change_owner(o, front->update, gproji_update_entries(front->update_rows), 0, -f - 1);
 }
 
@@ -837,8 +837,7 @@ static void change_owners(ownership *o, bool concurrent) {
         begin_front(o, sy->schedule[k]);
         end_front(o, sy->schedule[k]);
     }
-    for (k = 0; k < sy->fronts; ++k)
-        change_owner(o, sy->front[k].panel, gproji_panel_entries(sy->front[k].width, sy->front[k].stride), k + 1, 0);
+    for (k = 0; k < sy->fronts; ++k) change_owner(o, sy->front[k].panel, sy->front[k].entries, k + 1, 0);
 }
 
 /* Nothing is ever where something else is still needed; and one worker needs little more memory than what there is at

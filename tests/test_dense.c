@@ -31,37 +31,36 @@ static void naive_partial(int32_t n, int32_t w, double *a) {
 /* Storage row of row i of a panel with w pivots. */
 static int32_t storage(int32_t w, int32_t i) { return i + gproji_panel_shift(w); }
 
-/* The place of row i and column j, or of storage row r of column j, in such a panel. */
-static int64_t place_of_row(int32_t w, int32_t stride, int32_t r, int32_t j) {
-    return gproji_panel_offset(gproji_panel_shift(w), stride, storage(w, j)) + r;
+/* The place of row i, or of storage row r, and column j in a panel. */
+static int64_t place_of_row(gproji_shape shape, int32_t r, int32_t j) {
+    return gproji_shape_offset(shape, j + shape.shift) + r;
 }
-static int64_t place_of(int32_t w, int32_t stride, int32_t i, int32_t j) {
-    return place_of_row(w, stride, storage(w, i), j);
-}
+static int64_t place_of(gproji_shape shape, int32_t i, int32_t j) { return place_of_row(shape, i + shape.shift, j); }
 
 /* Factors a panel with w pivots and u rows below, forms the update matrix, solves with it: all against the loops. */
 static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u, uint64_t *seed) {
     int32_t n = w + u, update_rows = gproji_round_up(u, GPROJI_BLOCK), rows = storage(w, w) + update_rows, i, j;
-    int32_t stride = gproji_stride(rows);
-    size_t panel_size = (size_t)gproji_panel_entries(w, stride);
+    gproji_shape shape = gproji_shape_of(w, u);
+    size_t panel_size = (size_t)gproji_shape_entries(shape, w);
     size_t update_size = (size_t)gproji_update_entries(update_rows) + 1;
     double *a = (double *)malloc((size_t)n * (size_t)n * sizeof(double));
     double *panel = (double *)calloc(panel_size, sizeof(double)),
            *inverse = (double *)malloc((size_t)w * sizeof(double));
     double *update = (double *)malloc(update_size * sizeof(double));
-    double *z = (double *)calloc((size_t)stride, sizeof(double)), *b = (double *)malloc((size_t)n * sizeof(double));
+    double *z = (double *)calloc((size_t)shape.stride, sizeof(double)),
+           *b = (double *)malloc((size_t)n * sizeof(double));
     double error = 0, bound = 1e-11;
     gproji_panel job;
     fill_spd(n, a, seed);
     for (j = 0; j < w; ++j)
-        for (i = j; i < n; ++i) panel[place_of(w, stride, i, j)] = a[at(i, j, n)];
+        for (i = j; i < n; ++i) panel[place_of(shape, i, j)] = a[at(i, j, n)];
     for (i = 0; i < (int32_t)update_size; ++i) update[i] = i % 16;
     naive_partial(n, w, a);
-    job = gproji_make_panel(kernels, w, u, stride, panel, inverse, update);
+    job = gproji_make_panel(kernels, w, u, panel, inverse, update);
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
     for (j = 0; j < w; ++j) {
-        for (i = j; i < n; ++i) error = fmax(error, fabs(panel[place_of(w, stride, i, j)] - a[at(i, j, n)]));
-        for (i = storage(w, n); i < rows; ++i) error = fmax(error, fabs(panel[place_of_row(w, stride, i, j)]));
+        for (i = j; i < n; ++i) error = fmax(error, fabs(panel[place_of(shape, i, j)] - a[at(i, j, n)]));
+        for (i = storage(w, n); i < rows; ++i) error = fmax(error, fabs(panel[place_of_row(shape, i, j)]));
     }
     if (u > 0) {
         update[update_size - 1] = 7.0; /* one beyond the end */
@@ -127,27 +126,29 @@ GPROJT_TEST(dense_panels) {
 GPROJT_TEST(dense_failing_pivots) {
     const double bad[] = {-1.0, 0.0, NAN, INFINITY};
     enum {
-        W = 140,
-        STRIDE = 200
+        W = 140
     };
-    double *panel = (double *)malloc(sizeof(double) * W * STRIDE), inverse[W];
+    const gproji_shape shape = gproji_shape_of(W, 0);
+    const size_t size = (size_t)gproji_shape_entries(shape, W) * sizeof(double);
+    double *panel = (double *)malloc(size), inverse[W];
     const gproji_kernels *kernels;
     int32_t column, i, kind, b;
     FOR_ALL_KERNELS for (column = 0; column < W; column += 7) for (b = 0; b < 4; ++b) {
-        gproji_panel job = gproji_make_panel(kernels, W, 0, STRIDE, panel, inverse, NULL);
-        memset(panel, 0, sizeof(double) * W * STRIDE);
-        for (i = 0; i < W; ++i) panel[place_of(W, STRIDE, i, i)] = i == column ? bad[b] : 4.0;
+        gproji_panel job = gproji_make_panel(kernels, W, 0, panel, inverse, NULL);
+        memset(panel, 0, size);
+        for (i = 0; i < W; ++i) panel[place_of(shape, i, i)] = i == column ? bad[b] : 4.0;
         GPROJT_CHECK(gproji_panel_factor(NULL, &job) == column);
     }
     free(panel);
 }
 
 /* Where column t begins, with a stride that falls after `left` columns and then after each block. */
-static size_t fallen(int32_t t, int32_t left, int32_t stride) {
+static size_t begin_of(int32_t t, int32_t stride, int32_t left) {
     size_t place = 0;
-    int32_t i;
-    for (i = 1; i <= t; ++i)
-        place += (size_t)(stride - gproji_pieces(gproji_max(i - left + 1, 0), GPROJI_BLOCK) * GPROJI_STEP);
+    for (; t > 0; --t, --left) {
+        if (left == 1) left += GPROJI_BLOCK, stride -= GPROJI_BLOCK;
+        place += (size_t)stride;
+    }
     return place;
 }
 
@@ -157,7 +158,7 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
         MOST = 64,
         DEEP = 20,
         WIDE = 8,
-        STRIDE = MOST + 2 * WIDE
+        STRIDE = MOST + 4 * WIDE
     };
     static double a[STRIDE * DEEP], b[STRIDE * DEEP], c[MOST * WIDE], was[MOST * WIDE], triangle[MOST * WIDE];
     const int32_t B = kernels->block;
@@ -167,7 +168,7 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
         for (k = 0; k <= DEEP; ++k)
             for (skip = -1; skip < (k == 0 ? B : 1); ++skip) {
                 int32_t rows = blocks * B, columns = B - gproji_max(skip, 0), first = B - columns;
-                int32_t left = 1 + (k + blocks) % GPROJI_BLOCK; /* columns with the first stride */
+                int32_t left = k % 3 ? 1 + (k + blocks) % GPROJI_BLOCK : INT32_MAX;
                 double error = 0;
                 for (i = 0; i < STRIDE * DEEP; ++i) a[i] = gprojt_uniform(seed), b[i] = gprojt_uniform(seed);
                 for (i = 0; i < MOST * WIDE; ++i)
@@ -186,7 +187,7 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
                             continue;
                         }
                         for (t = 0; t < k; ++t) {
-                            size_t column = fallen(t, left, STRIDE);
+                            size_t column = begin_of(t, STRIDE, left);
                             sum -= a[column + (size_t)i] * b[column + (size_t)j];
                         }
                         if (skip >= 0) {
@@ -214,7 +215,7 @@ GPROJT_TEST(dense_tiles) {
 /* Row i, column j <= i of what a panel and its update matrix hold together. */
 static double *entry_of(const gproji_panel *panel, double *values, int32_t i, int32_t j) {
     int32_t w = panel->w;
-    if (j < w) return values + place_of(w, panel->stride, i, j);
+    if (j < w) return values + place_of(panel->shape, i, j);
     return panel->update + gproji_update_offset(panel->update_rows, j - w) + (i - w);
 }
 
@@ -222,9 +223,10 @@ static double *entry_of(const gproji_panel *panel, double *values, int32_t i, in
    rows, which stay together; and nothing else is touched. */
 static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32_t below, int32_t most,
                       uint64_t *seed) {
-    int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK), stride = gproji_stride(storage(w, n));
+    gproji_shape shape = gproji_shape_of(w, u);
+    int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK);
     int32_t child_w = 5, groups = 0, i, j, left = n - below, next = 0;
-    size_t panel_size = (size_t)gproji_panel_entries(w, stride),
+    size_t panel_size = (size_t)gproji_shape_entries(shape, w),
            update_size = (size_t)gproji_update_entries(gproji_round_up(u, GPROJI_BLOCK));
     double *values = (double *)calloc(panel_size + 1, sizeof(double));
     double *update = (double *)calloc(update_size + 1, sizeof(double)), kept = 0;
@@ -232,7 +234,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     int32_t *group = (int32_t *)malloc(sizeof(int32_t) * (size_t)(2 * below + 2)), *to = group + below + 1;
     int32_t *row_to = (int32_t *)malloc(sizeof(int32_t) * (size_t)(below + 1));
     gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)gproji_pieces_most(below, below));
-    gproji_panel panel = gproji_make_panel(kernels, w, u, stride, values, NULL, update);
+    gproji_panel panel = gproji_make_panel(kernels, w, u, values, NULL, update);
     gproji_addition add;
     for (i = 0; i < below; i = next) {
         int32_t gap = gproji_min(left, (int32_t)(gprojt_uniform(seed) * 4)), k;
@@ -271,29 +273,28 @@ GPROJT_TEST(dense_add) {
     }
 }
 
-GPROJT_TEST(dense_strides) {
-    int32_t rows;
-    for (rows = 1; rows < 3000; ++rows) {
-        int32_t stride = gproji_stride(rows);
-        GPROJT_CHECK(stride >= rows && stride % GPROJI_BLOCK == 0 && (GPROJI_STEP > 0 || stride % 64 != 0));
-        GPROJT_CHECK((rows + gproji_panel_shift(rows)) % GPROJI_BLOCK == 0);
-    }
-}
-
-/* Every entry of a panel is in one column, from the first row of its block on, and the columns follow each other. */
+/* The columns of a panel follow each other, each from the first row of its block on; together eliminated ones have the
+   stride that kernels are told. */
 GPROJT_TEST(dense_columns_of_panels) {
-    int32_t w, below, j;
-    for (w = 1; w < 80; ++w)
-        for (below = 0; below < 40; below += 13) {
-            int32_t stride = gproji_stride(storage(w, w) + below);
+    int32_t w, below, j, next, first_of = 0, chunk = 0, left = 0;
+    for (w = 1; w < 900; w += 1 + w / 40)
+        for (below = 0; below < 90; below += 13) {
+            gproji_shape shape = gproji_shape_of(w, below);
+            gproji_panel panel = gproji_make_panel(gproji_kernels_of(0), w, below, NULL, NULL, NULL);
             int64_t end = 0;
-            for (j = 0; j < w; ++j) {
-                int32_t first = storage(w, j) / GPROJI_BLOCK * GPROJI_STEP;
-                GPROJT_CHECK(place_of_row(w, stride, first, j) == end);
-                GPROJT_CHECK(gproji_panel_stride(stride, storage(w, j)) == stride - first);
-                end += stride - first;
+            for (j = 0, next = 0; j < w; ++j) {
+                int32_t at = storage(w, j), stride = gproji_shape_stride(shape, at), first = shape.stride - stride;
+                GPROJT_CHECK(first >= 0 && first <= at && stride % GPROJI_BLOCK == 0 && at >= storage(w, 0));
+                GPROJT_CHECK(place_of_row(shape, first, j) == end);
+                end += stride;
+                if (j == next) /* a chunk */
+                    chunk = gproji_shape_stride(shape, at), left = gproji_shape_left(shape, at), first_of = j,
+                    next = gproji_next_chunk(&panel, j);
+                GPROJT_CHECK(place_of_row(shape, shape.stride, j) == place_of_row(shape, shape.stride, first_of) +
+                                                                         (int64_t)begin_of(j - first_of, chunk, left));
             }
-            GPROJT_CHECK(gproji_panel_entries(w, stride) == end);
+            GPROJT_CHECK(gproji_shape_entries(shape, w) == end && shape.stride >= storage(w, w) + below);
+            GPROJT_CHECK((w + shape.shift) % GPROJI_BLOCK == 0 && (shape.last < 0 || shape.stride % 64 != 0));
         }
 }
 
@@ -302,7 +303,6 @@ int main(void) {
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);
     GPROJT_RUN(dense_add);
-    GPROJT_RUN(dense_strides);
     GPROJT_RUN(dense_columns_of_panels);
     return gprojt_report();
 }
