@@ -2454,12 +2454,13 @@ typedef struct gproji_kernels {
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* the pieces of `add` have gaps */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
-       and block rows. */
-    void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+       and block rows. Both are parts of a panel: `stride` leads from one column to the next, but after `left` columns,
+       and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+    void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
        diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
-    void (*solve)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+    void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
        column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
@@ -2582,6 +2583,9 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                   \
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
+#define GPROJI_TILE_NEXT                                                                                               \
+    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
+    a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
@@ -2592,28 +2596,30 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
-    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,    \
-                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                     \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
+                                                        ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                           \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                                \
-        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
+        int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,         \
         const double *triangle, const double *inverse, int32_t skip) {                                                 \
         GPROJI_BEGIN(L)                                                                                                \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                          \
         GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)                \
@@ -2715,24 +2721,24 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,             \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {          \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
+                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc);                                                \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                 \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc);                                                 \
     }                                                                                                                  \
-    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,              \
-                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,             \
+    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
+                                                 ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
                                                  const double *triangle, const double *inverse, int32_t skip) {        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                          \
+            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                          \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                        \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                         \
+            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                         \
     }                                                                                                                  \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
@@ -2826,14 +2832,15 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
    rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
    t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every
-   tile is whole and aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a
-   diagonal tile is never read.
+   (the first block may have fewer than B). Pivot j stands in storage row j + q. Of what is above the diagonal most is not
+   stored: see gproji_shape. Strides are multiples of B, so every tile is whole and aligned: what kernels compute in empty
+   rows is zero, and what they write above the diagonal of a diagonal tile is never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,    /* so many columns, if they are the last, are taken off an update matrix together */
     GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
     GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
     GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
@@ -2848,10 +2855,56 @@ GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all +
 /* The number of empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* A stride of at least `rows`: a multiple of B, and none that maps whole columns to the same few lines of a cache. */
-GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
-    int32_t stride = gproji_round_up(rows, GPROJI_BLOCK);
-    return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+/* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
+   each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
+   multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
+   are. With a BLAS there is but one block. */
+typedef struct gproji_shape {
+    int32_t shift;  /* empty rows before the pivots */
+    int32_t stride; /* of the first block, and the number of storage rows */
+    int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
+} gproji_shape;
+
+GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
+    gproji_shape shape;
+    int32_t end = gproji_round_up(w, GPROJI_BLOCK);
+    shape.shift = end - w;
+    shape.stride = end + gproji_round_up(below, GPROJI_BLOCK);
+    shape.last = -1;
+#ifdef GPROJ_USE_CBLAS
+    shape.last = 0;
+#else
+    if (w <= GPROJI_NARROW) return shape;
+    shape.last = gproji_pieces(end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
+#endif
+    if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else whole columns share few cache lines */
+    return shape;
+}
+
+/* The first row that the column of the pivot in storage row `at` has. */
+GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
+}
+
+/* Its stride; and how many columns, eliminated together, have it: that one and those after it. */
+GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
+    return shape.stride - gproji_shape_first(shape, at);
+}
+GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
+}
+
+/* Storage row r of that column is at this offset + r, for rows that are stored: as if all were, less those that the
+   columns up to this one do not have. */
+GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
+    int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
+    return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
+}
+
+/* The number of entries of a panel with w pivots. */
+GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
+    int32_t end = w + shape.shift;
+    return gproji_shape_offset(shape, end) + gproji_shape_first(shape, end);
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -2875,56 +2928,74 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of the kernels' block B; columns [first, last)
-   are being eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are
-   ends of column blocks (or 0). Where B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `shift` < B
-   empty rows stay. */
+/* A panel at work: w pivot columns in storage rows [top, rows); columns [first, last) are being eliminated as a chunk,
+   after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks (or 0). Where
+   B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `top` rows. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
-    int32_t w, shift, rows;
+    int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t stride;
+    gproji_shape shape;
     int32_t update_rows; /* of the update matrix */
     double *values;
     double *inverse; /* w: inverses of the diagonal of L */
     double *update;  /* the update matrix */
 } gproji_panel;
 
-GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, int32_t stride,
-                                               double *values, double *inverse, double *update) {
+GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
+                                               double *inverse, double *update) {
     gproji_panel panel;
     int32_t block = kernels->block;
     panel.kernels = kernels;
-    panel.w = w, panel.shift = gproji_round_up(w, block) - w;
+    panel.shape = gproji_shape_of(w, below);
+    panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
-    panel.stride = stride, panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
-    panel.values = values + gproji_panel_shift(w) - panel.shift, panel.inverse = inverse, panel.update = update;
+    panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
+    panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
 }
 
 GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
-    return panel->values + row + (ptrdiff_t)column * panel->stride;
+    return panel->values + gproji_shape_offset(panel->shape, column + panel->shift) + row;
 }
 
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = panel->w + shift;
-    if (at < pivot_end) return gproji_panel_at(panel, panel->shift - shift, at - shift);
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* A strip of C -= A B': `columns` columns (a multiple of the block) whose diagonal begins at its corner, `rows` rows. A
-   has k columns and the strip's rows; B is the upper end of A. */
-GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t rows, int32_t columns, int32_t k,
-                                         const double *a, ptrdiff_t lda, double *c, ptrdiff_t ldc) {
-    int32_t begin, column;
-    for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
-        int32_t end = gproji_min(rows, begin + GPROJI_ROW_BLOCK);
-        for (column = 0; column < gproji_min(columns, end); column += kernels->block) {
+/* Its stride: that of all columns of its block, or of its strip of the update matrix. */
+GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
+    return gproji_update_stride(panel->update_rows, at - pivot_end);
+}
+
+/* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
+   row. */
+GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
+    return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
+}
+
+/* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
+   the update matrix, from storage row `at` on. */
+GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
+                                         int32_t last) {
+    const gproji_kernels *kernels = panel->kernels;
+    const double *l = gproji_panel_at(panel, 0, first);
+    int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
+    int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
+    int32_t begin, stop, column;
+    for (begin = at; begin < panel->rows; begin = stop) {
+        stop = gproji_min(panel->rows, begin + GPROJI_ROW_BLOCK);
+        for (column = at; column < gproji_min(end, stop); column += kernels->block) {
             int32_t row = gproji_max(begin, column);
-            kernels->update(end - row, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
+            kernels->update(stop - row, last - first, l + row, l + column, stride, left,
+                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column));
         }
     }
 }
@@ -2932,36 +3003,41 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t 
 /* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
-    int32_t column = index * GPROJI_STRIP, rows = below - column, stride = panel->update_rows - column, first, last;
-    double *strip = panel->update + gproji_update_offset(panel->update_rows, column) + column;
+    int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
+    int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
-        last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
-        gproji_strip_update(panel->kernels, rows, gproji_min(GPROJI_STRIP, rows), last - first,
-                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, stride);
+        last = gproji_next_chunk(panel, first);
+        if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
+        gproji_strip_update(panel, at, end, first, last);
     }
 }
 
 /* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
-    gproji_strip_update(panel->kernels, panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column),
-                        panel->last - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                        gproji_panel_at(panel, row, column), panel->stride);
+    int32_t at = panel->last + panel->shift + index * GPROJI_STRIP;
+    int32_t end = gproji_min(at + GPROJI_STRIP, panel->w + panel->shift);
+    gproji_strip_update(panel, at, end, panel->first, panel->last);
+}
+
+/* The first storage row of the column block that begins with column `start`. */
+GPROJI_INLINE int32_t gproji_block_row(const gproji_panel *panel, int32_t start) {
+    return start == 0 ? panel->top : start + panel->shift;
 }
 
 /* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
 GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
-    int32_t skip = start == 0 ? panel->shift : 0, at = start == 0 ? 0 : start + panel->shift;
-    panel->kernels->solve(rows, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                          gproji_panel_at(panel, at, panel->first), panel->stride, gproji_panel_at(panel, row, start),
-                          panel->stride, gproji_panel_at(panel, at, start), panel->inverse + start, skip);
+    int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+    const double *l = gproji_panel_at(panel, 0, panel->first);
+    double *block = gproji_panel_at(panel, 0, start);
+    panel->kernels->solve(rows, start - panel->first, l + row, l + at, gproji_shape_stride(panel->shape, chunk),
+                          gproji_shape_left(panel->shape, chunk), block + row, gproji_shape_stride(panel->shape, at),
+                          block + at, panel->inverse + start, start + panel->shift - at);
 }
 
 /* The first column of the block after the one that begins with column `start`. */
 GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
-    return start + panel->kernels->block - (start == 0 ? panel->shift : 0);
+    return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
 /* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
@@ -2977,14 +3053,16 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
 /* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
 GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
-    int32_t block = kernels->block, shift = panel->shift, end = panel->last + shift, stride = panel->stride;
-    int32_t start, failed;
+    int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
     for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
-        int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
+        int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+        int32_t stride = gproji_shape_stride(panel->shape, at);
         const double *strip = gproji_panel_at(panel, at, panel->first);
         double *corner = gproji_panel_at(panel, at, start);
-        if (k > 0) kernels->update(block, k, strip, stride, strip, stride, corner, stride);
-        failed = kernels->factor(corner, stride, panel->inverse + start, start == 0 ? shift : 0);
+        if (start > panel->first)
+            kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
+                            gproji_shape_left(panel->shape, chunk), corner, stride);
+        failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
         if (failed >= 0) return start + failed;
         gproji_block_solve(panel, start, at + block, end - at - block);
     }
@@ -3002,11 +3080,17 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
+/* The pieces of a child's `below` rows in `groups` groups are at most so many. */
+GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
+    return 2 * groups + below / GPROJI_BLOCK + 2;
+}
+
 /* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
    on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
    columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
-   `pivot_end`, or beyond a strip of its update matrix. piece: 2 groups + below / 8 + 2 entries are enough. Returns
-   their number. */
+   `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
+   number. */
+
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
@@ -3023,7 +3107,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
                 if (kernels->spreads)
                     end = now->to + 8;
                 else if (target < pivot_end)
-                    end = pivot_end;
+                    end = target - target % GPROJI_BLOCK + GPROJI_BLOCK;
                 else
                     end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
             }
@@ -3048,23 +3132,14 @@ typedef struct gproji_addition {
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
     const gproji_panel *panel = add->panel;
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = shift + panel->w, k;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k;
     for (k = 0; k < add->pieces; ++k) {
         const gproji_piece *piece = add->piece + k;
         int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
         const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
-        ptrdiff_t stride = panel->stride;
-        double *target;
         if (first >= last) continue;
-        if (piece->to < pivot_end) { /* the panel has no columns, and maybe no rows, for its first rows */
-            target = gproji_panel_at(panel, panel->shift - shift, piece->to - shift);
-        } else {
-            stride = gproji_update_stride(panel->update_rows, piece->to - pivot_end);
-            target = panel->update + gproji_update_offset(panel->update_rows, piece->to - pivot_end) - pivot_end;
-        }
-        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin), target,
-                            stride);
+        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin),
+                            gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
     }
 }
 
@@ -3072,7 +3147,7 @@ GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
-    int32_t first = panel->first, last = panel->last, stride = panel->stride;
+    int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
     double *below = gproji_panel_at(panel, last + panel->shift, first);
     double *later = gproji_panel_at(panel, last + panel->shift, last);
@@ -3096,11 +3171,11 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
         int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows), ldc = panel->update_rows - first;
         next = first + columns;
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 1.0, strip,
-                    ldc);
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->shape.stride, 1.0,
+                    strip, ldc);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->stride, l2, panel->stride, 1.0, strip + columns, ldc);
+                        panel->shape.stride, l2, panel->shape.stride, 1.0, strip + columns, ldc);
     }
 }
 #else
@@ -3126,7 +3201,7 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     for (panel->last = 0; panel->last < panel->w;) {
         int32_t failed;
         panel->first = panel->last;
-        panel->last = gproji_min(panel->w, panel->first + GPROJI_CHUNK - (panel->first ? 0 : panel->shift));
+        panel->last = gproji_next_chunk(panel, panel->first);
         failed = gproji_chunk_pivots(panel);
         if (failed >= 0) return failed;
         gproji_chunk_finish(parallel, panel);
@@ -3137,24 +3212,23 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
 /* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
    what it takes from the rows below. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift;
-    z += gproji_panel_shift(panel->w) - shift;
+    int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
-        int32_t skip = start == 0 ? shift : 0, at = start == 0 ? 0 : start + shift;
-        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                panel->inverse + start, skip, z + at);
+        int32_t at = gproji_block_row(panel, start);
+        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                gproji_shape_stride(panel->shape, at), panel->inverse + start,
+                                start + panel->shift - at, z + at);
     }
 }
 
 /* z = L^-T z on all storage rows of a panel, where the part below is known. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift, block = panel->kernels->block, at = panel->w + shift - block;
-    z += gproji_panel_shift(panel->w) - shift;
-    for (; at >= 0; at -= block) {
-        int32_t skip = at == 0 ? shift : 0;
-        start = at == 0 ? 0 : at - shift;
-        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                 panel->inverse + start, skip, z + at);
+    int32_t block = panel->kernels->block, at = panel->w + panel->shift - block;
+    for (; at >= panel->top; at -= block) {
+        int32_t start = gproji_max(at - panel->shift, 0);
+        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                 gproji_shape_stride(panel->shape, at), panel->inverse + start,
+                                 start + panel->shift - at, z + at);
     }
 }
 
@@ -4834,29 +4908,28 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
-   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel is in
-   the factor, where its update matrix is in the work memory, and which fronts make up a task.
+   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): which fronts make up a task, and
+   where each front's panel and its update matrix are in the memory.
 
    A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
    (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
    whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
    node among its pivots; all rows of a front are pivots or rows of its parent. */
 typedef struct gproji_front {
-    int64_t panel;  /* where its panel begins in the values of L */
-    int64_t update; /* where its update matrix begins in the work memory */
-    int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
-    int64_t side;   /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
+    int64_t panel;   /* where its panel begins in the values of L */
+    int64_t entries; /* of its panel */
+    int64_t update;  /* where its update matrix begins, among the values of L */
+    int64_t rows;    /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int64_t side;    /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
     int32_t row_nodes;
     int32_t first_place, end_place; /* its pivot nodes */
     int32_t first;                  /* its first column of L */
     int32_t width;
     int32_t below;
-    int32_t stride;      /* of its panel, which has as many storage rows: see >>dense */
     int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
     int32_t sibling;     /* next child of the same parent, or -1 */
-    int32_t depth;       /* 0 without parent */
 } gproji_front;
 
 typedef struct gproji_symbolic {
@@ -4875,8 +4948,8 @@ typedef struct gproji_symbolic {
     int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
     int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
     int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
-    int64_t work_size;     /* doubles for all update matrices */
     int64_t values_size;   /* doubles for all panels */
+    int64_t work_size;     /* doubles after them, for the update matrices that do not fit in between */
     int64_t side_size;     /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
@@ -4891,6 +4964,7 @@ enum {
 typedef struct gproji_analysis {
     const gproji_graph *graph;
     gproji_symbolic *out;
+    bool concurrent;        /* several tasks may be at work at the same time */
     gproji_pool *keep;      /* for what is kept */
     gproji_pool pool;       /* for what is not */
     int32_t *parent;        /* elimination tree, by place; -1: root */
@@ -5246,28 +5320,27 @@ GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
     }
 }
 
-/* Strides, offsets and children of the fronts; sums. */
-GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
+/* Strides, children and sides of the fronts; sums. */
+GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
     int32_t f;
     for (f = 0; f < out->fronts; ++f) out->front[f].child = out->front[f].sibling = -1;
     for (f = out->fronts - 1; f >= 0; --f) {
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
-        front->depth = out->front[front->parent].depth + 1;
         front->sibling = out->front[front->parent].child;
         out->front[front->parent].child = f;
     }
     for (f = 0; f < out->fronts; ++f) {
         gproji_front *front = &out->front[f];
         int64_t w = front->width;
-        front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
+        front->entries = gproji_shape_entries(shape, front->width);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
-        front->panel = out->values_size;
         front->side = out->side_size;
-        out->values_size += w * front->stride;
+        out->values_size += front->entries;
         out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
-        out->most_rows = gproji_max(out->most_rows, front->stride);
+        out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
 }
 
@@ -5327,46 +5400,110 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     return true;
 }
 
-/* The update matrices of one group, from `base` on in the work memory. Fronts of even depth stack theirs from the lower
-   end, those of odd depth from the upper end: a front's matrix is thus never on the same stack as its children's, which
-   it needs until its own is finished, and they are on top of theirs. Matrices that another group consumes stay.
-   Returns the end of the group's memory. */
-GPROJI_INTERNAL int64_t gproji_stack_updates(gproji_symbolic *out, const int32_t *group, int32_t g, int64_t base) {
-    int64_t top[2] = {0, 0}, most = 0;
-    int32_t k, c, pass;
-    for (pass = 0; pass < 2; ++pass) { /* the first pass finds the size */
-        top[0] = top[1] = 0;
-        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
-            gproji_front *front = &out->front[out->schedule[k]];
-            int32_t side = front->depth & 1;
-            int64_t size = gproji_update_entries(front->update_rows);
-            front->update = side ? base + most - top[side] - size : base + top[side];
-            top[side] += size;
-            if (pass == 0 && top[0] + top[1] > most) most = top[0] + top[1];
-            for (c = front->child; c >= 0; c = out->front[c].sibling)
-                if (group[c] == g) top[!side] -= gproji_update_entries(out->front[c].update_rows);
-        }
+/* The update matrices of a front's children, one after the other, in the order of the schedule: backwards in time the
+   last one is the first to go. Distances are from the end of the memory that panels and update matrices share. The
+   families that are there are a ring, ascending, closed by one more that has nothing. */
+typedef struct gproji_family {
+    int64_t low, high;
+    int32_t before, after; /* in the ring */
+} gproji_family;
+
+enum {
+    GPROJI_FAMILY_TRIES = 64 /* gaps in which a family's place is looked for */
+};
+
+/* Gives a front's children the first gap that is large enough; their `update` becomes the distance of their far ends.
+   Fronts' groups: `group`. */
+GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *group, gproji_family *family) {
+    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, top, c;
+    int64_t size = 0;
+    for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+        size += gproji_update_entries(out->front[c].update_rows);
+    if (size == 0) return;
+    for (; family[after].low - family[before].high < size; after = family[after].after) {
+        before = after;
+        if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
+        if (after == ring) break;
     }
-    return base + most;
+    family[f].before = before, family[f].after = after;
+    family[before].after = family[after].before = f;
+    family[f].low = family[f].high = family[before].high;
+    for (top = 0; top < 2; ++top) /* children of tasks come before those on top */
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            if ((group[c] == out->tasks) == top)
+                out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
+}
+
+/* The memory of schedule[begin..end-1] from `base` on; returns its end. The panels follow each other. An update matrix
+   lives from its front's turn to its parent's: it may be where later panels come, but not its parent's. So they are
+   placed from the end of the memory on, backwards in time, which begins with the largest ones, and leaves them little
+   more than what the last panels need. family: fronts + 1; zeros on entry. */
+GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
+                                            const int32_t *group, gproji_family *family) {
+    int64_t at = base, most;
+    int32_t k, c;
+    family[out->fronts].low = INT64_MAX;
+    family[out->fronts].before = family[out->fronts].after = out->fronts;
+    for (k = begin; k < end; ++k) {
+        gproji_front *front = &out->front[out->schedule[k]];
+        front->panel = at;
+        at += front->entries;
+    }
+    most = at;
+    for (k = end - 1; k >= begin; --k) {
+        int32_t f = out->schedule[k], parent = out->front[f].parent;
+        gproji_family *own = parent < 0 ? NULL : &family[parent];
+        gproji_place_family(out, f, group, family);
+        if (at + family[f].high > most) most = at + family[f].high;
+        at = out->front[f].panel;
+        if (!own || own->high == own->low) continue; /* its parent is in another group */
+        own->high -= gproji_update_entries(out->front[f].update_rows);
+        if (own->high > own->low) continue;
+        family[own->before].after = own->after;
+        family[own->after].before = own->before;
+    }
+    for (k = begin; k < end; ++k) {
+        int32_t f = out->schedule[k];
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            out->front[c].update = most - out->front[c].update;
+    }
+    return most;
+}
+
+/* Where all panels and update matrices are. Groups that may be at work at the same time share nothing; else one comes
+   after the other. */
+GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group) {
+    gproji_symbolic *out = an->out;
+    int32_t g;
+    int64_t end = 0;
+    gproji_family *family =
+        (gproji_family *)gproji_pool_take_zeroed(&an->pool, (int64_t)out->fronts + 1, sizeof(gproji_family));
+    if (!family) return false;
+    if (an->concurrent)
+        for (g = 0; g <= out->tasks; ++g)
+            end = gproji_place_fronts(out, out->task_start[g], out->task_start[g + 1], end, group, family);
+    else
+        end = gproji_place_fronts(out, 0, out->fronts, 0, group, family);
+    out->work_size = end - out->values_size;
+    return true;
 }
 
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t *sequence = an->a, *group = an->c, g, k;
-    gproji_place_panels(out);
+    gproji_size_panels(out);
     gproji_front_sequence(an, sequence);
     if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
     for (g = 0; g <= out->tasks; ++g) {
         int32_t most = 0;
-        out->work_size = gproji_stack_updates(out, group, g, out->work_size);
         for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
             int32_t c = out->front[out->schedule[k]].child;
             for (; c >= 0; c = out->front[c].sibling)
-                most = gproji_max(most, 2 * out->front[c].row_nodes + out->front[c].below / 8 + 2);
+                most = gproji_max(most, gproji_pieces_most(out->front[c].row_nodes, out->front[c].below));
         }
         out->pieces_start[g + 1] = out->pieces_start[g] + most;
     }
-    return true;
+    return gproji_place_all(an, group);
 }
 
 /* Entries and flops of the factor without any zeros of relaxed supernodes. */
@@ -5513,10 +5650,11 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     return gproji_layout(an);
 }
 
-/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN. All
-   that `out` holds is taken from the pool. False when there is no memory. */
+/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN.
+   concurrent: may tasks be at work at the same time? It takes more memory, and changes nothing else. All that `out`
+   holds is taken from the pool. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
-                                    const gproj_cholesky_options *options, const int32_t *permutation,
+                                    const gproj_cholesky_options *options, const int32_t *permutation, bool concurrent,
                                     gproji_symbolic *out) {
     gproji_analysis an;
     bool done;
@@ -5524,6 +5662,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     memset(out, 0, sizeof *out);
     an.graph = graph;
     an.out = out;
+    an.concurrent = concurrent;
     an.keep = keep;
     gproji_pool_start(&an.pool, keep->heap);
     out->columns = columns;
@@ -5537,10 +5676,10 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix on a
-   stack. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
-   effect on the rows below is taken off. All that happens while the front is in the cache; right-hand sides that are
-   known then take part.
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
+   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are
+   added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
+   in the cache; right-hand sides that are known then take part.
 
    Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
    of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
@@ -5587,8 +5726,7 @@ struct gproj_cholesky {
     int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
 
-    double *values;       /* symbolic.values_size: all panels */
-    double *work;         /* symbolic.work_size: all update matrices */
+    double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
     gproji_piece *pieces; /* of a child, for each group of fronts */
     int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
@@ -5721,7 +5859,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     if (start) {
         start[0] = 0;
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, &c->symbolic) &&
+        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
+                              &c->symbolic) &&
                gproji_cholesky_permute(c, start, NULL);
     }
     gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
@@ -5945,16 +6084,17 @@ GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_comp
     int64_t r;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f];
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
         for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
             int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
             if (late < front->first + front->width) {
-                at = late - front->first + gproji_panel_shift(front->width);
+                at = late - front->first + shape.shift;
             } else {
                 place = sy->place[x->node_of[c->permutation[late]]];
                 at = position[place] + late - sy->column[place];
             }
-            c->target[r] = front->panel + (int64_t)(early - front->first) * front->stride + at;
+            c->target[r] = front->panel + gproji_shape_offset(shape, early - front->first + shape.shift) + at;
         }
     }
 }
@@ -5978,7 +6118,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     }
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
     graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
-    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, &c->symbolic) ||
+    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
         !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
         return gproji_fail_memory(&c->error);
     gproji_cholesky_find_targets(c, x);
@@ -6023,16 +6163,15 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
     int64_t groups = (int64_t)sy->tasks + 1;
     if (c->values) return true;
-    c->work = gproji_take_aligned(&c->numeric, sy->work_size);
     c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
-    c->values = gproji_take_aligned(&c->numeric, sy->values_size);
+    c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->work && c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
+    if (c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -6061,7 +6200,7 @@ GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_f
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
-        add.panel = panel, add.piece = pieces, add.update = c->work + child->update, add.rows = child->update_rows;
+        add.panel = panel, add.piece = pieces, add.update = c->values + child->update, add.rows = child->update_rows;
         add.pieces = gproji_find_pieces(
             c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
             child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
@@ -6078,15 +6217,15 @@ GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_pan
 }
 
 GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
-    return gproji_make_panel(c->kernels, front->width, front->below, front->stride, c->values + front->panel,
-                             c->inverse + front->first, c->work + front->update);
+    return gproji_make_panel(c->kernels, front->width, front->below, c->values + front->panel,
+                             c->inverse + front->first, c->values + front->update);
 }
 
 /* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = (int64_t)front->width * front->stride, i;
+    int64_t size = front->entries, i;
     if (c->symbolic.values_size <= GPROJI_CACHED) return;
     if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
     for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
@@ -6098,7 +6237,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
+    memset(panel.values, 0, (size_t)front->entries * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
     gproji_add_children(c, front, &panel, parallel, pieces);
