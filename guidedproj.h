@@ -294,7 +294,7 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_BEST,       /* the better of the next two, if dissection is likely to pay in four factorisations */
+    GPROJ_ORDERING_BEST,       /* one of the next two: dissection where it is likely to pay in four factorisations */
     GPROJ_ORDERING_AMD,        /* approximate minimum degree */
     GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the middle */
     GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
