@@ -7039,6 +7039,7 @@ struct gproj_system {
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
+    bool evaluated; /* compiled, and the rows have had values and gradients since */
     int32_t compiled_variables; /* the size of the arrays below */
     int32_t node_count, wide_count;
     int32_t *node;              /* of each variable */
@@ -7134,7 +7135,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
     gproji_schur_forget(s);
-    s->compiled = false;
+    s->compiled = s->evaluated = false;
 }
 
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
@@ -8074,6 +8075,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
     int32_t i;
     s->changed = false;
+    s->evaluated = true;
     for (i = 0; i < s->group_count; ++i) {
         gproji_evaluation e;
         if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
@@ -8837,7 +8839,7 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
    there where steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
     gproj_code code;
-    if (s->compiled && (s->schur.on || s->schur.passed_over) && (whole == s->schur.on || gproji_wake_groups(s)))
+    if (s->compiled && (whole ? s->schur.on : s->schur.passed_over || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return GPROJ_OK;
     code = gproji_compile_steps(s, whole);
@@ -9803,7 +9805,7 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
     if (!s->schur.on || !gproji_wake_groups(s)) return true;
     gproji_system_forget(s);
     if (gproji_compile(s, false) != GPROJ_OK) return false;
-    gproji_linearise(loop);
+    gproji_see_rows(loop);
     return true;
 }
 
@@ -10422,7 +10424,14 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->sliding = nearest;
-    if (loop->restored) gproji_see_rows(loop);
+    if (nearest && !s->sum) { /* a solve of the system in between has taken them */
+        if (!gproji_start_multipliers(s)) {
+            gproji_fail_memory(&s->error);
+            return;
+        }
+        changed = true;
+    }
+    if (loop->restored || !s->evaluated) gproji_see_rows(loop);
     if (loop->restored && nearest) gproji_judge_nearest(loop);
     loop->restored = false;
     s->changed = changed;
@@ -20983,6 +20992,7 @@ GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, g
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
+    double none = 0;
     int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
     gproji_pass_number(stream, &schedule.decay, 0, 1);
@@ -20995,7 +21005,8 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_weights(stream, form, g);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
-        if (passing == GPROJI_PASS_NEAREST) gproji_pass_number(stream, &g->multiplier[r].y, -DBL_MAX, DBL_MAX);
+        if (passing == GPROJI_PASS_NEAREST)
+            gproji_pass_number(stream, g->multiplier ? &g->multiplier[r].y : &none, -DBL_MAX, DBL_MAX);
     }
 }
 
