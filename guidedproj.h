@@ -7039,7 +7039,7 @@ struct gproj_system {
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
-    bool evaluated; /* compiled, and the rows have had values and gradients since */
+    bool evaluated;             /* compiled, and the rows have had values and gradients since */
     int32_t compiled_variables; /* the size of the arrays below */
     int32_t node_count, wide_count;
     int32_t *node;              /* of each variable */
@@ -20978,8 +20978,6 @@ typedef enum gproji_passing {
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
-   any of a group that the library has added (`own`): they are set when a solve begins. */
 /* Whether a group has ever counted decides how steps are found: see gproji_wake_groups. */
 GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, gproji_group *g) {
     bool idle = g->idle;
@@ -20989,6 +20987,8 @@ GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, g
     form->system->schur.passed_over = true; /* to be decided anew */
 }
 
+/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
+   any of a group that the library has added (`own`): they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
