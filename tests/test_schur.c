@@ -541,6 +541,284 @@ GPROJT_TEST(weights_of_0_need_no_analysis) {
     }
 }
 
+/* -- threads, memory, states -- */
+
+static double *gprojt_positions_by(int shape, int32_t n, int threads, gproj_iteration *last) {
+    gproj_mesh *mesh = gprojt_warped(shape, n, 0.05);
+    double *positions;
+    gproj_form *form;
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+    host.parallel.run = gprojt_run_threads;
+    host.parallel.user = &threads;
+    form = gproj_form_create(mesh, &host);
+    gproj_add_planarity(form, 1);
+    gproj_add_volume(form, 1.01 * gproj_volume(mesh), 1);
+    gproj_add_fixed_corners(form, 1);
+    last->residual = gproj_solve(form, 3, NULL).residual;
+    GPROJT_CHECK(gprojt_is_on(form) && form->system->schur.chunks > 1);
+    positions = gprojt_keep(mesh);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return positions;
+}
+
+GPROJT_TEST(same_bytes_on_any_number_of_threads) {
+    static const int threads[3] = {2, 3, 7};
+    static const int shape[2] = {GPROJT_QUADS, GPROJT_HEXAGONS};
+    int i, k;
+    for (i = 0; i < 2; ++i) {
+        gproj_iteration one, many;
+        gproj_mesh *mesh = gprojt_warped(shape[i], 40, 0);
+        double *expected = gprojt_positions_by(shape[i], 40, 1, &one);
+        for (k = 0; k < 3; ++k) {
+            double *positions = gprojt_positions_by(shape[i], 40, threads[k], &many);
+            GPROJT_CHECK(!memcmp(expected, positions, 3 * (size_t)mesh->vertex_count * sizeof *expected));
+            GPROJT_CHECK(one.residual == many.residual);
+            free(positions);
+        }
+        free(expected);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* With a wide row, and fixed ones; perhaps one more group, with a weight from the third iteration on. */
+typedef struct gprojt_many {
+    const gproj_mesh *mesh;
+    bool wakes;
+    gprojt_waking waking;
+} gprojt_many;
+
+static void gprojt_build_many(gproj_form *form, void *user) {
+    gprojt_many *many = (gprojt_many *)user;
+    gprojt_build(form, many->mesh, 1, GPROJT_CLOSE | GPROJT_VOLUME | GPROJT_BOUNDS | GPROJT_PART);
+    gproj_add_fixed_corners(form, 1);
+    if (!many->wakes) return;
+    many->waking.group = gproj_add_lengths(form, 5, NULL, NULL, 0);
+    many->waking.schedule = gprojt_schedule(1, 1, 0);
+}
+
+typedef struct gprojt_account {
+    uint64_t first, last;
+    int32_t iterations;
+} gprojt_account;
+
+static bool gprojt_count_allocations(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    gprojt_account *account = (gprojt_account *)user;
+    account->last = gproj_system_memory(s).allocations;
+    if (iteration->number == 1) account->first = account->last;
+    account->iterations = iteration->number;
+    return true;
+}
+
+GPROJT_TEST(no_allocation_after_the_first_iteration) {
+    gproj_mesh *mesh = gprojt_warped(GPROJT_ROSETTE, 0, 0.1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    gprojt_account account;
+    gprojt_many many;
+    int k;
+    memset(&options, 0, sizeof options);
+    memset(&account, 0, sizeof account);
+    options.on_iteration = gprojt_count_allocations;
+    options.user = &account;
+    memset(&many, 0, sizeof many);
+    many.mesh = mesh;
+    gprojt_build_many(form, &many);
+    for (k = 0; k < 2; ++k) {
+        uint64_t before = account.last;
+        gproj_solve(form, 12, &options);
+        GPROJT_CHECK(gprojt_is_on(form) && account.iterations > 3 && account.last == account.first);
+        GPROJT_CHECK(k == 0 || account.last == before);
+        gprojt_shake(mesh, 0.05, 9);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(every_allocation_may_fail) {
+    gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 4, 0.05);
+    gproj_solve_options options;
+    gprojt_many many;
+    long calls;
+    memset(&options, 0, sizeof options);
+    memset(&many, 0, sizeof many);
+    options.on_iteration = gprojt_wake;
+    options.user = &many.waking;
+    many.mesh = mesh;
+    calls = gprojt_fail_every_allocation_of_solve(mesh, gprojt_build_many, &many, 3, NULL);
+    GPROJT_CHECK(calls > 50);
+    many.wakes = true; /* two analyses */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_build_many, &many, 4, &options) > calls + 50);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A form with a fairness that has a weight, or had one in an earlier solve. */
+enum {
+    GPROJT_NEVER,
+    GPROJT_ONCE,
+    GPROJT_UNTOUCHED, /* made, and nothing else */
+    GPROJT_PASTS
+};
+
+static gproj_form *gprojt_form_with_past(gproj_mesh *mesh, int past) {
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t fairness = gproj_add_fairness(form, past == GPROJT_ONCE ? 0.1 : 0);
+    double *before = gprojt_keep(mesh);
+    gproj_add_planarity(form, 1);
+    gproj_add_gliding_boundary(form, 1);
+    gproj_add_volume(form, 1.01 * gproj_volume(mesh), 1);
+    if (past != GPROJT_UNTOUCHED) gproj_solve(form, 3, NULL);
+    if (past == GPROJT_ONCE) gproj_set_schedule(form, fairness, gprojt_schedule(0, 1, 0));
+    gprojt_put_back(mesh, before);
+    free(before);
+    return form;
+}
+
+/* A state after three frames goes on in another form as in its own. */
+static void gprojt_check_restored(int past, int other_past, bool nearest) {
+    gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 5, 0.05), *other_mesh = gprojt_warped(GPROJT_QUADS, 5, 0.05);
+    gproj_form *form = gprojt_form_with_past(mesh, past), *other = gprojt_form_with_past(other_mesh, other_past);
+    gproj_solve_options options;
+    gproj_result result;
+    size_t size;
+    void *state;
+    int k;
+    memset(&options, 0, sizeof options);
+    options.nearest = nearest;
+    gproj_step_begin(form, 20, &options);
+    for (k = 0; k < 3; ++k) gproj_step(form, 0);
+    size = gproj_state_size(form);
+    state = malloc(size);
+    GPROJT_CHECK(gproj_state_save(form, state, size, NULL) == GPROJ_OK);
+    do result = gproj_step(form, 0);
+    while (gproj_step_is_on(form));
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gprojt_is_on(form) == (past != GPROJT_ONCE && !nearest));
+    GPROJT_CHECK(gproj_state_restore(other, state, size, NULL) == GPROJ_OK);
+    do result = gproj_step(other, 0);
+    while (gproj_step_is_on(other));
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_is_on(other) == gprojt_is_on(form));
+    GPROJT_CHECK(gprojt_unmoved(mesh, other_mesh->position));
+    gprojt_shake(mesh, 0.01, 4);
+    gprojt_shake(other_mesh, 0.01, 4);
+    GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == gproj_solve(other, 12, NULL).outcome);
+    GPROJT_CHECK(gprojt_unmoved(mesh, other_mesh->position) && gprojt_is_on(other) == gprojt_is_on(form));
+    free(state);
+    gproj_form_destroy(form);
+    gproj_form_destroy(other);
+    gproj_mesh_destroy(mesh);
+    gproj_mesh_destroy(other_mesh);
+}
+
+GPROJT_TEST(states_go_on_in_forms_with_another_past) {
+    int past, other;
+    for (past = 0; past < GPROJT_PASTS; ++past)
+        for (other = 0; other < GPROJT_PASTS; ++other) {
+            gprojt_check_restored(past, other, false);
+            gprojt_check_restored(past, other, true);
+        }
+}
+
+/* Between the frames of a nearest solve a group may get its first weight, and the system may be solved; then the
+   multipliers of the frames begin anew. */
+GPROJT_TEST(frames_of_nearest_solves_may_be_disturbed) {
+    int what;
+    for (what = 0; what < 2; ++what) {
+        gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 5, 0.05);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options;
+        gproj_result result;
+        int32_t group, size, frames = 0;
+        memset(&options, 0, sizeof options);
+        options.nearest = true;
+        gproj_add_planarity(form, 1);
+        group = gproj_add_fairness(form, 0);
+        gproj_step_begin(form, 40, &options);
+        do {
+            result = gproj_step(form, 0);
+            if (++frames != 5) continue;
+            if (what == 0) gproj_set_schedule(form, group, gprojt_schedule(0.1, 1, 0));
+            if (what == 1) gproj_system_solve(gproj_form_system(form), 1, NULL);
+            size = (int32_t)gproj_state_size(form);
+            GPROJT_CHECK(size > 0);
+        } while (gproj_step_is_on(form));
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 5);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* -- faces that are none -- */
+
+enum {
+    GPROJT_COLLINEAR,
+    GPROJT_NEARLY, /* collinear */
+    GPROJT_EQUAL,  /* two vertices */
+    GPROJT_POINT,
+    GPROJT_BOW_TIE,
+    GPROJT_FLIPPED,
+    GPROJT_BADS
+};
+
+/* Spoils the face whose first corner is in the middle of the mesh. */
+static void gprojt_spoil(gproj_mesh *mesh, int bad) {
+    int32_t h = mesh->face_halfedge[mesh->face_count / 2], k;
+    double *p[4], swap[3];
+    for (k = 0; k < 4; ++k, h = mesh->next[h]) p[k] = mesh->position + 3 * mesh->origin[h];
+    memcpy(swap, p[1], sizeof swap);
+    for (k = 0; k < 3; ++k) {
+        double d = p[1][k] - p[0][k];
+        if (bad == GPROJT_COLLINEAR || bad == GPROJT_NEARLY) {
+            double off = bad == GPROJT_NEARLY ? 1e-9 * (k + 1) : 0;
+            p[2][k] = p[0][k] + 2 * d + off * k, p[3][k] = p[0][k] + 3 * d - off;
+        }
+        if (bad == GPROJT_EQUAL) p[1][k] = p[0][k];
+        if (bad == GPROJT_POINT) p[1][k] = p[2][k] = p[3][k] = p[0][k];
+        if (bad == GPROJT_BOW_TIE) p[1][k] = p[2][k], p[2][k] = swap[k];
+        if (bad == GPROJT_FLIPPED) p[2][k] = p[0][k] - 0.7 * (p[2][k] - p[0][k]);
+    }
+}
+
+static bool gprojt_look_for_nan(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    GPROJT_CHECK(gprojt_all_finite(gproj_system_values(s), gproj_system_variable_count(s)));
+    GPROJT_CHECK(iteration->step <= DBL_MAX && iteration->residual <= DBL_MAX && iteration->merit <= DBL_MAX);
+    ++*(int *)user;
+    return true;
+}
+
+GPROJT_TEST(bad_faces) {
+    static const double epsilon[4] = {1e-3, 1e-5, 1e-8, 1e-12};
+    int bad, fixed, k;
+    for (bad = 0; bad < GPROJT_BADS; ++bad)
+        for (fixed = 0; fixed < 2; ++fixed) {
+            gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 4, 0.05);
+            gproj_form *form;
+            gproj_solve_options options;
+            gproj_result result;
+            int calls = 0;
+            memset(&options, 0, sizeof options);
+            options.on_iteration = gprojt_look_for_nan;
+            options.user = &calls;
+            gprojt_spoil(mesh, bad);
+            form = gproj_form_create(mesh, NULL);
+            gproj_add_planarity(form, 1);
+            if (fixed) gproj_add_fixed_corners(form, 1);
+            if (fixed) gproj_add_volume(form, 1, 1);
+            gprojt_begin(form, false);
+            for (k = 0; k < 4; ++k) {
+                GPROJT_CHECK(gproji_find_schur_step(&form->solve.loop, epsilon[k]) && gprojt_is_on(form));
+                GPROJT_CHECK(gprojt_all_finite(form->system->step, form->system->variable_count));
+            }
+            if (bad >= GPROJT_EQUAL && bad != GPROJT_POINT) GPROJT_CHECK(gprojt_step_error(form, 1e-3) <= 1e-9);
+            result = gproj_solve(form, 20, &options);
+            GPROJT_CHECK(result.outcome != GPROJ_FAILED && result.message[0] && calls > 0);
+            if (getenv("GPROJT_TALK")) printf("  %d %d: %s\n", bad, fixed, result.message);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 int main(void) {
     GPROJT_RUN(steps_are_those_of_the_dense_matrix);
     GPROJT_RUN(taken_where_only_constraints_act);
@@ -548,5 +826,11 @@ int main(void) {
     GPROJT_RUN(idle_groups_change_nothing);
     GPROJT_RUN(a_callback_gives_a_first_weight);
     GPROJT_RUN(weights_of_0_need_no_analysis);
+    GPROJT_RUN(same_bytes_on_any_number_of_threads);
+    GPROJT_RUN(no_allocation_after_the_first_iteration);
+    GPROJT_RUN(every_allocation_may_fail);
+    GPROJT_RUN(states_go_on_in_forms_with_another_past);
+    GPROJT_RUN(frames_of_nearest_solves_may_be_disturbed);
+    GPROJT_RUN(bad_faces);
     return gprojt_report();
 }
