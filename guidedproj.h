@@ -8374,7 +8374,8 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
 
    E is not the identity: without eps on their normals, faces that become small would turn as they please. |R^-1|, with
    weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices. So E is 1.1 to 1.5 where
-   edges have the length 1, and large at faces that are small or nearly straight.
+   edges have the length 1, and large at faces that are small or nearly straight. Where |R^-1| reaches 1/eps there is next
+   to no area, and what the rows say of the normal is next to nothing: there it gets 1e-3 eps^2 after all, added to R'R.
 
    The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
    takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
@@ -8384,8 +8385,10 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
    (l + 1) GPROJI_BLOCK_MAX + k for the k-th of the element's l-th node; in a row with a single node, k. */
 
-static const double gproji_schur_most = 0.7;  /* so many multipliers a variable at most */
-static const double gproji_schur_share = 0.1; /* what |R^-1|^2 is multiplied by */
+static const double gproji_schur_most = 0.7;       /* so many multipliers a variable at most */
+static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplied by */
+static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
+static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
 enum {
     GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
@@ -8957,11 +8960,32 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
     }
 }
 
+/* R, by rows and with the inverses of its diagonal (0: none), becomes that of R'R + shift I; the shift is not below
+   rounding. */
+GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
+    double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
+    int32_t i, j, k;
+    for (k = 0; k < size; ++k)
+        if (triangle[k * size + k] != 0) triangle[k * size + k] = 1 / triangle[k * size + k];
+    for (i = 0; i < size; ++i) {
+        for (j = 0; j <= i; ++j) {
+            square[i * size + j] = 0;
+            for (k = 0; k <= j; ++k) square[i * size + j] += triangle[k * size + i] * triangle[k * size + j];
+        }
+        trace += square[i * size + i];
+    }
+    for (i = 0; i < size; ++i) square[i * size + i] += shift + gproji_schur_rounding * trace;
+    gproji_small_factor(square, size, size, DBL_MIN);
+    for (i = 0; i < size; ++i)
+        for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
+}
+
 /* Keeps R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. Returns
-   the sum of the squares of R^-1. */
+   the sum of the squares of R^-1, infinite where there are such columns. */
 GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t size, const double *column,
                                             const double *diagonal, double *triangle) {
     double sum = 0, unit[GPROJI_BLOCK_MAX];
+    bool dependent = false;
     int32_t i, j, k;
     for (j = 0; j < size; ++j) {
         double square = diagonal[j] * diagonal[j], all = square;
@@ -8970,7 +8994,9 @@ GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t 
             all += triangle[i * size + j] * triangle[i * size + j];
         }
         triangle[j * size + j] = square > 8 * DBL_EPSILON * all ? 1 / diagonal[j] : 0;
+        dependent = dependent || triangle[j * size + j] == 0;
     }
+    if (dependent) return HUGE_VAL;
     for (j = 0; j < size; ++j) /* the columns of R^-1 */
         for (i = j; i >= 0; --i) {
             double x = i == j;
@@ -9030,7 +9056,11 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
         if (count > closes)
             share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
                                          d->triangle + (int64_t)e * d->triangle_size);
-        share = gproji_fmin(share * heaviest * heaviest, 1 / assembly->epsilon2) * gproji_schur_share;
+        share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / assembly->epsilon2) : 0;
+        if (share == 1 / assembly->epsilon2)
+            gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
+                                  gproji_schur_calm * assembly->epsilon2);
+        share *= gproji_schur_share;
         for (j = d->first[e]; j < d->first[e + 1]; ++j) {
             if (m == 5 && count == 4)
                 gproji_reflect_back(5, 4, work, scale, 4, q);
