@@ -307,7 +307,6 @@ static void gprojt_check_case(const gprojt_case *c) {
         error[1] = gprojt_step_error(form, 1e-5);
         GPROJT_CHECK(error[0] <= 1e-9);
         GPROJT_CHECK(error[1] <= 1e-6);
-        if (getenv("GPROJT_TALK")) printf("  case %d: %.1e %.1e\n", (int)(c - gprojt_cases), error[0], error[1]);
     }
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -813,10 +812,34 @@ GPROJT_TEST(bad_faces) {
             if (bad >= GPROJT_EQUAL && bad != GPROJT_POINT) GPROJT_CHECK(gprojt_step_error(form, 1e-3) <= 1e-9);
             result = gproj_solve(form, 20, &options);
             GPROJT_CHECK(result.outcome != GPROJ_FAILED && result.message[0] && calls > 0);
-            if (getenv("GPROJT_TALK")) printf("  %d %d: %s\n", bad, fixed, result.message);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }
+}
+
+/* A face on a fixed line has rows of two kinds for a normal of three components. */
+GPROJT_TEST(faces_on_fixed_lines) {
+    int i, j, k;
+    for (i = 0; i < 12; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(GPROJT_QUADS, 4, 0.1, (uint64_t)i);
+        int32_t vertex[4], h = mesh->face_halfedge[9];
+        double direction[3], length = gproj_mesh_mean_edge_length(mesh);
+        gproj_solve_options options;
+        gproj_form *form;
+        uint64_t seed = (uint64_t)i;
+        memset(&options, 0, sizeof options);
+        options.skip_guard = true;
+        for (j = 0; j < 3; ++j) direction[j] = 0.3 * length * (i % 3 ? gprojt_uniform(&seed) - 0.5 : j == 2 ? 1 : 1e-3);
+        for (k = 0; k < 4; ++k, h = mesh->next[h])
+            for (j = 0, vertex[k] = mesh->origin[h]; j < 3; ++j)
+                mesh->position[3 * vertex[k] + j] = mesh->position[3 * vertex[0] + j] + k * direction[j];
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, 4, vertex, 1);
+        GPROJT_CHECK(gproj_solve(form, 30, &options).outcome == GPROJ_CONVERGED && gprojt_is_on(form));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 int main(void) {
@@ -832,5 +855,6 @@ int main(void) {
     GPROJT_RUN(states_go_on_in_forms_with_another_past);
     GPROJT_RUN(frames_of_nearest_solves_may_be_disturbed);
     GPROJT_RUN(bad_faces);
+    GPROJT_RUN(faces_on_fixed_lines);
     return gprojt_report();
 }
