@@ -582,7 +582,8 @@ GPROJ_API double *gproj_system_values(gproj_system *system);
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
-/* A new weight needs no new analysis; 0 switches a group off. */
+/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where the
+   steps of all others are found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
 /* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
@@ -1213,6 +1214,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
    the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
    written.
+
+   Where only constraints act, such as planarity, and wishes for single vertices, such as closeness, steps are found by the
+   multipliers of the constraints, which are several times fewer than the variables. Fairness, equilibrium, circular and
+   conical faces and options->nearest need the matrix of all variables. The same constraints are met, on paths that differ a
+   little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
    face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
@@ -2448,12 +2454,13 @@ typedef struct gproji_kernels {
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* the pieces of `add` have gaps */
     /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
-       and block rows. */
-    void (*update)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+       and block rows. Both are parts of a panel: `stride` leads from one column to the next, but after `left` columns,
+       and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+    void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
        diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
-    void (*solve)(int32_t rows, int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c,
+    void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
        column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
@@ -2576,6 +2583,9 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                   \
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
+#define GPROJI_TILE_NEXT                                                                                               \
+    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
+    a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
@@ -2586,28 +2596,30 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
-    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, ptrdiff_t lda, const double *b,    \
-                                                        ptrdiff_t ldb, double *c, ptrdiff_t ldc) {                     \
+    GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
+                                                        ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                           \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                                \
-        int32_t k, const double *a, ptrdiff_t lda, const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,           \
+        int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,         \
         const double *triangle, const double *inverse, int32_t skip) {                                                 \
         GPROJI_BEGIN(L)                                                                                                \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k, a += lda, b += ldb) {                                                                       \
+        for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
+            GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                          \
         GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)                \
@@ -2709,24 +2721,24 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
-    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,             \
-                                                  const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc) {          \
+    GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
+                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_update_##TALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                  \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc);                                                \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc);                                                \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc);                                                 \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc);                                                 \
     }                                                                                                                  \
-    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, ptrdiff_t lda,              \
-                                                 const double *b, ptrdiff_t ldb, double *c, ptrdiff_t ldc,             \
+    GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
+                                                 ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
                                                  const double *triangle, const double *inverse, int32_t skip) {        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_solve_##TALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                          \
+            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                          \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_solve_##MIDDLE##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                        \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_solve_##SMALL##_##kind(k, a, lda, b, ldb, c, ldc, triangle, inverse, skip);                         \
+            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                         \
     }                                                                                                                  \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
@@ -2820,14 +2832,15 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
    rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
    t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. Strides are multiples of B, so every
-   tile is whole and aligned: what kernels compute in empty rows is zero, and what they write above the diagonal of a
-   diagonal tile is never read.
+   (the first block may have fewer than B). Pivot j stands in storage row j + q. Of what is above the diagonal most is not
+   stored: see gproji_shape. Strides are multiples of B, so every tile is whole and aligned: what kernels compute in empty
+   rows is zero, and what they write above the diagonal of a diagonal tile is never read.
 
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel: a tile's strips then stay in the L1 cache */
+    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,    /* so many columns, if they are the last, are taken off an update matrix together */
     GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
     GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
     GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
@@ -2842,10 +2855,56 @@ GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all +
 /* The number of empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* A stride of at least `rows`: a multiple of B, and none that maps whole columns to the same few lines of a cache. */
-GPROJI_INTERNAL int32_t gproji_stride(int32_t rows) {
-    int32_t stride = gproji_round_up(rows, GPROJI_BLOCK);
-    return stride % 64 == 0 ? stride + GPROJI_BLOCK : stride;
+/* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
+   each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
+   multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
+   are. With a BLAS there is but one block. */
+typedef struct gproji_shape {
+    int32_t shift;  /* empty rows before the pivots */
+    int32_t stride; /* of the first block, and the number of storage rows */
+    int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
+} gproji_shape;
+
+GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
+    gproji_shape shape;
+    int32_t end = gproji_round_up(w, GPROJI_BLOCK);
+    shape.shift = end - w;
+    shape.stride = end + gproji_round_up(below, GPROJI_BLOCK);
+    shape.last = -1;
+#ifdef GPROJ_USE_CBLAS
+    shape.last = 0;
+#else
+    if (w <= GPROJI_NARROW) return shape;
+    shape.last = gproji_pieces(end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
+#endif
+    if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else whole columns share few cache lines */
+    return shape;
+}
+
+/* The first row that the column of the pivot in storage row `at` has. */
+GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
+}
+
+/* Its stride; and how many columns, eliminated together, have it: that one and those after it. */
+GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
+    return shape.stride - gproji_shape_first(shape, at);
+}
+GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
+    return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
+}
+
+/* Storage row r of that column is at this offset + r, for rows that are stored: as if all were, less those that the
+   columns up to this one do not have. */
+GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
+    int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
+    return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
+}
+
+/* The number of entries of a panel with w pivots. */
+GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
+    int32_t end = w + shape.shift;
+    return gproji_shape_offset(shape, end) + gproji_shape_first(shape, end);
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -2869,56 +2928,74 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [0, rows), a multiple of the kernels' block B; columns [first, last)
-   are being eliminated as a chunk, after the effect of all columns before `first` has been taken off. Both bounds are
-   ends of column blocks (or 0). Where B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `shift` < B
-   empty rows stay. */
+/* A panel at work: w pivot columns in storage rows [top, rows); columns [first, last) are being eliminated as a chunk,
+   after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks (or 0). Where
+   B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `top` rows. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
-    int32_t w, shift, rows;
+    int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t stride;
+    gproji_shape shape;
     int32_t update_rows; /* of the update matrix */
     double *values;
     double *inverse; /* w: inverses of the diagonal of L */
     double *update;  /* the update matrix */
 } gproji_panel;
 
-GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, int32_t stride,
-                                               double *values, double *inverse, double *update) {
+GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
+                                               double *inverse, double *update) {
     gproji_panel panel;
     int32_t block = kernels->block;
     panel.kernels = kernels;
-    panel.w = w, panel.shift = gproji_round_up(w, block) - w;
+    panel.shape = gproji_shape_of(w, below);
+    panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
-    panel.stride = stride, panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
-    panel.values = values + gproji_panel_shift(w) - panel.shift, panel.inverse = inverse, panel.update = update;
+    panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
+    panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
 }
 
 GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, int32_t column) {
-    return panel->values + row + (ptrdiff_t)column * panel->stride;
+    return panel->values + gproji_shape_offset(panel->shape, column + panel->shift) + row;
 }
 
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = panel->w + shift;
-    if (at < pivot_end) return gproji_panel_at(panel, panel->shift - shift, at - shift);
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* A strip of C -= A B': `columns` columns (a multiple of the block) whose diagonal begins at its corner, `rows` rows. A
-   has k columns and the strip's rows; B is the upper end of A. */
-GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t rows, int32_t columns, int32_t k,
-                                         const double *a, ptrdiff_t lda, double *c, ptrdiff_t ldc) {
-    int32_t begin, column;
-    for (begin = 0; begin < rows; begin += GPROJI_ROW_BLOCK) {
-        int32_t end = gproji_min(rows, begin + GPROJI_ROW_BLOCK);
-        for (column = 0; column < gproji_min(columns, end); column += kernels->block) {
+/* Its stride: that of all columns of its block, or of its strip of the update matrix. */
+GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
+    int32_t pivot_end = panel->w + panel->shift;
+    if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
+    return gproji_update_stride(panel->update_rows, at - pivot_end);
+}
+
+/* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
+   row. */
+GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
+    return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
+}
+
+/* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
+   the update matrix, from storage row `at` on. */
+GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
+                                         int32_t last) {
+    const gproji_kernels *kernels = panel->kernels;
+    const double *l = gproji_panel_at(panel, 0, first);
+    int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
+    int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
+    int32_t begin, stop, column;
+    for (begin = at; begin < panel->rows; begin = stop) {
+        stop = gproji_min(panel->rows, begin + GPROJI_ROW_BLOCK);
+        for (column = at; column < gproji_min(end, stop); column += kernels->block) {
             int32_t row = gproji_max(begin, column);
-            kernels->update(end - row, k, a + row, lda, a + column, lda, c + row + column * ldc, ldc);
+            kernels->update(stop - row, last - first, l + row, l + column, stride, left,
+                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column));
         }
     }
 }
@@ -2926,36 +3003,41 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_kernels *kernels, int32_t 
 /* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end;
-    int32_t column = index * GPROJI_STRIP, rows = below - column, stride = panel->update_rows - column, first, last;
-    double *strip = panel->update + gproji_update_offset(panel->update_rows, column) + column;
+    int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
+    int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
-        last = panel->w - first <= GPROJI_CHUNK + GPROJI_CHUNK / 2 ? panel->w : first + GPROJI_CHUNK;
-        gproji_strip_update(panel->kernels, rows, gproji_min(GPROJI_STRIP, rows), last - first,
-                            gproji_panel_at(panel, pivot_end + column, first), panel->stride, strip, stride);
+        last = gproji_next_chunk(panel, first);
+        if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
+        gproji_strip_update(panel, at, end, first, last);
     }
 }
 
 /* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t column = panel->last + index * GPROJI_STRIP, row = column + panel->shift;
-    gproji_strip_update(panel->kernels, panel->rows - row, gproji_min(GPROJI_STRIP, panel->w - column),
-                        panel->last - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                        gproji_panel_at(panel, row, column), panel->stride);
+    int32_t at = panel->last + panel->shift + index * GPROJI_STRIP;
+    int32_t end = gproji_min(at + GPROJI_STRIP, panel->w + panel->shift);
+    gproji_strip_update(panel, at, end, panel->first, panel->last);
+}
+
+/* The first storage row of the column block that begins with column `start`. */
+GPROJI_INLINE int32_t gproji_block_row(const gproji_panel *panel, int32_t start) {
+    return start == 0 ? panel->top : start + panel->shift;
 }
 
 /* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
 GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
-    int32_t skip = start == 0 ? panel->shift : 0, at = start == 0 ? 0 : start + panel->shift;
-    panel->kernels->solve(rows, start - panel->first, gproji_panel_at(panel, row, panel->first), panel->stride,
-                          gproji_panel_at(panel, at, panel->first), panel->stride, gproji_panel_at(panel, row, start),
-                          panel->stride, gproji_panel_at(panel, at, start), panel->inverse + start, skip);
+    int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+    const double *l = gproji_panel_at(panel, 0, panel->first);
+    double *block = gproji_panel_at(panel, 0, start);
+    panel->kernels->solve(rows, start - panel->first, l + row, l + at, gproji_shape_stride(panel->shape, chunk),
+                          gproji_shape_left(panel->shape, chunk), block + row, gproji_shape_stride(panel->shape, at),
+                          block + at, panel->inverse + start, start + panel->shift - at);
 }
 
 /* The first column of the block after the one that begins with column `start`. */
 GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
-    return start + panel->kernels->block - (start == 0 ? panel->shift : 0);
+    return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
 /* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
@@ -2971,14 +3053,16 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
 /* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
 GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
-    int32_t block = kernels->block, shift = panel->shift, end = panel->last + shift, stride = panel->stride;
-    int32_t start, failed;
+    int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
     for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
-        int32_t at = start == 0 ? 0 : start + shift, k = start - panel->first; /* at: the block's first storage row */
+        int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
+        int32_t stride = gproji_shape_stride(panel->shape, at);
         const double *strip = gproji_panel_at(panel, at, panel->first);
         double *corner = gproji_panel_at(panel, at, start);
-        if (k > 0) kernels->update(block, k, strip, stride, strip, stride, corner, stride);
-        failed = kernels->factor(corner, stride, panel->inverse + start, start == 0 ? shift : 0);
+        if (start > panel->first)
+            kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
+                            gproji_shape_left(panel->shape, chunk), corner, stride);
+        failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
         if (failed >= 0) return start + failed;
         gproji_block_solve(panel, start, at + block, end - at - block);
     }
@@ -2996,11 +3080,17 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
+/* The pieces of a child's `below` rows in `groups` groups are at most so many. */
+GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
+    return 2 * groups + below / GPROJI_BLOCK + 2;
+}
+
 /* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
    on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
    columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
-   `pivot_end`, or beyond a strip of its update matrix. piece: 2 groups + below / 8 + 2 entries are enough. Returns
-   their number. */
+   `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
+   number. */
+
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
@@ -3017,7 +3107,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
                 if (kernels->spreads)
                     end = now->to + 8;
                 else if (target < pivot_end)
-                    end = pivot_end;
+                    end = target - target % GPROJI_BLOCK + GPROJI_BLOCK;
                 else
                     end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
             }
@@ -3042,23 +3132,14 @@ typedef struct gproji_addition {
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
     const gproji_panel *panel = add->panel;
-    int32_t shift = gproji_panel_shift(panel->w), pivot_end = shift + panel->w, k;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP;
+    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k;
     for (k = 0; k < add->pieces; ++k) {
         const gproji_piece *piece = add->piece + k;
         int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
         const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
-        ptrdiff_t stride = panel->stride;
-        double *target;
         if (first >= last) continue;
-        if (piece->to < pivot_end) { /* the panel has no columns, and maybe no rows, for its first rows */
-            target = gproji_panel_at(panel, panel->shift - shift, piece->to - shift);
-        } else {
-            stride = gproji_update_stride(panel->update_rows, piece->to - pivot_end);
-            target = panel->update + gproji_update_offset(panel->update_rows, piece->to - pivot_end) - pivot_end;
-        }
-        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin), target,
-                            stride);
+        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin),
+                            gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
     }
 }
 
@@ -3066,7 +3147,7 @@ GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
 /* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
    BLAS's own business. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
-    int32_t first = panel->first, last = panel->last, stride = panel->stride;
+    int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
     double *below = gproji_panel_at(panel, last + panel->shift, first);
     double *later = gproji_panel_at(panel, last + panel->shift, last);
@@ -3090,11 +3171,11 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
         int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows), ldc = panel->update_rows - first;
         next = first + columns;
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->stride, 1.0, strip,
-                    ldc);
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->shape.stride, 1.0,
+                    strip, ldc);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->stride, l2, panel->stride, 1.0, strip + columns, ldc);
+                        panel->shape.stride, l2, panel->shape.stride, 1.0, strip + columns, ldc);
     }
 }
 #else
@@ -3120,7 +3201,7 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     for (panel->last = 0; panel->last < panel->w;) {
         int32_t failed;
         panel->first = panel->last;
-        panel->last = gproji_min(panel->w, panel->first + GPROJI_CHUNK - (panel->first ? 0 : panel->shift));
+        panel->last = gproji_next_chunk(panel, panel->first);
         failed = gproji_chunk_pivots(panel);
         if (failed >= 0) return failed;
         gproji_chunk_finish(parallel, panel);
@@ -3131,24 +3212,23 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
 /* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
    what it takes from the rows below. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift;
-    z += gproji_panel_shift(panel->w) - shift;
+    int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
-        int32_t skip = start == 0 ? shift : 0, at = start == 0 ? 0 : start + shift;
-        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                panel->inverse + start, skip, z + at);
+        int32_t at = gproji_block_row(panel, start);
+        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                gproji_shape_stride(panel->shape, at), panel->inverse + start,
+                                start + panel->shift - at, z + at);
     }
 }
 
 /* z = L^-T z on all storage rows of a panel, where the part below is known. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z) {
-    int32_t start, shift = panel->shift, block = panel->kernels->block, at = panel->w + shift - block;
-    z += gproji_panel_shift(panel->w) - shift;
-    for (; at >= 0; at -= block) {
-        int32_t skip = at == 0 ? shift : 0;
-        start = at == 0 ? 0 : at - shift;
-        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start), panel->stride,
-                                 panel->inverse + start, skip, z + at);
+    int32_t block = panel->kernels->block, at = panel->w + panel->shift - block;
+    for (; at >= panel->top; at -= block) {
+        int32_t start = gproji_max(at - panel->shift, 0);
+        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start),
+                                 gproji_shape_stride(panel->shape, at), panel->inverse + start,
+                                 start + panel->shift - at, z + at);
     }
 }
 
@@ -3675,8 +3755,10 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
      coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
                   c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
                   these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
-     cut          The best of some thresholds of the four. A side's cost is estimated from its weight and that of its
-                  halo, the separators next to it, which become rows of all its fronts.
+     cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
+                  guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
+                  cost is estimated from its weight and that of its halo, the separators next to it, which become rows
+                  of all its fronts.
      separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
                   cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
                   in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
@@ -3688,12 +3770,15 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    neighbours. */
 
 enum {
-    GPROJI_ND_LEAF = 64,   /* nodes of a part that is not cut any more: bits of a word */
-    GPROJI_ND_HALO = 192,  /* nodes of its halo that count for the degrees */
-    GPROJI_ND_WORDS = 4,   /* for both */
-    GPROJI_ND_STACK = 40,  /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_STARTS = 8,  /* coordinates that are tried for the first cut */
-    GPROJI_ND_ROUNDS = 200 /* of searches for a flow; no mesh needs more than some ten */
+    GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
+    GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
+    GPROJI_ND_WORDS = 4,      /* for both */
+    GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
+    GPROJI_ND_SAMPLES = 64,   /* nodes whose neighbours are looked at */
+    GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
+    GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
+    GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
 };
 
 /* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
@@ -3720,24 +3805,25 @@ typedef struct gproji_nd_cut {
     double cost;
     int32_t axis;
     int32_t at;
-    int32_t range;  /* positions are 0..range-1 */
-    double below;   /* weight of the nodes with position < at */
-    int32_t weight; /* of a separator, not yet the smallest */
+    int32_t range; /* positions are 0..range-1 */
+    double below;  /* weight of the nodes with position < at */
+    double weight; /* of a separator, not yet the smallest */
 } gproji_nd_cut;
 
-/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1; what
-   passes between them is at most its weight. Arcs lead from the exit to the entries of its neighbours, without limit. */
+/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
+   lead from the exit to the entries of its neighbours, without limit. What passes between entry and exit is at most the
+   node's capacity, its weight in whole units. A unit of flow is known by where it comes from: that is all that a search
+   for more needs. */
 typedef struct gproji_band {
     int32_t nodes;
     int32_t *id;         /* nodes: number in the part */
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
-    int32_t *weight;     /* nodes */
-    int32_t *through;    /* nodes: flow from entry to exit */
-    int32_t *turn;       /* states: the next step to try; see gproji_band_step */
+    int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *turn;       /* states: the next step to try; see gproji_band_next */
     int32_t *queue;      /* states; also the path that is looked for */
     int32_t *to;         /* arcs: the neighbour */
-    int32_t *mate;       /* arcs: the same arc the other way */
-    int32_t *flow;       /* arcs */
+    int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
     unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
     unsigned char *mark; /* states: GPROJI_BAND_... */
     void *block;         /* all of these arrays */
@@ -3745,6 +3831,7 @@ typedef struct gproji_band {
 } gproji_band;
 
 enum {
+    GPROJI_BAND_UNITS = 16, /* the largest capacity */
     GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
     GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
@@ -3758,6 +3845,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
+    bool open;           /* see gproji_has_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -3770,15 +3858,16 @@ typedef struct gproji_nd {
     int32_t halos, *halo;            /* names */
     int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
     int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
-    int32_t *distance[4], *queue;    /* coordinates: x takes the place of the first, y of the third */
+    int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
     int32_t *number;                 /* in the band or in a side */
     int32_t *position, *best_position;
     unsigned char *side; /* 0, 1; 2: separator */
     /* by position; how much more there is than at the position before */
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
-    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
+    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
     unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    double reach[4][4];            /* see gproji_nd_sample */
     gproji_band band;
 } gproji_nd;
 
@@ -3883,6 +3972,22 @@ GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
 
 /* -- parts -- */
 
+/* Has the graph a rim, as open meshes have: many nodes with few neighbours? Light nodes do not count. */
+GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
+    double all = 0, count = 0, degrees = 0, few = 0;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        degrees += (double)(graph->start[i + 1] - graph->start[i]), count += 1;
+    }
+    for (i = 0; i < graph->nodes; ++i) {
+        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        few += (double)(graph->start[i + 1] - graph->start[i]) * count < 0.75 * degrees;
+    }
+    return few * few > count;
+}
+
 /* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
    memory. */
 GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
@@ -3913,6 +4018,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
+    nd->open = gproji_has_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -4057,7 +4163,7 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
     for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[2][i] -= d[3][i];
+    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
     return reached;
 }
 
@@ -4077,6 +4183,9 @@ GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
 
 /* -- cuts -- */
 
+/* Rounds to seven digits, so that cuts are equally good on all machines if they are: some fuse products and sums. */
+GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
+
 /* What the elimination of a part is thought to cost in flops: the solution of
      f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
    which is its separator's front, with the halo's rows, and twice a half. */
@@ -4089,61 +4198,74 @@ GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
 GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
     double s = weight[2], h = nd->halo_weight;
     if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
-    return s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
-           gproji_nd_rest(nd, weight[1], halo[1] + s);
+    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
+                           gproji_nd_rest(nd, weight[1], halo[1] + s));
+}
+
+/* The four directions' parts of x and y. */
+GPROJI_INLINE int32_t gproji_nd_direction(int32_t axis, int32_t part) {
+    return axis < 2 ? axis == part : axis == 3 && part == 1 ? -1 : 1;
 }
 
 /* In a direction, 0 to 3: neighbours differ by at most that much. */
 GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
 
-/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many. */
-GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position) {
-    static const signed char factor[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    int32_t fx = factor[axis][0], fy = factor[axis][1], i, least = INT32_MAX, most = INT32_MIN, shift = 0;
+/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
+   positions are halved so many times. */
+GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
+    int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
+    int32_t least = INT32_MAX, most = INT32_MIN;
     for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[2][i];
+        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[1][i];
         position[i] = p;
         if (p < least) least = p;
         if (p > most) most = p;
     }
-    while ((most - least) >> shift >= nd->nodes) ++shift;
-    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> shift;
-    return ((most - least) >> shift) + 1;
+    for (*shift = 0; (most - least) >> *shift >= nd->nodes;) ++*shift;
+    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> *shift;
+    return ((most - least) >> *shift) + 1;
 }
 
-/* Chooses thresholds that leave 0.3 to 0.7 of the weight below, some tenth apart, and marks the positions near them. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t range, int32_t jump) {
-    double below = 0, next = 0.3 * nd->weight;
-    int32_t t, r;
-    memset(nd->near, 0, (size_t)range + 1);
-    for (t = 1; t < range; ++t) {
-        below += nd->sum[t - 1];
-        if (below < next || below > 0.7 * nd->weight) continue;
-        next = below + 0.1 * nd->weight;
-        for (r = t > jump ? t - jump : 0; r < t + jump && r < range; ++r) nd->near[r] |= 1;
-        nd->near[t] = 3;
-    }
-}
-
-/* For all thresholds at once, what has neighbours across: in the part, ... */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list = adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
-        if (!nd->near[p]) continue;
+/* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
+   positions higher. */
+GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
+    const int32_t *x = nd->distance[0], *y = nd->distance[1];
+    int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
+    memset(found, 0, sizeof found);
+    for (i = step / 2; i < nd->nodes; i += step, ++count) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        int32_t most[4] = {0, 0, 0, 0};
         for (; list < end; ++list) {
-            int32_t q = position[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
+            int32_t dx = x[*list] - x[i], dy = y[*list] - y[i];
+            most[0] = gproji_max(most[0], dx), most[1] = gproji_max(most[1], dy);
+            most[2] = gproji_max(most[2], dx + dy), most[3] = gproji_max(most[3], dx - dy);
         }
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
+        for (axis = 0; axis < 4; ++axis) found[axis][most[axis]]++;
+    }
+    for (axis = 0; axis < 4; ++axis) {
+        int32_t more = 0;
+        for (k = 4; k > 0; --k) {
+            more += found[axis][k];
+            nd->reach[axis][k - 1] = (double)more / count;
+        }
     }
 }
 
-/* ... and in the halo. */
+/* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
+   those of the sample; on the side where that is less. */
+GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_t t, int32_t range, int32_t shift) {
+    double low = nd->sum[t - 1], high = nd->sum[t];
+    int32_t k;
+    if (shift > 0) return low < high ? low : high;
+    low *= nd->reach[axis][0], high *= nd->reach[axis][0];
+    for (k = 1; k < 4; ++k) {
+        if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
+        if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
+    }
+    return gproji_coarsely(low < high ? low : high);
+}
+
+/* Halo nodes next to nodes below each threshold, and above. */
 GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
     int32_t k, *least = nd->halo_least, *most = nd->halo_most;
     for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
@@ -4162,32 +4284,84 @@ GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position
     }
 }
 
+/* The cost of a cut with `below` below it and a separator that takes from both sides. */
+GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double below, double separator,
+                                                const double halo[2]) {
+    double weight[3];
+    weight[0] = below - separator / 2, weight[1] = nd->weight - below - separator / 2, weight[2] = separator;
+    return gproji_nd_cost(nd, weight, halo);
+}
+
+/* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
+   are not most of the part, the best ones by guess. Marks the positions near them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
+    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
+    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
+    halo[0] = 0, halo[1] = nd->halo_weight;
+    memset(nd->near, 0, (size_t)range + 1);
+    for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
+        double own;
+        below += nd->sum[t - 1];
+        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
+        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
+        last = below;
+        own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
+        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
+        cost[k] = own, at[k] = t;
+        count = gproji_min(count + 1, most);
+    }
+    for (k = 0; k < count; ++k) {
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->near[t] |= 1;
+        nd->near[at[k]] = 3;
+    }
+}
+
+/* For all thresholds at once, what has neighbours across. */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->low, *high = nd->high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list, *end;
+        if (!nd->near[p]) continue;
+        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
+        for (; list < end; ++list) {
+            int32_t q = position[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
+        }
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
+    }
+}
+
 /* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
 GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
-    int32_t *position = nd->position, *sum = nd->sum, range = gproji_nd_project(nd, axis, position), i, t;
+    int32_t *position = nd->position, *sum = nd->sum, shift, range = gproji_nd_project(nd, axis, position, &shift), i,
+            t;
     double below = 0, low = 0, high = 0, halo[2];
     size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
-    bool better = false;
+    bool better = false, exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
     memset(sum, 0, bytes);
     memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
     memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
     for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
-    gproji_nd_choose_thresholds(nd, range, gproji_nd_jump(axis));
-    gproji_nd_count_inner(nd, position);
     gproji_nd_count_halo(nd, position);
+    gproji_nd_choose_thresholds(nd, axis, range, shift);
+    if (exact) gproji_nd_count_inner(nd, position);
     halo[0] = 0, halo[1] = nd->halo_weight;
     for (t = 1; t < range; ++t) {
-        double weight[3], cost;
+        double separator, cost;
         below += sum[t - 1];
         low += nd->low[t], high += nd->high[t];
         halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
         if (nd->near[t] != 3) continue;
-        weight[0] = below, weight[1] = nd->weight - below, weight[2] = low < high ? low : high;
-        weight[low < high ? 0 : 1] -= weight[2];
-        cost = gproji_nd_cost(nd, weight, halo);
+        separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
+        cost = gproji_nd_threshold_cost(nd, below, separator, halo);
         if (cost >= best->cost) continue;
         best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
-        best->weight = (int32_t)weight[2];
+        best->weight = separator;
         better = true;
     }
     if (!better) return;
@@ -4197,12 +4371,12 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *b
 
 /* -- the smallest separator in a band -- */
 
-/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than a quarter of
+/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than 0.3 of
    the part's; and each rim keeps about a quarter of the weight behind it. */
 GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
     const int32_t *sum = nd->best_sum;
     int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
-    double most = gproji_fmin(12.0 * cut->weight, 0.25 * nd->weight), band = 0, below = 0, above;
+    double most = gproji_fmin(12.0 * cut->weight, 0.3 * nd->weight), band = 0, below = 0, above;
     for (i = 0; i < low; ++i) below += sum[i];
     for (; i < high; ++i) band += sum[i];
     above = nd->weight - below - band;
@@ -4233,21 +4407,21 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
     return false;
 }
 
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs) {
-    size_t ints = (size_t)nodes * 8 + 1 + (size_t)arcs * 3;
+GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
+                                      int64_t units) {
+    size_t ints = (size_t)nodes * 8 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
     at = (int32_t *)band->block;
     band->id = at, at += nodes;
     band->start = at, at += nodes + 1;
-    band->weight = at, at += nodes;
-    band->through = at, at += nodes;
+    band->unit = at, at += nodes + 1;
+    band->load = at, at += nodes;
     band->turn = at, at += 2 * nodes;
     band->queue = at, at += 2 * nodes;
     band->to = at, at += arcs;
-    band->mate = at, at += arcs;
-    band->flow = at, at += arcs;
+    band->origin = at, at += units;
     band->ends = (unsigned char *)at;
     band->mark = band->ends + nodes;
     return true;
@@ -4259,8 +4433,9 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
     gproji_band *band = &nd->band;
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
-    int32_t stop = e + nd->here.inner[v], back = stop, k;
+    int32_t back = e + nd->here.inner[v], stop = back;
     band->start[i] = e;
+    band->ends[i] = 0;
     for (; list < end; ++list) {
         int32_t u = nd->number[*list];
         if (u < 0)
@@ -4271,78 +4446,100 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
             band->to[--back] = u;
     }
     while (back < stop) band->to[e++] = band->to[back++];
-    for (k = band->start[i]; k < e; ++k) {
-        int32_t u = band->to[k], mate = u < i ? band->start[u] : k;
-        band->flow[k] = 0;
-        if (u >= i) continue;
-        while (band->to[mate] != i) ++mate;
-        band->mate[k] = mate, band->mate[mate] = k;
-    }
     return e;
+}
+
+/* The capacity of a weight: in units of a common divisor of all weights, or, where these are many, of a part of the
+   largest one. */
+GPROJI_INTERNAL int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
+/* Finds the nodes of the band, in nd->queue, and their capacities, in nd->position. Returns how many nodes; adds up their
+   arcs and capacities. */
+GPROJI_INTERNAL int32_t gproji_nd_find_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                            int64_t *arcs, int64_t *units) {
+    int32_t i, nodes = 0, divisor = 0, largest = 0, *capacity = nd->position;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t a = nd->here.weight[i], b = divisor, rest;
+        nd->number[i] = -1;
+        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
+        nd->number[i] = nodes;
+        nd->queue[nodes++] = i;
+        *arcs += nd->here.inner[i];
+        largest = gproji_max(largest, a);
+        if (a == b) continue;
+        for (; b > 0; a = b, b = rest) rest = a % b;
+        divisor = a;
+    }
+    for (i = 0; i < nodes; ++i)
+        *units += capacity[i] = gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
+    return nodes;
 }
 
 /* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
-    int32_t i, nodes = 0, e = 0;
-    int64_t arcs = 0;
-    for (i = 0; i < nd->nodes; ++i) {
-        nd->number[i] = -1;
-        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
-        nd->number[i] = nodes;
-        nd->queue[nodes++] = i;
-        arcs += nd->here.inner[i];
-    }
-    if (arcs > INT32_MAX) return false;
-    if (!gproji_band_take(nd->heap, band, nodes, arcs)) {
+    int32_t i, e = 0, u = 0, nodes;
+    int64_t arcs = 0, units = 0;
+    nodes = gproji_nd_find_band(nd, cut, from, &arcs, &units);
+    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    if (!gproji_band_take(nd->heap, band, nodes, arcs, units)) {
         nd->failed = true;
         return false;
     }
     band->nodes = nodes;
     memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
-    memset(band->ends, 0, (size_t)nodes);
     for (i = 0; i < nodes; ++i) {
-        band->weight[i] = nd->here.weight[band->id[i]];
-        band->through[i] = 0;
+        band->load[i] = 0;
+        band->unit[i] = u;
+        u += nd->position[i];
         e = gproji_nd_band_arcs(nd, from, i, e);
     }
     band->start[nodes] = e;
+    band->unit[nodes] = u;
     return true;
 }
 
-/* How much more can flow from state s by its step c, and where to: along an arc, or backwards against the flow of one;
-   or to the node's other state, which is the step before its arcs and the one behind them. `back`: how much can come from
-   there. */
-GPROJI_INTERNAL int32_t gproji_band_step(const gproji_band *band, int32_t s, int32_t c, bool back, int32_t *to) {
-    int32_t v = s >> 1;
-    bool leaves = ((s & 1) != 0) != back; /* at an exit ahead, or at an entry back */
-    if (c < band->start[v] || c == band->start[v + 1]) {
-        *to = s ^ 1;
-        return leaves ? band->through[v] : band->weight[v] - band->through[v];
-    }
-    *to = 2 * band->to[c] + !(s & 1);
-    if (leaves) return INT32_MAX;
-    return band->flow[back ? c : band->mate[c]];
+GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
+    return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* The end of a state's steps. Along arcs nothing can go back from an entry, or come back to an exit, without flow. */
-GPROJI_INTERNAL int32_t gproji_band_end(const gproji_band *band, int32_t s, bool back) {
-    int32_t v = s >> 1;
-    if (((s & 1) != 0) == back && band->through[v] == 0) return band->start[v];
-    return band->start[v + 1];
+/* The next state to which more can flow from state s and that has not been seen, or -1: from an exit along an arc, then
+   back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
+   turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
+GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
+    int32_t v = s >> 1, c = band->turn[s], end, next = -1;
+    if (s & 1) {
+        for (end = band->start[v + 1]; c < end && band->mark[2 * band->to[c]]; ++c) continue;
+        if (c < end)
+            next = 2 * band->to[c];
+        else if (band->load[v] > 0 && !band->mark[2 * v])
+            next = 2 * v;
+    } else {
+        if (c < band->unit[v]) {
+            if (gproji_band_has_room(band, v) && !band->mark[s + 1]) return s + 1;
+            ++c;
+        }
+        for (end = band->unit[v] + band->load[v]; c < end; ++c)
+            if (band->origin[c] >= 0 && !band->mark[2 * band->origin[c] + 1]) break;
+        if (c < end) next = 2 * band->origin[c] + 1;
+    }
+    band->turn[s] = c;
+    return next;
 }
 
 /* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
 GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, *turn = band->turn, depth = 0;
+    int32_t *path = band->queue, depth = 0;
     path[0] = source;
     band->mark[source] = GPROJI_BAND_SOURCE;
     while (depth >= 0) {
-        int32_t s = path[depth], end = gproji_band_end(band, s, false) + (s & 1), next = -1;
+        int32_t s = path[depth], next;
         if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
-        for (; turn[s] < end; ++turn[s])
-            if (gproji_band_step(band, s, turn[s], false, &next) > 0 && !band->mark[next]) break;
-        if (turn[s] < end) {
+        next = gproji_band_next(band, s);
+        if (next >= 0) {
             band->mark[next] = GPROJI_BAND_SOURCE;
             path[++depth] = next;
         } else {
@@ -4352,23 +4549,22 @@ GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source)
     return -1;
 }
 
-/* Sends as much as possible along the path; its states may be seen again. */
+/* Sends a unit along the path; its states may be seen again. */
 GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
     const int32_t *path = band->queue;
-    int32_t k, amount = INT32_MAX, to;
+    int32_t k, from = -1; /* the exit that was passed last */
     for (k = 0; k < depth; ++k) {
-        int32_t room = gproji_band_step(band, path[k], band->turn[path[k]], false, &to);
-        if (room < amount) amount = room;
-    }
-    for (k = 0; k < depth; ++k) {
-        int32_t s = path[k], c = band->turn[s];
-        if ((path[k + 1] ^ s) == 1)
-            band->through[s >> 1] += s & 1 ? -amount : amount;
-        else if (s & 1)
-            band->flow[c] += amount;
-        else
-            band->flow[band->mate[c]] -= amount;
+        int32_t s = path[k], v = s >> 1;
+        bool turns = (path[k + 1] ^ s) == 1;
         band->mark[s] = 0;
+        if (s & 1)
+            from = v;
+        else if (turns) /* another unit passes; */
+            band->origin[band->unit[v] + band->load[v]++] = from;
+        else if (k > 0 && path[k - 1] == (s ^ 1)) /* one less; */
+            band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
+        else /* one comes from elsewhere */
+            band->origin[band->turn[s]] = from;
     }
     band->mark[path[depth]] = 0;
 }
@@ -4380,7 +4576,7 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     bool found = false;
     memset(band->mark, 0, 2 * (size_t)band->nodes);
     for (i = 0; i < band->nodes; ++i) {
-        band->turn[2 * i] = band->start[i] - 1; /* at an entry the own exit first, at an exit the own entry last */
+        band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
@@ -4393,15 +4589,53 @@ GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     return found;
 }
 
-/* Marks what the states in the queue reach, or what reaches them. */
-GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark, bool back) {
-    int32_t head = 0, c, to;
+/* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
+GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
+    if (band->mark[s] & mark) return tail;
+    band->mark[s] |= mark;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* Marks what the states in the queue reach. */
+GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
     while (head < tail) {
-        int32_t s = band->queue[head++], end = gproji_band_end(band, s, back);
-        for (c = band->start[s >> 1] - 1; c < end; ++c) {
-            if (gproji_band_step(band, s, c, back, &to) <= 0 || (band->mark[to] & mark)) continue;
-            band->mark[to] |= mark;
-            band->queue[tail++] = to;
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+                if (band->origin[c] >= 0) tail = gproji_band_reach(band, 2 * band->origin[c] + 1, mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, s + 1, mark, tail);
+        }
+    }
+}
+
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Marks what reaches the states in the queue. */
+GPROJI_INTERNAL void gproji_band_spread_back(gproji_band *band, int32_t tail, unsigned char mark) {
+    int32_t head = 0, c;
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1;
+        if (s & 1) {
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
+            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, 2 * v, mark, tail);
+        } else {
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_reach(band, 2 * band->to[c] + 1, mark, tail);
+            if (band->load[v] > 0) tail = gproji_band_reach(band, s + 1, mark, tail);
         }
     }
 }
@@ -4415,7 +4649,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
         band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
         band->queue[tail++] = 2 * i + 1;
     }
-    gproji_band_spread(band, tail, GPROJI_BAND_SINK, true);
+    gproji_band_spread_back(band, tail, GPROJI_BAND_SINK);
     for (i = tail = 0; i < states; ++i) {
         bool below = nd->best_position[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
@@ -4424,7 +4658,7 @@ GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *
             band->queue[tail++] = i;
         }
     }
-    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE, false);
+    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
     return open > 0 ? 3 : 1;
 }
 
@@ -4451,8 +4685,9 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
     for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
     for (i = 0; i < band->nodes; ++i) {
-        weight[gproji_band_side(band, i, mark)] += band->weight[i];
-        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= band->weight[i]; /* counted among those below */
+        int32_t w = nd->here.weight[band->id[i]];
+        weight[gproji_band_side(band, i, mark)] += w;
+        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= w; /* counted among those below */
     }
     for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
     for (k = 0; k < nd->rims; ++k) {
@@ -4607,17 +4842,18 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
 }
 
 /* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
-   other coordinates are tried: closed meshes have no rim, and some nodes are better starts than others. Returns how many
+   other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
    nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && !nd->open ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
         reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
         if (reached < nd->nodes) break;
+        gproji_nd_sample(nd);
         for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
-        if (best->below > 0.4 * nd->weight && best->below < 0.6 * nd->weight) break;
+        if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
@@ -4672,29 +4908,28 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 
    Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
    postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
-   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): where each front's panel is in
-   the factor, where its update matrix is in the work memory, and which fronts make up a task.
+   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): which fronts make up a task, and
+   where each front's panel and its update matrix are in the memory.
 
    A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
    (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
    whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
    node among its pivots; all rows of a front are pivots or rows of its parent. */
 typedef struct gproji_front {
-    int64_t panel;  /* where its panel begins in the values of L */
-    int64_t update; /* where its update matrix begins in the work memory */
-    int64_t rows;   /* its row nodes are row_node[rows..rows+row_nodes-1] */
-    int64_t side;   /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
+    int64_t panel;   /* where its panel begins in the values of L */
+    int64_t entries; /* of its panel */
+    int64_t update;  /* where its update matrix begins, among the values of L */
+    int64_t rows;    /* its row nodes are row_node[rows..rows+row_nodes-1] */
+    int64_t side;    /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
     int32_t row_nodes;
     int32_t first_place, end_place; /* its pivot nodes */
     int32_t first;                  /* its first column of L */
     int32_t width;
     int32_t below;
-    int32_t stride;      /* of its panel, which has as many storage rows: see >>dense */
     int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
     int32_t sibling;     /* next child of the same parent, or -1 */
-    int32_t depth;       /* 0 without parent */
 } gproji_front;
 
 typedef struct gproji_symbolic {
@@ -4713,8 +4948,8 @@ typedef struct gproji_symbolic {
     int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
     int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
     int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
-    int64_t work_size;     /* doubles for all update matrices */
     int64_t values_size;   /* doubles for all panels */
+    int64_t work_size;     /* doubles after them, for the update matrices that do not fit in between */
     int64_t side_size;     /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
@@ -4729,6 +4964,7 @@ enum {
 typedef struct gproji_analysis {
     const gproji_graph *graph;
     gproji_symbolic *out;
+    bool concurrent;        /* several tasks may be at work at the same time */
     gproji_pool *keep;      /* for what is kept */
     gproji_pool pool;       /* for what is not */
     int32_t *parent;        /* elimination tree, by place; -1: root */
@@ -5084,28 +5320,27 @@ GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
     }
 }
 
-/* Strides, offsets and children of the fronts; sums. */
-GPROJI_INTERNAL void gproji_place_panels(gproji_symbolic *out) {
+/* Strides, children and sides of the fronts; sums. */
+GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
     int32_t f;
     for (f = 0; f < out->fronts; ++f) out->front[f].child = out->front[f].sibling = -1;
     for (f = out->fronts - 1; f >= 0; --f) {
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
-        front->depth = out->front[front->parent].depth + 1;
         front->sibling = out->front[front->parent].child;
         out->front[front->parent].child = f;
     }
     for (f = 0; f < out->fronts; ++f) {
         gproji_front *front = &out->front[f];
         int64_t w = front->width;
-        front->stride = gproji_stride(gproji_panel_shift(front->width) + front->width + front->below);
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
+        front->entries = gproji_shape_entries(shape, front->width);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
-        front->panel = out->values_size;
         front->side = out->side_size;
-        out->values_size += w * front->stride;
+        out->values_size += front->entries;
         out->side_size += front->below;
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
-        out->most_rows = gproji_max(out->most_rows, front->stride);
+        out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
 }
 
@@ -5165,46 +5400,110 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     return true;
 }
 
-/* The update matrices of one group, from `base` on in the work memory. Fronts of even depth stack theirs from the lower
-   end, those of odd depth from the upper end: a front's matrix is thus never on the same stack as its children's, which
-   it needs until its own is finished, and they are on top of theirs. Matrices that another group consumes stay.
-   Returns the end of the group's memory. */
-GPROJI_INTERNAL int64_t gproji_stack_updates(gproji_symbolic *out, const int32_t *group, int32_t g, int64_t base) {
-    int64_t top[2] = {0, 0}, most = 0;
-    int32_t k, c, pass;
-    for (pass = 0; pass < 2; ++pass) { /* the first pass finds the size */
-        top[0] = top[1] = 0;
-        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
-            gproji_front *front = &out->front[out->schedule[k]];
-            int32_t side = front->depth & 1;
-            int64_t size = gproji_update_entries(front->update_rows);
-            front->update = side ? base + most - top[side] - size : base + top[side];
-            top[side] += size;
-            if (pass == 0 && top[0] + top[1] > most) most = top[0] + top[1];
-            for (c = front->child; c >= 0; c = out->front[c].sibling)
-                if (group[c] == g) top[!side] -= gproji_update_entries(out->front[c].update_rows);
-        }
+/* The update matrices of a front's children, one after the other, in the order of the schedule: backwards in time the
+   last one is the first to go. Distances are from the end of the memory that panels and update matrices share. The
+   families that are there are a ring, ascending, closed by one more that has nothing. */
+typedef struct gproji_family {
+    int64_t low, high;
+    int32_t before, after; /* in the ring */
+} gproji_family;
+
+enum {
+    GPROJI_FAMILY_TRIES = 64 /* gaps in which a family's place is looked for */
+};
+
+/* Gives a front's children the first gap that is large enough; their `update` becomes the distance of their far ends.
+   Fronts' groups: `group`. */
+GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *group, gproji_family *family) {
+    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, top, c;
+    int64_t size = 0;
+    for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+        size += gproji_update_entries(out->front[c].update_rows);
+    if (size == 0) return;
+    for (; family[after].low - family[before].high < size; after = family[after].after) {
+        before = after;
+        if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
+        if (after == ring) break;
     }
-    return base + most;
+    family[f].before = before, family[f].after = after;
+    family[before].after = family[after].before = f;
+    family[f].low = family[f].high = family[before].high;
+    for (top = 0; top < 2; ++top) /* children of tasks come before those on top */
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            if ((group[c] == out->tasks) == top)
+                out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
+}
+
+/* The memory of schedule[begin..end-1] from `base` on; returns its end. The panels follow each other. An update matrix
+   lives from its front's turn to its parent's: it may be where later panels come, but not its parent's. So they are
+   placed from the end of the memory on, backwards in time, which begins with the largest ones, and leaves them little
+   more than what the last panels need. family: fronts + 1; zeros on entry. */
+GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
+                                            const int32_t *group, gproji_family *family) {
+    int64_t at = base, most;
+    int32_t k, c;
+    family[out->fronts].low = INT64_MAX;
+    family[out->fronts].before = family[out->fronts].after = out->fronts;
+    for (k = begin; k < end; ++k) {
+        gproji_front *front = &out->front[out->schedule[k]];
+        front->panel = at;
+        at += front->entries;
+    }
+    most = at;
+    for (k = end - 1; k >= begin; --k) {
+        int32_t f = out->schedule[k], parent = out->front[f].parent;
+        gproji_family *own = parent < 0 ? NULL : &family[parent];
+        gproji_place_family(out, f, group, family);
+        if (at + family[f].high > most) most = at + family[f].high;
+        at = out->front[f].panel;
+        if (!own || own->high == own->low) continue; /* its parent is in another group */
+        own->high -= gproji_update_entries(out->front[f].update_rows);
+        if (own->high > own->low) continue;
+        family[own->before].after = own->after;
+        family[own->after].before = own->before;
+    }
+    for (k = begin; k < end; ++k) {
+        int32_t f = out->schedule[k];
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            out->front[c].update = most - out->front[c].update;
+    }
+    return most;
+}
+
+/* Where all panels and update matrices are. Groups that may be at work at the same time share nothing; else one comes
+   after the other. */
+GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group) {
+    gproji_symbolic *out = an->out;
+    int32_t g;
+    int64_t end = 0;
+    gproji_family *family =
+        (gproji_family *)gproji_pool_take_zeroed(&an->pool, (int64_t)out->fronts + 1, sizeof(gproji_family));
+    if (!family) return false;
+    if (an->concurrent)
+        for (g = 0; g <= out->tasks; ++g)
+            end = gproji_place_fronts(out, out->task_start[g], out->task_start[g + 1], end, group, family);
+    else
+        end = gproji_place_fronts(out, 0, out->fronts, 0, group, family);
+    out->work_size = end - out->values_size;
+    return true;
 }
 
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t *sequence = an->a, *group = an->c, g, k;
-    gproji_place_panels(out);
+    gproji_size_panels(out);
     gproji_front_sequence(an, sequence);
     if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
     for (g = 0; g <= out->tasks; ++g) {
         int32_t most = 0;
-        out->work_size = gproji_stack_updates(out, group, g, out->work_size);
         for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
             int32_t c = out->front[out->schedule[k]].child;
             for (; c >= 0; c = out->front[c].sibling)
-                most = gproji_max(most, 2 * out->front[c].row_nodes + out->front[c].below / 8 + 2);
+                most = gproji_max(most, gproji_pieces_most(out->front[c].row_nodes, out->front[c].below));
         }
         out->pieces_start[g + 1] = out->pieces_start[g] + most;
     }
-    return true;
+    return gproji_place_all(an, group);
 }
 
 /* Entries and flops of the factor without any zeros of relaxed supernodes. */
@@ -5236,42 +5535,85 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
 }
 
 enum {
-    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_best_order */
+    GPROJI_DISSECT_FLOPS = 25000,       /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,     /* per node; see gproji_forecast */
+    GPROJI_DISSECT_LEAST = 2500,        /* nodes of a graph for which a forecast is made */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 /* Condensed nodes, then the others by dissection. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an) {
-    gproji_heap *heap = an->keep->heap;
-    gproji_condensation condensed;
-    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
-    bool done = gproji_condense(&condensed, heap, an->graph);
-    for (k = 0; done && k < condensed.count; ++k) {
-        order[k] = condensed.first[k];
+GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, const gproji_condensation *condensed) {
+    int32_t *order = an->out->order, *rest = order + condensed->count, k, total = an->out->columns;
+    for (k = 0; k < condensed->count; ++k) {
+        order[k] = condensed->first[k];
         total -= an->graph->weight[order[k]];
     }
-    rest = order + condensed.count;
-    done = done && gproji_dissect(heap, &condensed.rest, total, rest);
-    for (k = 0; done && k < condensed.rest.nodes; ++k) rest[k] = condensed.first[condensed.count + rest[k]];
-    gproji_pool_give_all(&condensed.pool);
-    return done;
+    if (!gproji_dissect(an->keep->heap, &condensed->rest, total, rest)) return false;
+    for (k = 0; k < condensed->rest.nodes; ++k) rest[k] = condensed->first[condensed->count + rest[k]];
+    return true;
 }
 
-/* The better one of minimum degree and dissection, counted. Dissection takes five times as long, half a microsecond for
-   each node, and spares a fifth of the flops: it is tried where that pays within about four factorisations. */
-GPROJI_INTERNAL bool gproji_best_order(gproji_analysis *an, bool keep_order) {
-    gproji_symbolic *out = an->out;
-    int32_t *order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
-    double flops;
-    if (!order || !gproji_amd_order(an->keep->heap, an->graph, out->columns, order, &flops)) return false;
-    if (flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
-        if (!gproji_dissected_order(an)) return false;
-        gproji_count_factor(an, keep_order);
-        if (out->flops < flops) return true;
+/* What dissection will cost in the plane, up to a factor: where n nodes of weight w have d neighbours each, a separator
+   has about sqrt(n d) nodes, and the flops are about the cube of its weight; around closed meshes the first ones need two
+   lines. On meshes the flops are 15 to 40 times what this says. */
+GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
+    double all = 0, next = 0, square;
+    int32_t i;
+    for (i = 0; i < graph->nodes; ++i) {
+        double weight = graph->weight[i];
+        all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
+    square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
+    return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
+}
+
+/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes some three
+   times as long and spares a fifth of the flops: it is tried where that pays within about four factorisations, which
+   minimum degree tells, and alone where the forecast says so and what comes out is as on meshes. */
+GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, gproji_condensation *condensed) {
+    gproji_symbolic *out = an->out;
+    gproji_heap *heap = an->keep->heap;
+    int32_t *order;
+    bool counted = false;
+    double flops, forecast;
+    if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_condense(condensed, heap, an->graph)) return false;
+        forecast = gproji_forecast(&condensed->rest);
+        if (forecast > (double)GPROJI_DISSECT_FORECAST * out->nodes) {
+            if (!gproji_dissected_order(an, condensed)) return false;
+            gproji_count_factor(an, keep_order);
+            if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
+            counted = true;
+        }
+    }
+    order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
+    if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
+    if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
+        if (!gproji_dissected_order(an, condensed)) return false;
+        gproji_count_factor(an, keep_order);
+        counted = true;
+    }
+    if (counted && out->flops < flops) return true;
     if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
     gproji_count_factor(an, keep_order);
     return true;
+}
+
+/* Finds an order, and gives back the condensed graph. Without `best`, by dissection. */
+GPROJI_INTERNAL bool gproji_condensed_order(gproji_analysis *an, bool keep_order, bool best) {
+    gproji_condensation condensed;
+    bool done;
+    memset(&condensed, 0, sizeof condensed);
+    gproji_pool_start(&condensed.pool, an->keep->heap);
+    if (best) {
+        done = gproji_better_order(an, keep_order, &condensed);
+    } else {
+        done = gproji_condense(&condensed, an->keep->heap, an->graph) && gproji_dissected_order(an, &condensed);
+        if (done) gproji_count_factor(an, keep_order);
+    }
+    gproji_pool_give_all(&condensed.pool);
+    return done;
 }
 
 /* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
@@ -5280,11 +5622,10 @@ GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_choles
     gproji_symbolic *out = an->out;
     gproj_ordering ordering = options->ordering;
     int32_t k;
-    if (ordering == GPROJ_ORDERING_BEST) return gproji_best_order(an, options->disable_postorder);
     if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_DISSECTION) {
-        if (!gproji_dissected_order(an)) return false;
-    } else if (ordering == GPROJ_ORDERING_AMD) {
+    if (ordering == GPROJ_ORDERING_BEST || ordering == GPROJ_ORDERING_DISSECTION)
+        return gproji_condensed_order(an, options->disable_postorder, ordering == GPROJ_ORDERING_BEST);
+    if (ordering == GPROJ_ORDERING_AMD) {
         if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
     } else {
         for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
@@ -5309,10 +5650,11 @@ GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_chole
     return gproji_layout(an);
 }
 
-/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN. All
-   that `out` holds is taken from the pool. False when there is no memory. */
+/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN.
+   concurrent: may tasks be at work at the same time? It takes more memory, and changes nothing else. All that `out`
+   holds is taken from the pool. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
-                                    const gproj_cholesky_options *options, const int32_t *permutation,
+                                    const gproj_cholesky_options *options, const int32_t *permutation, bool concurrent,
                                     gproji_symbolic *out) {
     gproji_analysis an;
     bool done;
@@ -5320,6 +5662,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     memset(out, 0, sizeof *out);
     an.graph = graph;
     an.out = out;
+    an.concurrent = concurrent;
     an.keep = keep;
     gproji_pool_start(&an.pool, keep->heap);
     out->columns = columns;
@@ -5333,10 +5676,10 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix on a
-   stack. Both are cleared, A's values and the children's update matrices are added, the pivots are eliminated and their
-   effect on the rows below is taken off. All that happens while the front is in the cache; right-hand sides that are
-   known then take part.
+   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
+   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are
+   added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
+   in the cache; right-hand sides that are known then take part.
 
    Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
    of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
@@ -5383,8 +5726,7 @@ struct gproj_cholesky {
     int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
 
-    double *values;       /* symbolic.values_size: all panels */
-    double *work;         /* symbolic.work_size: all update matrices */
+    double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
     gproji_piece *pieces; /* of a child, for each group of fronts */
     int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
@@ -5517,7 +5859,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     if (start) {
         start[0] = 0;
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, &c->symbolic) &&
+        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
+                              &c->symbolic) &&
                gproji_cholesky_permute(c, start, NULL);
     }
     gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
@@ -5741,16 +6084,17 @@ GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_comp
     int64_t r;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f];
+        gproji_shape shape = gproji_shape_of(front->width, front->below);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
         for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
             int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
             if (late < front->first + front->width) {
-                at = late - front->first + gproji_panel_shift(front->width);
+                at = late - front->first + shape.shift;
             } else {
                 place = sy->place[x->node_of[c->permutation[late]]];
                 at = position[place] + late - sy->column[place];
             }
-            c->target[r] = front->panel + (int64_t)(early - front->first) * front->stride + at;
+            c->target[r] = front->panel + gproji_shape_offset(shape, early - front->first + shape.shift) + at;
         }
     }
 }
@@ -5774,7 +6118,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     }
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
     graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
-    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, &c->symbolic) ||
+    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
         !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
         return gproji_fail_memory(&c->error);
     gproji_cholesky_find_targets(c, x);
@@ -5819,16 +6163,15 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
     int64_t groups = (int64_t)sy->tasks + 1;
     if (c->values) return true;
-    c->work = gproji_take_aligned(&c->numeric, sy->work_size);
     c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
-    c->values = gproji_take_aligned(&c->numeric, sy->values_size);
+    c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->work && c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
+    if (c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -5857,7 +6200,7 @@ GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_f
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
-        add.panel = panel, add.piece = pieces, add.update = c->work + child->update, add.rows = child->update_rows;
+        add.panel = panel, add.piece = pieces, add.update = c->values + child->update, add.rows = child->update_rows;
         add.pieces = gproji_find_pieces(
             c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
             child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
@@ -5874,15 +6217,15 @@ GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_pan
 }
 
 GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
-    return gproji_make_panel(c->kernels, front->width, front->below, front->stride, c->values + front->panel,
-                             c->inverse + front->first, c->work + front->update);
+    return gproji_make_panel(c->kernels, front->width, front->below, c->values + front->panel,
+                             c->inverse + front->first, c->values + front->update);
 }
 
 /* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = (int64_t)front->width * front->stride, i;
+    int64_t size = front->entries, i;
     if (c->symbolic.values_size <= GPROJI_CACHED) return;
     if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
     for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
@@ -5894,7 +6237,7 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(c->values + front->panel, 0, (size_t)front->width * (size_t)front->stride * sizeof(double));
+    memset(panel.values, 0, (size_t)front->entries * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
     gproji_add_children(c, front, &panel, parallel, pieces);
@@ -6950,10 +7293,12 @@ typedef struct gproji_group {
     gproj_schedule schedule;
     gproj_refresh refresh;
     void *refresh_user;
-    double weight; /* in the present iteration */
-    bool idle;     /* whenever the rows were compiled, its schedule was without weight */
-    bool guard;    /* a bound that acts on the steps only: no part of merit, residual and verdict */
-    double slack;  /* of the guard: a step may violate its rows by so much */
+    double weight;   /* in the present iteration */
+    bool idle;       /* whenever the rows were compiled, its schedule was without weight */
+    int32_t closing; /* the first so many rows close: those of an auxiliary node add up to nothing at the nodes that
+                        they join, as n'(v_i - v_j) does around a face */
+    bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
+    double slack;    /* of the guard: a step may violate its rows by so much */
 
     int32_t row_count;
     gproji_row *row;
@@ -6985,7 +7330,7 @@ typedef struct gproji_hinge {
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
-    bool passed_over; /* it would be on, but the matrix of all variables was asked for */
+    bool stale; /* `on` is to be decided anew, or is off only because the matrix of all variables was asked for */
     int32_t elements;
     gproji_row_name *row; /* rows by elements, then those of single nodes by nodes */
     int64_t *row_start;   /* elements + 1: the rows of each element in `row` */
@@ -7439,6 +7784,12 @@ GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group,
     return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
 }
 
+/* The group's rows do not close any more. */
+GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
+    g->closing = 0;
+    s->schur.stale = true;
+}
+
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
@@ -7456,8 +7807,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
-    if (coefficients && !g->refresh && s->schur.on && !s->solving)
-        gproji_system_forget(s); /* rows that close might not */
+    if (coefficients && row < g->closing) gproji_open_rows(s, g);
     for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
     g->row[row].constant = constant;
     s->changed = true;
@@ -8479,45 +8829,13 @@ GPROJI_INTERNAL void gproji_schur_sort_rows(gproj_system *s, const int32_t *belo
         }
 }
 
-/* The variable of a term that is no auxiliary one, or -1; *factor: what the term adds to the gradient there when the k-th
-   variable of a block is 1 + k / 3. */
-GPROJI_INTERNAL int32_t gproji_schur_kept(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          const gproj_term *term, double *factor) {
-    int32_t first = gproji_variable_of(g, row, term->i), second = gproji_variable_of(g, row, term->j);
-    bool swap = second >= 0 && s->auxiliary[first];
-    int32_t i = swap ? second : first, j = swap ? first : second;
-    *factor = j < 0 ? term->a : term->a * (1 + (j - s->block[j]) / 3.0);
-    return s->auxiliary[i] ? -1 : i;
-}
-
-GPROJI_INTERNAL bool gproji_has_auxiliary(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l)
-        if (s->auxiliary[g->local_variable[l]]) return true;
-    return false;
-}
-
-/* Do the gradients of an element's rows with auxiliary variables add up to nothing at its nodes, whatever these variables
-   are? `sum`: of each variable, zeros on entry and on exit. Not where such rows are refreshed, and may change. */
-GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element, double *sum) {
+/* Has the element closing rows? */
+GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element) {
     const gproji_schur *d = &s->schur;
-    bool closes = d->row_start[element + 1] - d->row_start[element] > 1;
-    int64_t k, t;
-    int32_t pass;
-    for (pass = 0; pass < 3; ++pass)
-        for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k) {
-            const gproji_group *g = &s->group[d->row[k].group];
-            const gproji_row *row = &g->row[d->row[k].row];
-            for (t = row->term; t < row[1].term && gproji_has_auxiliary(s, g, row); ++t) {
-                double factor;
-                int32_t kept = gproji_schur_kept(s, g, row, &g->term[t], &factor);
-                if (kept < 0) continue;
-                if (pass == 0) sum[kept] += factor;
-                if (pass == 1 && (g->refresh || sum[kept] != 0)) closes = false;
-                if (pass == 2) sum[kept] = 0;
-            }
-        }
-    return closes;
+    int64_t k;
+    for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k)
+        if (d->row[k].row < s->group[d->row[k].group].closing) return true;
+    return false;
 }
 
 /* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node; links:
@@ -8554,20 +8872,19 @@ GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t elemen
 }
 
 /* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
-   to pay. sum: work, of each variable; met: work, of each node. */
-GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, double *sum, int32_t *met) {
+   to pay. met: work, of each node. */
+GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
     int32_t e, v, most = 0, kept = 0;
     int64_t l;
     for (v = 0; v < s->variable_count; ++v) {
         kept += !s->auxiliary[v];
-        sum[v] = 0;
     }
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     d->first[0] = 0;
     for (e = 0; e < d->elements; ++e) {
         int32_t left;
-        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e, sum);
+        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e);
         left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
         if (left < 1 || left > gproji_schur_most * kept - d->first[e]) return false;
         d->first[e + 1] = d->first[e] + left;
@@ -8579,7 +8896,6 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, double *sum, int32_t *
 /* Sorts rows, and finds what the elements join and leave. False: no memory, or d->on is false and it does not pay. */
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
-    double *sum;
     int64_t elements = d->elements, nodes = s->node_count;
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
@@ -8592,13 +8908,10 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
         return false;
     gproji_schur_sort_rows(s, belongs);
     d->link_node = (int32_t *)gproji_pool_take(&d->pool, gproji_schur_scan(s, mark, NULL), sizeof(int32_t));
-    sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *sum);
-    if (d->link_node && sum) {
-        gproji_schur_scan(s, mark, d->link_node);
-        d->on = gproji_schur_number(s, sum, mark);
-    }
-    gproji_give(&s->own, sum, (size_t)s->variable_count, sizeof *sum);
-    return d->link_node && sum;
+    if (!d->link_node) return false;
+    gproji_schur_scan(s, mark, d->link_node);
+    d->on = gproji_schur_number(s, mark);
+    return true;
 }
 
 /* Step 3 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
@@ -8728,30 +9041,38 @@ GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
     }
 }
 
-/* What the arrays need that depend on the analysis. */
-GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
+/* How much the elements need: `most` and `triangle_size`, and numbers of entries and of values of W. */
+GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int64_t *values) {
     gproji_schur *d = &s->schur;
-    gproji_pool *pool = &d->pool;
-    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries = 0, values = 0, roots = 0, l;
-    int32_t e, v, i;
+    int64_t l;
+    int32_t e;
     d->most = d->triangle_size = 0;
+    *entries = *values = 0;
     for (e = 0; e < d->elements; ++e) {
-        int64_t rows = d->row_start[e + 1] - d->row_start[e], columns = gproji_schur_columns(s, e);
-        int64_t most =
-            rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * (d->link_start[e + 1] - d->link_start[e]);
+        int64_t rows = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
+        int64_t columns = gproji_schur_columns(s, e), links = d->link_start[e + 1] - d->link_start[e];
+        int64_t most = rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * links;
         int32_t size = (int32_t)columns - d->closes[e];
         d->most = d->most > most ? d->most : most;
         d->triangle_size = gproji_max(d->triangle_size, size * size);
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            v = d->link_node[l];
-            entries += d->first[e + 1] - d->first[e];
-            values += (int64_t)(d->first[e + 1] - d->first[e]) * (s->node_first[v + 1] - s->node_first[v]);
-        }
+        *entries += left * links;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
+            *values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
     }
-    d->root_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+}
+
+/* What needs the analysis. */
+GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
+    gproji_schur *d = &s->schur;
+    gproji_pool *pool = &d->pool;
+    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries, values, roots = 0;
+    int32_t i;
+    gproji_schur_measure(s, &entries, &values);
+    d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (i = 0; d->root_start && i < nodes; ++i) {
+        int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
         d->root_start[i] = roots;
-        roots += (int64_t)(s->node_first[i + 1] - s->node_first[i]) * (s->node_first[i + 1] - s->node_first[i]);
+        roots += size * size;
     }
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
@@ -8827,8 +9148,8 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
     gproj_code code;
     gproji_wake_groups(s);
     if (!gproji_compile_variables(s) || !gproji_schur_decide(s)) return GPROJ_ERROR_MEMORY;
-    s->schur.passed_over = s->schur.on && whole;
-    if (s->schur.passed_over) gproji_schur_forget(s);
+    s->schur.stale = s->schur.on && whole;
+    if (s->schur.stale) gproji_schur_forget(s);
     code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s);
     if (code) return code;
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
@@ -8842,7 +9163,7 @@ GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
    there where steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
     gproj_code code;
-    if (s->compiled && (whole ? s->schur.on : s->schur.passed_over || (s->schur.on && gproji_wake_groups(s))))
+    if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return GPROJ_OK;
     code = gproji_compile_steps(s, whole);
@@ -8918,7 +9239,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e,
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
-        if (!d->closes[e] || !own || !joins) continue;
+        if (!d->closes[e] || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
         column[i] = w > 0 ? 1 / w : 0;
     }
@@ -9029,54 +9350,65 @@ GPROJI_INTERNAL double gproji_schur_project(const gproj_system *s, int32_t e, in
 }
 
 typedef struct gproji_assembly {
-    gproj_system *system;
+    const gproj_system *system;
     double epsilon2;
 } gproji_assembly;
 
-/* C, r and R of some elements, and what they add to eps^2 at their nodes. */
-GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    gproj_system *s = assembly->system;
+/* Both for the numbers of a quad, alone or with another row, as constants: nearly all elements have these. */
+GPROJI_INTERNAL void gproji_reflect_element(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
+    if (m == 5 && count == 4)
+        gproji_reflect(5, 4, column, scale, diagonal);
+    else if (m == 6 && count == 4)
+        gproji_reflect(6, 4, column, scale, diagonal);
+    else
+        gproji_reflect(m, count, column, scale, diagonal);
+}
+
+GPROJI_INTERNAL void gproji_reflect_element_back(int32_t m, int32_t count, const double *column, const double *scale,
+                                                 int32_t j, double *q) {
+    if (m == 5 && count == 4)
+        gproji_reflect_back(5, 4, column, scale, j, q);
+    else if (m == 6 && count == 4)
+        gproji_reflect_back(6, 4, column, scale, j, q);
+    else
+        gproji_reflect_back(m, count, column, scale, j, q);
+}
+
+/* C, r and R of an element, and what it adds to E at its nodes. */
+GPROJI_INTERNAL void gproji_schur_element(const gproj_system *s, int32_t e, double epsilon2, double *work) {
     const gproji_schur *d = &s->schur;
-    double *work = d->work + chunk * d->most;
-    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j;
-    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    for (; e < end; ++e) {
-        int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e);
-        int32_t closes = d->closes[e], links = (int32_t)(d->link_start[e + 1] - d->link_start[e]);
-        double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
-        double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
-        int64_t l;
-        if (m == 5 && count == 4)
-            gproji_reflect(5, 4, work, scale, diagonal);
-        else if (m == 6 && count == 4)
-            gproji_reflect(6, 4, work, scale, diagonal);
-        else
-            gproji_reflect(m, count, work, scale, diagonal);
-        if (count > closes)
-            share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
-                                         d->triangle + (int64_t)e * d->triangle_size);
-        share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / assembly->epsilon2) : 0;
-        if (share == 1 / assembly->epsilon2)
-            gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
-                                  gproji_schur_calm * assembly->epsilon2);
-        share *= gproji_schur_share;
-        for (j = d->first[e]; j < d->first[e + 1]; ++j) {
-            if (m == 5 && count == 4)
-                gproji_reflect_back(5, 4, work, scale, 4, q);
-            else if (m == 6 && count == 4)
-                gproji_reflect_back(6, 4, work, scale, 4 + j - d->first[e], q);
-            else
-                gproji_reflect_back(m, count, work, scale, count + j - d->first[e], q);
-            d->side[j] = gproji_schur_project(s, e, m, q, c);
-            d->share[j] = share / (d->first[e + 1] - d->first[e]);
-            for (l = 0; l < links; ++l) {
-                int32_t v = d->link_node[d->link_start[e] + l], size = s->node_first[v + 1] - s->node_first[v];
-                memcpy(d->value + d->link_value[d->link_start[e] + l] + (int64_t)(j - d->first[e]) * size,
-                       c + l * GPROJI_BLOCK_MAX, (size_t)size * sizeof *c);
-            }
+    int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e), j;
+    int32_t closes = d->closes[e], left = d->first[e + 1] - d->first[e];
+    double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
+    double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
+    int64_t l;
+    gproji_reflect_element(m, count, work, scale, diagonal);
+    if (count > closes)
+        share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
+                                     d->triangle + (int64_t)e * d->triangle_size);
+    share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / epsilon2) : 0;
+    if (share == 1 / epsilon2)
+        gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
+                              gproji_schur_calm * epsilon2);
+    share *= gproji_schur_share;
+    for (j = 0; j < left; ++j) {
+        gproji_reflect_element_back(m, count, work, scale, count + j, q);
+        d->side[d->first[e] + j] = gproji_schur_project(s, e, m, q, c);
+        d->share[d->first[e] + j] = share / left;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            memcpy(d->value + d->link_value[l] + (int64_t)j * size, c + (l - d->link_start[e]) * GPROJI_BLOCK_MAX,
+                   (size_t)size * sizeof *c);
         }
     }
+}
+
+GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
+    const gproji_assembly *assembly = (const gproji_assembly *)data;
+    const gproji_schur *d = &assembly->system->schur;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
+    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
+    for (; e < end; ++e) gproji_schur_element(assembly->system, e, assembly->epsilon2, d->work + chunk * d->most);
 }
 
 /* D and - sum w^2 phi g of a node, from its rows. */
@@ -9832,7 +10164,7 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
 /* During a solve by multipliers a group may get its first weight: it has no place among them yet. False: an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    if (!s->schur.on || !gproji_wake_groups(s)) return true;
+    if (!s->schur.on || !(gproji_wake_groups(s) || s->schur.stale)) return true;
     gproji_system_forget(s);
     if (gproji_compile(s, false) != GPROJ_OK) return false;
     gproji_see_rows(loop);
@@ -17839,6 +18171,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
+    if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
     return gproji_form_ready(form) ? group : -1;
 }
 
@@ -21014,7 +21347,7 @@ GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, g
     gproji_pass_bool(stream, &idle);
     if (stream->way != GPROJI_READ || idle == g->idle) return;
     g->idle = idle;
-    form->system->schur.passed_over = true; /* to be decided anew */
+    form->system->schur.stale = true; /* to be decided anew */
 }
 
 /* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor

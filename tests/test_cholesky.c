@@ -784,6 +784,90 @@ GPROJT_TEST(cholesky_same_bits_for_any_workers) {
     matrix_free(&m);
 }
 
+/* -- the memory of panels and update matrices -- */
+
+/* What owns each entry of the memory: nothing (0), the panel of front f (f + 1), its update matrix (- f - 1). */
+typedef struct ownership {
+    const gproji_symbolic *sy;
+    int32_t *owner;
+    int64_t wrong; /* entries that had another owner than they should */
+    int64_t held, most;
+} ownership;
+
+static void change_owner(ownership *o, int64_t first, int64_t count, int32_t from, int32_t to) {
+    int64_t i;
+    for (i = first; i < first + count; ++i) {
+        o->wrong += o->owner[i] != from;
+        o->owner[i] = to;
+    }
+    o->held += to ? count : -count;
+    if (o->held > o->most) o->most = o->held;
+}
+
+/* A front begins: its panel and its update matrix must be nobody's. */
+static void begin_front(ownership *o, int32_t f) {
+    const gproji_front *front = &o->sy->front[f];
+    change_owner(o, front->panel, front->entries, 0, f + 1);
+    change_owner(o, front->update, gproji_update_entries(front->update_rows), 0, -f - 1);
+}
+
+/* A front ends: its children's update matrices must still be theirs. */
+static void end_front(ownership *o, int32_t f) {
+    const gproji_front *front = o->sy->front;
+    int32_t c;
+    for (c = front[f].child; c >= 0; c = front[c].sibling)
+        change_owner(o, front[c].update, gproji_update_entries(front[c].update_rows), -c - 1, 0);
+}
+
+/* Goes through all fronts, the tasks one after the other or all side by side. */
+static void change_owners(ownership *o, bool concurrent) {
+    const gproji_symbolic *sy = o->sy;
+    int32_t k, g, busy = concurrent;
+    for (k = 0; busy; ++k) {
+        busy = 0;
+        for (g = 0; g < sy->tasks; ++g)
+            if (sy->task_start[g] + k < sy->task_start[g + 1]) {
+                begin_front(o, sy->schedule[sy->task_start[g] + k]);
+                busy = 1;
+            }
+        for (g = 0; g < sy->tasks; ++g)
+            if (sy->task_start[g] + k < sy->task_start[g + 1]) end_front(o, sy->schedule[sy->task_start[g] + k]);
+    }
+    for (k = concurrent ? sy->task_start[sy->tasks] : 0; k < sy->fronts; ++k) {
+        begin_front(o, sy->schedule[k]);
+        end_front(o, sy->schedule[k]);
+    }
+    for (k = 0; k < sy->fronts; ++k) change_owner(o, sy->front[k].panel, sy->front[k].entries, k + 1, 0);
+}
+
+/* Nothing is ever where something else is still needed; and one worker needs little more memory than what there is at
+   once. */
+GPROJT_TEST(cholesky_panels_and_updates_share_memory) {
+    gproj_cholesky_options options = options_of(GPROJ_ORDERING_BEST);
+    int32_t number, concurrent;
+    for (number = 0; number < 4 * MESH_KINDS; ++number) {
+        matrix m = (number & 1 ? planarity : laplacian)(number / 4, 40, 37);
+        options.disable_postorder = (number & 2) != 0;
+        for (concurrent = 0; concurrent < 2; ++concurrent) {
+            gproj_host host = gprojt_crew(concurrent);
+            gproj_cholesky *c = gproj_cholesky_create(&host);
+            int64_t size;
+            ownership o;
+            memset(&o, 0, sizeof o);
+            GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, &options) == GPROJ_OK);
+            o.sy = &c->symbolic;
+            size = o.sy->values_size + o.sy->work_size;
+            o.owner = (int32_t *)calloc((size_t)size, sizeof *o.owner);
+            change_owners(&o, concurrent == 1);
+            GPROJT_CHECK(o.wrong == 0 && o.held == 0);
+            GPROJT_CHECK(size <= (concurrent ? o.most / 2 * 3 : o.most / 4 * 5));
+            free(o.owner);
+            gproj_cholesky_destroy(c);
+        }
+        matrix_free(&m);
+    }
+}
+
 /* -- errors -- */
 
 GPROJT_TEST(cholesky_arguments) {
@@ -952,6 +1036,7 @@ int main(void) {
     GPROJT_RUN(cholesky_refine_improves);
     GPROJT_RUN(cholesky_not_positive_definite);
     GPROJT_RUN(cholesky_same_bits_for_any_workers);
+    GPROJT_RUN(cholesky_panels_and_updates_share_memory);
     GPROJT_RUN(cholesky_arguments);
     GPROJT_RUN(cholesky_sizes);
     GPROJT_RUN(cholesky_every_allocation_fails);

@@ -31,28 +31,36 @@ static void naive_partial(int32_t n, int32_t w, double *a) {
 /* Storage row of row i of a panel with w pivots. */
 static int32_t storage(int32_t w, int32_t i) { return i + gproji_panel_shift(w); }
 
+/* The place of row i, or of storage row r, and column j in a panel. */
+static int64_t place_of_row(gproji_shape shape, int32_t r, int32_t j) {
+    return gproji_shape_offset(shape, j + shape.shift) + r;
+}
+static int64_t place_of(gproji_shape shape, int32_t i, int32_t j) { return place_of_row(shape, i + shape.shift, j); }
+
 /* Factors a panel with w pivots and u rows below, forms the update matrix, solves with it: all against the loops. */
 static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u, uint64_t *seed) {
     int32_t n = w + u, update_rows = gproji_round_up(u, GPROJI_BLOCK), rows = storage(w, w) + update_rows, i, j;
-    int32_t stride = gproji_stride(rows);
-    size_t panel_size = (size_t)stride * (size_t)w, update_size = (size_t)gproji_update_entries(update_rows) + 1;
+    gproji_shape shape = gproji_shape_of(w, u);
+    size_t panel_size = (size_t)gproji_shape_entries(shape, w);
+    size_t update_size = (size_t)gproji_update_entries(update_rows) + 1;
     double *a = (double *)malloc((size_t)n * (size_t)n * sizeof(double));
     double *panel = (double *)calloc(panel_size, sizeof(double)),
            *inverse = (double *)malloc((size_t)w * sizeof(double));
     double *update = (double *)malloc(update_size * sizeof(double));
-    double *z = (double *)calloc((size_t)stride, sizeof(double)), *b = (double *)malloc((size_t)n * sizeof(double));
+    double *z = (double *)calloc((size_t)shape.stride, sizeof(double)),
+           *b = (double *)malloc((size_t)n * sizeof(double));
     double error = 0, bound = 1e-11;
     gproji_panel job;
     fill_spd(n, a, seed);
     for (j = 0; j < w; ++j)
-        for (i = j; i < n; ++i) panel[at(storage(w, i), j, stride)] = a[at(i, j, n)];
+        for (i = j; i < n; ++i) panel[place_of(shape, i, j)] = a[at(i, j, n)];
     for (i = 0; i < (int32_t)update_size; ++i) update[i] = i % 16;
     naive_partial(n, w, a);
-    job = gproji_make_panel(kernels, w, u, stride, panel, inverse, update);
+    job = gproji_make_panel(kernels, w, u, panel, inverse, update);
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
     for (j = 0; j < w; ++j) {
-        for (i = j; i < n; ++i) error = fmax(error, fabs(panel[at(storage(w, i), j, stride)] - a[at(i, j, n)]));
-        for (i = storage(w, n); i < rows; ++i) error = fmax(error, fabs(panel[at(i, j, stride)]));
+        for (i = j; i < n; ++i) error = fmax(error, fabs(panel[place_of(shape, i, j)] - a[at(i, j, n)]));
+        for (i = storage(w, n); i < rows; ++i) error = fmax(error, fabs(panel[place_of_row(shape, i, j)]));
     }
     if (u > 0) {
         update[update_size - 1] = 7.0; /* one beyond the end */
@@ -118,19 +126,30 @@ GPROJT_TEST(dense_panels) {
 GPROJT_TEST(dense_failing_pivots) {
     const double bad[] = {-1.0, 0.0, NAN, INFINITY};
     enum {
-        W = 140,
-        STRIDE = 200
+        W = 140
     };
-    double *panel = (double *)malloc(sizeof(double) * W * STRIDE), inverse[W];
+    const gproji_shape shape = gproji_shape_of(W, 0);
+    const size_t size = (size_t)gproji_shape_entries(shape, W) * sizeof(double);
+    double *panel = (double *)malloc(size), inverse[W];
     const gproji_kernels *kernels;
     int32_t column, i, kind, b;
     FOR_ALL_KERNELS for (column = 0; column < W; column += 7) for (b = 0; b < 4; ++b) {
-        gproji_panel job = gproji_make_panel(kernels, W, 0, STRIDE, panel, inverse, NULL);
-        memset(panel, 0, sizeof(double) * W * STRIDE);
-        for (i = 0; i < W; ++i) panel[at(storage(W, i), i, STRIDE)] = i == column ? bad[b] : 4.0;
+        gproji_panel job = gproji_make_panel(kernels, W, 0, panel, inverse, NULL);
+        memset(panel, 0, size);
+        for (i = 0; i < W; ++i) panel[place_of(shape, i, i)] = i == column ? bad[b] : 4.0;
         GPROJT_CHECK(gproji_panel_factor(NULL, &job) == column);
     }
     free(panel);
+}
+
+/* Where column t begins, with a stride that falls after `left` columns and then after each block. */
+static size_t begin_of(int32_t t, int32_t stride, int32_t left) {
+    size_t place = 0;
+    for (; t > 0; --t, --left) {
+        if (left == 1) left += GPROJI_BLOCK, stride -= GPROJI_BLOCK;
+        place += (size_t)stride;
+    }
+    return place;
 }
 
 /* C -= A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing columns. */
@@ -138,9 +157,10 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
     enum {
         MOST = 64,
         DEEP = 20,
-        WIDE = 8
+        WIDE = 8,
+        STRIDE = MOST + 4 * WIDE
     };
-    static double a[MOST * DEEP], b[WIDE * DEEP], c[MOST * WIDE], was[MOST * WIDE], triangle[MOST * WIDE];
+    static double a[STRIDE * DEEP], b[STRIDE * DEEP], c[MOST * WIDE], was[MOST * WIDE], triangle[MOST * WIDE];
     const int32_t B = kernels->block;
     double inverse[WIDE];
     int32_t blocks, k, i, j, t, skip; /* skip < 0: an update */
@@ -148,17 +168,17 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
         for (k = 0; k <= DEEP; ++k)
             for (skip = -1; skip < (k == 0 ? B : 1); ++skip) {
                 int32_t rows = blocks * B, columns = B - gproji_max(skip, 0), first = B - columns;
+                int32_t left = k % 3 ? 1 + (k + blocks) % GPROJI_BLOCK : INT32_MAX;
                 double error = 0;
-                for (i = 0; i < MOST * DEEP; ++i) a[i] = gprojt_uniform(seed);
-                for (i = 0; i < WIDE * DEEP; ++i) b[i] = gprojt_uniform(seed);
+                for (i = 0; i < STRIDE * DEEP; ++i) a[i] = gprojt_uniform(seed), b[i] = gprojt_uniform(seed);
                 for (i = 0; i < MOST * WIDE; ++i)
                     c[i] = was[i] = gprojt_uniform(seed), triangle[i] = gprojt_uniform(seed);
                 for (j = 0; j < columns; ++j) triangle[at(first + j, j, MOST)] += 1.0;
                 for (j = 0; j < columns; ++j) inverse[j] = 1.0 / triangle[at(first + j, j, MOST)];
                 if (skip < 0)
-                    kernels->update(rows, k, a, MOST, b, WIDE, c, MOST);
+                    kernels->update(rows, k, a, b, STRIDE, left, c, MOST);
                 else
-                    kernels->solve(rows, k, a, MOST, b, WIDE, c, MOST, triangle, inverse, skip);
+                    kernels->solve(rows, k, a, b, STRIDE, left, c, MOST, triangle, inverse, skip);
                 for (i = 0; i < MOST; ++i)
                     for (j = 0; j < WIDE; ++j) {
                         double sum = was[at(i, j, MOST)];
@@ -166,7 +186,10 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
                             GPROJT_CHECK(c[at(i, j, MOST)] == sum);
                             continue;
                         }
-                        for (t = 0; t < k; ++t) sum -= a[at(i, t, MOST)] * b[at(j, t, WIDE)];
+                        for (t = 0; t < k; ++t) {
+                            size_t column = begin_of(t, STRIDE, left);
+                            sum -= a[column + (size_t)i] * b[column + (size_t)j];
+                        }
                         if (skip >= 0) {
                             for (t = 0; t < j; ++t) sum -= was[at(i, t, MOST)] * triangle[at(first + j, t, MOST)];
                             sum *= inverse[j];
@@ -192,7 +215,7 @@ GPROJT_TEST(dense_tiles) {
 /* Row i, column j <= i of what a panel and its update matrix hold together. */
 static double *entry_of(const gproji_panel *panel, double *values, int32_t i, int32_t j) {
     int32_t w = panel->w;
-    if (j < w) return values + at(storage(w, i), j, panel->stride);
+    if (j < w) return values + place_of(panel->shape, i, j);
     return panel->update + gproji_update_offset(panel->update_rows, j - w) + (i - w);
 }
 
@@ -200,17 +223,18 @@ static double *entry_of(const gproji_panel *panel, double *values, int32_t i, in
    rows, which stay together; and nothing else is touched. */
 static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32_t below, int32_t most,
                       uint64_t *seed) {
-    int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK), stride = gproji_stride(storage(w, n));
+    gproji_shape shape = gproji_shape_of(w, u);
+    int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK);
     int32_t child_w = 5, groups = 0, i, j, left = n - below, next = 0;
-    size_t panel_size = (size_t)stride * (size_t)w,
+    size_t panel_size = (size_t)gproji_shape_entries(shape, w),
            update_size = (size_t)gproji_update_entries(gproji_round_up(u, GPROJI_BLOCK));
     double *values = (double *)calloc(panel_size + 1, sizeof(double));
     double *update = (double *)calloc(update_size + 1, sizeof(double)), kept = 0;
     double *child = (double *)malloc(((size_t)gproji_update_entries(rows) + 1) * sizeof(double));
     int32_t *group = (int32_t *)malloc(sizeof(int32_t) * (size_t)(2 * below + 2)), *to = group + below + 1;
     int32_t *row_to = (int32_t *)malloc(sizeof(int32_t) * (size_t)(below + 1));
-    gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)(2 * below + below / 8 + 2));
-    gproji_panel panel = gproji_make_panel(kernels, w, u, stride, values, NULL, update);
+    gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)gproji_pieces_most(below, below));
+    gproji_panel panel = gproji_make_panel(kernels, w, u, values, NULL, update);
     gproji_addition add;
     for (i = 0; i < below; i = next) {
         int32_t gap = gproji_min(left, (int32_t)(gprojt_uniform(seed) * 4)), k;
@@ -224,7 +248,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     for (i = 0; i < (int32_t)gproji_update_entries(rows); ++i) child[i] = 1.0 + gprojt_uniform(seed);
     add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
     add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
-    GPROJT_CHECK(add.pieces <= 2 * groups + below / 8 + 2);
+    GPROJT_CHECK(add.pieces <= gproji_pieces_most(groups, below));
     for (i = 0; i < gproji_pieces(below, GPROJI_STRIP); ++i) gproji_add_task(&add, i);
     for (j = 0; j < below; ++j)
         for (i = j; i < below; ++i) {
@@ -249,13 +273,29 @@ GPROJT_TEST(dense_add) {
     }
 }
 
-GPROJT_TEST(dense_strides) {
-    int32_t rows;
-    for (rows = 1; rows < 3000; ++rows) {
-        int32_t stride = gproji_stride(rows);
-        GPROJT_CHECK(stride >= rows && stride % GPROJI_BLOCK == 0 && stride % 64 != 0);
-        GPROJT_CHECK((rows + gproji_panel_shift(rows)) % GPROJI_BLOCK == 0);
-    }
+/* The columns of a panel follow each other, each from the first row of its block on; together eliminated ones have the
+   stride that kernels are told. */
+GPROJT_TEST(dense_columns_of_panels) {
+    int32_t w, below, j, next, first_of = 0, chunk = 0, left = 0;
+    for (w = 1; w < 900; w += 1 + w / 40)
+        for (below = 0; below < 90; below += 13) {
+            gproji_shape shape = gproji_shape_of(w, below);
+            gproji_panel panel = gproji_make_panel(gproji_kernels_of(0), w, below, NULL, NULL, NULL);
+            int64_t end = 0;
+            for (j = 0, next = 0; j < w; ++j) {
+                int32_t at = storage(w, j), stride = gproji_shape_stride(shape, at), first = shape.stride - stride;
+                GPROJT_CHECK(first >= 0 && first <= at && stride % GPROJI_BLOCK == 0 && at >= storage(w, 0));
+                GPROJT_CHECK(place_of_row(shape, first, j) == end);
+                end += stride;
+                if (j == next) /* a chunk */
+                    chunk = gproji_shape_stride(shape, at), left = gproji_shape_left(shape, at), first_of = j,
+                    next = gproji_next_chunk(&panel, j);
+                GPROJT_CHECK(place_of_row(shape, shape.stride, j) == place_of_row(shape, shape.stride, first_of) +
+                                                                         (int64_t)begin_of(j - first_of, chunk, left));
+            }
+            GPROJT_CHECK(gproji_shape_entries(shape, w) == end && shape.stride >= storage(w, w) + below);
+            GPROJT_CHECK((w + shape.shift) % GPROJI_BLOCK == 0 && (shape.last < 0 || shape.stride % 64 != 0));
+        }
 }
 
 int main(void) {
@@ -263,6 +303,6 @@ int main(void) {
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);
     GPROJT_RUN(dense_add);
-    GPROJT_RUN(dense_strides);
+    GPROJT_RUN(dense_columns_of_panels);
     return gprojt_report();
 }

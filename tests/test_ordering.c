@@ -337,17 +337,20 @@ GPROJT_TEST(ordering_of_graphs) {
         }
 }
 
-/* What dissection costs, over minimum degree, and the better one of both. */
+/* What dissection costs, over minimum degree, and the better one of both; where dissection is sure to be good, the other
+   one is not tried. */
 GPROJT_TEST(ordering_of_large_graphs) {
     static const struct {
         int32_t kind, nodes;
         double dissected, best;
     } bound[] = {
-        {ISOLATED, 20000, 1.01, 1}, {PATH, 20000, 2.6, 1},    {STAR, 20000, 1.1, 1},       {TREE, 20000, 2.4, 1},
-        {CLIQUES, 20000, 1.01, 1},  {RANDOM, 2000, 3, 1},     {HUB, 10000, 0.8, 0.8},      {TWO_GRIDS, 20000, 0.7, 0.7},
-        {GRID, 484, 0.9, 1},        {GRID, 3481, 0.75, 0.75}, {GRID, 10000, 0.5, 0.5},     {GRID, 29929, 0.6, 0.6},
-        {STRIP, 20000, 3, 1},       {SHUFFLED, 484, 1.1, 1},  {SHUFFLED, 10000, 0.6, 0.6}, {TRIANGLES, 10000, 1, 1},
-        {HEXAGONS, 10000, 1.1, 1},  {CUBES, 8000, 0.7, 0.7},  {NORMALS, 20000, 0.9, 0.9},  {FORCES, 30000, 0.7, 0.7},
+        {ISOLATED, 20000, 1.01, 1}, {PATH, 20000, 2.6, 1},        {STAR, 20000, 1.1, 1},
+        {TREE, 20000, 2.4, 1},      {CLIQUES, 20000, 1.01, 1},    {RANDOM, 2000, 3, 1},
+        {HUB, 10000, 0.8, 0.8},     {TWO_GRIDS, 20000, 0.7, 0.7}, {GRID, 484, 0.9, 1},
+        {GRID, 3481, 0.75, 0.75},   {GRID, 10000, 0.5, 0.5},      {GRID, 29929, 0.6, 0.6},
+        {STRIP, 20000, 3, 1},       {SHUFFLED, 484, 1.1, 1},      {SHUFFLED, 10000, 0.6, 0.6},
+        {TRIANGLES, 10000, 1, 1},   {HEXAGONS, 10000, 1.1, 1.06}, {CUBES, 8000, 0.7, 0.7},
+        {NORMALS, 20000, 0.9, 0.9}, {FORCES, 30000, 0.7, 0.7},
     };
     int32_t k;
     for (k = 0; k < (int32_t)(sizeof bound / sizeof bound[0]); ++k) {

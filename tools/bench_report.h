@@ -378,6 +378,9 @@ static double bench_value_their_share(const bench_report *report, const bench_re
 static double bench_value_flops(const bench_report *report, const bench_result *r) {
     return (void)report, r->ours.flops / r->theirs.flops;
 }
+static double bench_value_unknowns(const bench_report *report, const bench_result *r) {
+    return (void)report, (double)r->ours.unknowns / r->theirs.unknowns;
+}
 static double bench_value_setup(const bench_report *report, const bench_result *r) {
     return (void)report, bench_setup_ratio(r);
 }
@@ -404,6 +407,21 @@ static void bench_write_heading(FILE *file, const bench_report *report, const ch
     fputs("\n", file);
 }
 
+static void bench_write_details(FILE *file, const bench_report *report, const char *title, const char *problem) {
+    if (!bench_has(report, problem)) return;
+    fprintf(file, "\n%s in more detail:\n\n", title);
+    bench_write_heading(file, report, "V");
+    bench_write_row(file, report, "unknowns / CHOLMOD's", problem, false, bench_value_unknowns);
+    bench_write_row(file, report, "flops / CHOLMOD's", problem, false, bench_value_flops);
+    bench_write_row(file, report, "factorisation, part of dgemm's peak", problem, true, bench_value_share);
+    bench_write_row(file, report, "CHOLMOD's", problem, true, bench_value_their_share);
+    bench_write_row(file, report, "set-up / CHOLMOD's", problem, false, bench_value_setup);
+    bench_write_row(file, report, "peak memory / CHOLMOD's", problem, false, bench_value_memory);
+    bench_write_row(file, report, "time with CBLAS / without", problem, false, bench_value_cblas);
+    bench_write_row(file, report, "time without SIMD / with", problem, false, bench_value_scalar);
+    bench_write_row(file, report, "time of two workers / of one", problem, false, bench_value_workers);
+}
+
 static void bench_write_markdown(FILE *file, const bench_report *report) {
     static const char *const label[][2] = {{"quad", "planar quads"},
                                            {"closed", "planar quads, closed mesh"},
@@ -423,16 +441,11 @@ static void bench_write_markdown(FILE *file, const bench_report *report) {
     for (i = 0; i < (int)(sizeof label / sizeof *label); ++i)
         if (bench_has(report, label[i][0]))
             bench_write_row(file, report, label[i][1], label[i][0], false, bench_value_ratio);
-    fputs("\nPlanar quads in more detail:\n\n", file);
-    bench_write_heading(file, report, "V");
-    bench_write_row(file, report, "factorisation, part of dgemm's peak", "quad", true, bench_value_share);
-    bench_write_row(file, report, "CHOLMOD's", "quad", true, bench_value_their_share);
-    bench_write_row(file, report, "flops / CHOLMOD's", "quad", false, bench_value_flops);
-    bench_write_row(file, report, "set-up / CHOLMOD's", "quad", false, bench_value_setup);
-    bench_write_row(file, report, "peak memory / CHOLMOD's", "quad", false, bench_value_memory);
-    bench_write_row(file, report, "time with CBLAS / without", "quad", false, bench_value_cblas);
-    bench_write_row(file, report, "time without SIMD / with", "quad", false, bench_value_scalar);
-    bench_write_row(file, report, "time of two workers / of one", "quad", false, bench_value_workers);
+    fputs("\nPlanarity alone is solved for one multiplier a quad; with fairness or equilibrium the unknowns are all "
+          "variables.\n",
+          file);
+    bench_write_details(file, report, "Planar quads", "quad");
+    bench_write_details(file, report, "Planar quads and fairness", "fairness");
     fputs("\nBy `make -C tools bench && tools/bench", file);
     for (i = 1; i < report->argc; ++i) fprintf(file, " %s", report->argv[i]);
     fputs(
