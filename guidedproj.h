@@ -7384,6 +7384,7 @@ struct gproj_system {
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
+    bool evaluated;             /* compiled, and the rows have had values and gradients since */
     int32_t compiled_variables; /* the size of the arrays below */
     int32_t node_count, wide_count;
     int32_t *node;              /* of each variable */
@@ -7479,7 +7480,7 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     s->hinge = NULL;
     s->wide_taken = s->hinge_taken = 0;
     gproji_schur_forget(s);
-    s->compiled = false;
+    s->compiled = s->evaluated = false;
 }
 
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
@@ -8424,6 +8425,7 @@ GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
     int32_t i;
     s->changed = false;
+    s->evaluated = true;
     for (i = 0; i < s->group_count; ++i) {
         gproji_evaluation e;
         if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
@@ -8722,7 +8724,8 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
 
    E is not the identity: without eps on their normals, faces that become small would turn as they please. |R^-1|, with
    weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices. So E is 1.1 to 1.5 where
-   edges have the length 1, and large at faces that are small or nearly straight.
+   edges have the length 1, and large at faces that are small or nearly straight. Where |R^-1| reaches 1/eps there is next
+   to no area, and what the rows say of the normal is next to nothing: there it gets 1e-3 eps^2 after all, added to R'R.
 
    The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
    takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
@@ -8732,8 +8735,10 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
    (l + 1) GPROJI_BLOCK_MAX + k for the k-th of the element's l-th node; in a row with a single node, k. */
 
-static const double gproji_schur_most = 0.7;  /* so many multipliers a variable at most */
-static const double gproji_schur_share = 0.1; /* what |R^-1|^2 is multiplied by */
+static const double gproji_schur_most = 0.7;       /* so many multipliers a variable at most */
+static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplied by */
+static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
+static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
 enum {
     GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
@@ -9276,11 +9281,32 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
     }
 }
 
+/* R, by rows and with the inverses of its diagonal (0: none), becomes that of R'R + shift I; the shift is not below
+   rounding. */
+GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
+    double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
+    int32_t i, j, k;
+    for (k = 0; k < size; ++k)
+        if (triangle[k * size + k] != 0) triangle[k * size + k] = 1 / triangle[k * size + k];
+    for (i = 0; i < size; ++i) {
+        for (j = 0; j <= i; ++j) {
+            square[i * size + j] = 0;
+            for (k = 0; k <= j; ++k) square[i * size + j] += triangle[k * size + i] * triangle[k * size + j];
+        }
+        trace += square[i * size + i];
+    }
+    for (i = 0; i < size; ++i) square[i * size + i] += shift + gproji_schur_rounding * trace;
+    gproji_small_factor(square, size, size, DBL_MIN);
+    for (i = 0; i < size; ++i)
+        for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
+}
+
 /* Keeps R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. Returns
-   the sum of the squares of R^-1. */
+   the sum of the squares of R^-1, infinite where there are such columns. */
 GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t size, const double *column,
                                             const double *diagonal, double *triangle) {
     double sum = 0, unit[GPROJI_BLOCK_MAX];
+    bool dependent = false;
     int32_t i, j, k;
     for (j = 0; j < size; ++j) {
         double square = diagonal[j] * diagonal[j], all = square;
@@ -9289,7 +9315,9 @@ GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t 
             all += triangle[i * size + j] * triangle[i * size + j];
         }
         triangle[j * size + j] = square > 8 * DBL_EPSILON * all ? 1 / diagonal[j] : 0;
+        dependent = dependent || triangle[j * size + j] == 0;
     }
+    if (dependent) return HUGE_VAL;
     for (j = 0; j < size; ++j) /* the columns of R^-1 */
         for (i = j; i >= 0; --i) {
             double x = i == j;
@@ -9358,7 +9386,11 @@ GPROJI_INTERNAL void gproji_schur_element(const gproj_system *s, int32_t e, doub
     if (count > closes)
         share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
                                      d->triangle + (int64_t)e * d->triangle_size);
-    share = gproji_schur_share * gproji_fmin(share * heaviest * heaviest, 1 / epsilon2);
+    share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / epsilon2) : 0;
+    if (share == 1 / epsilon2)
+        gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
+                              gproji_schur_calm * epsilon2);
+    share *= gproji_schur_share;
     for (j = 0; j < left; ++j) {
         gproji_reflect_element_back(m, count, work, scale, count + j, q);
         d->side[d->first[e] + j] = gproji_schur_project(s, e, m, q, c);
@@ -10135,7 +10167,7 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
     if (!s->schur.on || !(gproji_wake_groups(s) || s->schur.stale)) return true;
     gproji_system_forget(s);
     if (gproji_compile(s, false) != GPROJ_OK) return false;
-    gproji_linearise(loop);
+    gproji_see_rows(loop);
     return true;
 }
 
@@ -10754,7 +10786,14 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->sliding = nearest;
-    if (loop->restored) gproji_see_rows(loop);
+    if (nearest && !s->sum) { /* a solve of the system in between has taken them */
+        if (!gproji_start_multipliers(s)) {
+            gproji_fail_memory(&s->error);
+            return;
+        }
+        changed = true;
+    }
+    if (loop->restored || !s->evaluated) gproji_see_rows(loop);
     if (loop->restored && nearest) gproji_judge_nearest(loop);
     loop->restored = false;
     s->changed = changed;
@@ -21302,8 +21341,6 @@ typedef enum gproji_passing {
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
-   any of a group that the library has added (`own`): they are set when a solve begins. */
 /* Whether a group has ever counted decides how steps are found: see gproji_wake_groups. */
 GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, gproji_group *g) {
     bool idle = g->idle;
@@ -21313,9 +21350,12 @@ GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, g
     form->system->schur.stale = true; /* to be decided anew */
 }
 
+/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
+   any of a group that the library has added (`own`): they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
+    double none = 0;
     int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
     gproji_pass_number(stream, &schedule.decay, 0, 1);
@@ -21328,7 +21368,8 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_weights(stream, form, g);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
-        if (passing == GPROJI_PASS_NEAREST) gproji_pass_number(stream, &g->multiplier[r].y, -DBL_MAX, DBL_MAX);
+        if (passing == GPROJI_PASS_NEAREST)
+            gproji_pass_number(stream, g->multiplier ? &g->multiplier[r].y : &none, -DBL_MAX, DBL_MAX);
     }
 }
 
