@@ -21341,12 +21341,15 @@ typedef enum gproji_passing {
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* Whether a group has ever counted decides how steps are found: see gproji_wake_groups. */
-GPROJI_INTERNAL void gproji_pass_idle(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+/* What decides how steps are found: whether the group has ever counted (gproji_wake_groups), and which rows close. */
+GPROJI_INTERNAL void gproji_pass_choice(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+    int32_t closing = g->closing;
     bool idle = g->idle;
     gproji_pass_bool(stream, &idle);
-    if (stream->way != GPROJI_READ || idle == g->idle) return;
+    gproji_pass_integer(stream, &closing, 0, g->row_count);
+    if (stream->way != GPROJI_READ || (idle == g->idle && closing == g->closing)) return;
     g->idle = idle;
+    g->closing = closing;
     form->system->schur.stale = true; /* to be decided anew */
 }
 
@@ -21362,7 +21365,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
     if (stream->way == GPROJI_READ) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
-    gproji_pass_idle(stream, form, g);
+    gproji_pass_choice(stream, form, g);
     if (own && !passing) return;
     if (passing || !g->refresh) gproji_pass_numbers(stream, g);
     gproji_pass_weights(stream, form, g);
