@@ -7353,6 +7353,7 @@ typedef struct gproji_schur {
     double *side;     /* 1 + wide_count columns: r + W b, and W U; then z and Y */
     double *share;    /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
     double *metric;   /* nodes: 1 and the sum of these */
+    uint8_t *turns;   /* nodes: is it in a row with auxiliary variables? */
     double *triangle; /* elements x triangle_size: R */
     double *work;     /* chunks x most */
     int32_t chunks, wide, triangle_size;
@@ -8723,9 +8724,10 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    they border the matrix of (1), and the Schur complement that is left for m is at least I.
 
    E is not the identity: without eps on their normals, faces that become small would turn as they please. |R^-1|, with
-   weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices. So E is 1.1 to 1.5 where
-   edges have the length 1, and large at faces that are small or nearly straight. Where |R^-1| reaches 1/eps there is next
-   to no area, and what the rows say of the normal is next to nothing: there it gets 1e-3 eps^2 after all, added to R'R.
+   weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices that turn them. So E is 1.1
+   to 1.5 where edges have the length 1, and large at faces that are small or nearly straight. Where |R^-1| reaches 1/eps
+   there is next to no area, and what the rows say of the normal is next to nothing: there it gets 1e-3 eps^2 after all,
+   added to R'R.
 
    The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
    takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
@@ -8742,7 +8744,7 @@ static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inv
 enum {
     GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
-    GPROJI_ELEMENTS_PER_TASK = 512 /* nodes or elements */
+    GPROJI_ELEMENTS_PER_TASK = 512 /* at least, unless there are fewer */
 };
 
 /* -- compilation -- */
@@ -8877,9 +8879,7 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
     int32_t e, v, most = 0, kept = 0;
     int64_t l;
-    for (v = 0; v < s->variable_count; ++v) {
-        kept += !s->auxiliary[v];
-    }
+    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     d->first[0] = 0;
     for (e = 0; e < d->elements; ++e) {
@@ -8888,7 +8888,10 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
         left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
         if (left < 1 || left > gproji_schur_most * kept - d->first[e]) return false;
         d->first[e + 1] = d->first[e] + left;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) most = gproji_max(most, met[d->link_node[l]] += left);
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            met[d->link_node[l]] += left;
+            most = gproji_max(most, met[d->link_node[l]]);
+        }
     }
     return most <= GPROJI_SCHUR_MEETINGS;
 }
@@ -9007,18 +9010,29 @@ GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, int32_t *at) {
     }
 }
 
-/* Where the locals of a row stand: `at` of their nodes, and which variable there. */
-GPROJI_INTERNAL void gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
+/* Where the locals of a row stand: `at` of their nodes, and which variable there. Returns whether some are auxiliary. */
+GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
     gproji_group *g = &s->group[name.group];
     const gproji_row *row = &g->row[name.row];
+    bool auxiliary = false;
     int64_t l;
     for (l = row->local; l < row[1].local; ++l) {
         int32_t variable = g->local_variable[l], node = s->node[variable];
         g->local_at[l] = at[node] + variable - s->node_first[node];
+        auxiliary = auxiliary || s->auxiliary[variable];
     }
+    return auxiliary;
 }
 
-/* Where the locals of all rows stand: see the section's invariant. at: work, of each node. */
+/* Notes that the nodes of this row turn auxiliary variables. */
+GPROJI_INTERNAL void gproji_schur_turn(const gproj_system *s, gproji_row_name name) {
+    const gproji_group *g = &s->group[name.group];
+    int64_t l;
+    for (l = g->row[name.row].local; l < g->row[name.row + 1].local; ++l)
+        s->schur.turns[s->node[g->local_variable[l]]] = 1;
+}
+
+/* Where the locals of all rows stand (see the section's invariant), and what turns. at: work, of each node. */
 GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     const gproji_schur *d = &s->schur;
     int64_t k, l;
@@ -9028,7 +9042,8 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     for (e = 0; e < d->elements; ++e) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
-        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) gproji_schur_place_row(s, d->row[k], at);
+        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k)
+            if (gproji_schur_place_row(s, d->row[k], at)) gproji_schur_turn(s, d->row[k]);
     }
 }
 
@@ -9088,11 +9103,12 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * d->first[d->elements], sizeof(double));
     d->share = (double *)gproji_pool_take(pool, d->first[d->elements], sizeof(double));
     d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
+    d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = (double *)gproji_pool_take(pool, d->chunks * d->most, sizeof(double));
     return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
-           d->front_start && d->front_node && d->value && d->root && d->side && d->share && d->metric && d->triangle &&
-           d->work;
+           d->front_start && d->front_node && d->value && d->root && d->side && d->share && d->metric && d->turns &&
+           d->triangle && d->work;
 }
 
 /* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier. */
@@ -9438,7 +9454,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     double share = 1;
     int64_t k;
     int32_t i;
-    for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
+    for (k = d->entry_start[v]; d->turns[v] && k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
     d->metric[v] = share;
     for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? epsilon2 * share : 0;
     if (d->own_start[v] < d->own_start[v + 1]) gproji_schur_own(s, v, size, root, b);

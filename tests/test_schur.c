@@ -211,7 +211,8 @@ enum {
     GPROJT_PART = 256,    /* weights of faces, 0 among them */
     GPROJT_ONE_ROW = 512, /* other weights: 0 for the row of an edge in one face, for two in another, 5 in a third */
     GPROJT_COMMON = 1024, /* variables of its own: edges of one length, vertices on one plane */
-    GPROJT_TWICE = 2048   /* the volume a second time */
+    GPROJT_TWICE = 2048,  /* the volume a second time */
+    GPROJT_AREAS = 4096   /* of one size, a variable in rows of the faces: eps^2 is not larger there */
 };
 
 static void gprojt_weigh_faces(gproj_form *form, int32_t planarity) {
@@ -242,6 +243,7 @@ static void gprojt_build(gproj_form *form, const gproj_mesh *mesh, double weight
     if (what & GPROJT_COMMON) gproj_add_equal_lengths(form, 5, edge, 1.2);
     if (what & GPROJT_COMMON) gproj_add_coplanar(form, 6, edge, 1);
     if (what & GPROJT_TWICE) gproj_add_volume(form, 1.1 * gproj_volume(mesh), 1);
+    if (what & GPROJT_AREAS) gproj_add_equal_areas(form, 0.7);
     if (what & GPROJT_PART) gprojt_weigh_faces(form, planarity);
     if (!(what & GPROJT_ONE_ROW)) return;
     gprojt_weigh_row(form, planarity, 4, 2, 0);
@@ -279,6 +281,7 @@ static const gprojt_case gprojt_cases[] = {
     {GPROJT_CLOSED, 2, 0.3, GPROJT_CLOSE | GPROJT_GUARDED | GPROJT_LENGTHS | GPROJT_PART},
     {GPROJT_QUADS, 5, 1, GPROJT_COMMON | GPROJT_FIXED},
     {GPROJT_HEXAGONS, 4, 0.3, GPROJT_COMMON | GPROJT_VOLUME | GPROJT_TWICE},
+    {GPROJT_HEXAGONS, 4, 1, GPROJT_AREAS | GPROJT_CLOSE},
     {GPROJT_QUADS, 4, 1, GPROJT_VOLUME | GPROJT_TWICE | GPROJT_FIXED | GPROJT_CLOSE},
 };
 enum {
