@@ -582,8 +582,8 @@ GPROJ_API double *gproj_system_values(gproj_system *system);
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
-/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where the
-   steps of all others are found by multipliers (see gproj_solve). */
+/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where
+   the steps of all others are found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
 /* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
@@ -1215,9 +1215,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
    written.
 
-   Where only constraints act, such as planarity, and wishes for single vertices, such as closeness, steps are found by the
-   multipliers of the constraints, which are several times fewer than the variables. Fairness, equilibrium, circular and
-   conical faces and options->nearest need the matrix of all variables. The same constraints are met, on paths that differ a
+   Where only constraints act, such as planarity, and wishes for single vertices, such as closeness, steps are found by
+   the multipliers of the constraints, which are several times fewer than the variables. Fairness, equilibrium, circular
+   and conical faces, options->nearest and drags need the matrix of all variables; the first of these after a solve by
+   multipliers, and the first such solve after it, analyse anew. The same constraints are met, on paths that differ a
    little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
@@ -3090,7 +3091,6 @@ GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
    columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
    `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
    number. */
-
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
@@ -5567,9 +5567,9 @@ GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
     return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
 }
 
-/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes some three
-   times as long and spares a fifth of the flops: it is tried where that pays within about four factorisations, which
-   minimum degree tells, and alone where the forecast says so and what comes out is as on meshes. */
+/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes
+   longer and spares flops: it is tried where that pays within about four factorisations, which minimum degree tells, and
+   alone where the forecast says so and what comes out is as on meshes. */
 GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, gproji_condensation *condensed) {
     gproji_symbolic *out = an->out;
     gproji_heap *heap = an->keep->heap;
@@ -7354,7 +7354,7 @@ typedef struct gproji_schur {
     double *share;    /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
     double *metric;   /* nodes: 1 and the sum of these */
     uint8_t *turns;   /* nodes: is it in a row with auxiliary variables? */
-    double *triangle; /* elements x triangle_size: R */
+    double *triangle; /* elements x triangle_size: R, with the inverses of its diagonal */
     double *work;     /* chunks x most */
     int32_t chunks, wide, triangle_size;
     int64_t most; /* what one element needs of `work` */
@@ -8052,13 +8052,13 @@ typedef struct gproji_meetings {
     size_t room;       /* of `adjacent` */
 } gproji_meetings;
 
-/* Room for the graph of so many nodes; false: none, and nothing is taken. */
 GPROJI_INTERNAL void gproji_give_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
     gproji_give(heap, graph->start, nodes + 1, sizeof *graph->start);
     gproji_give(heap, graph->size, nodes, sizeof *graph->size);
     gproji_give(heap, graph->adjacent, graph->room, sizeof *graph->adjacent);
 }
 
+/* Room for the graph of so many nodes; false: none, and nothing is taken. */
 GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
     memset(graph, 0, sizeof *graph);
     graph->start = (int64_t *)gproji_take(heap, nodes + 1, sizeof *graph->start);
@@ -8792,17 +8792,23 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
     return true;
 }
 
+/* How many multipliers may be worth while. */
+GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
+    int32_t v, kept = 0;
+    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
+    return gproji_schur_most * kept;
+}
+
 /* The element or node of all rows, group by group. Groups that are without weight have none. False: nothing is gained. */
 GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, int32_t *element_of, int32_t *of_face, int32_t *belongs) {
-    int32_t i, r, v, kept = 0;
+    const double limit = gproji_schur_limit(s);
+    int32_t i, r, v;
     for (v = 0; v < s->node_count; ++v) element_of[v] = of_face[v] = -1;
-    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
     s->schur.elements = 0;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r)
-            if (!gproji_schur_belongs(s, g, &g->row[r], element_of, of_face, belongs++) ||
-                s->schur.elements > gproji_schur_most * kept)
+            if (!gproji_schur_belongs(s, g, &g->row[r], element_of, of_face, belongs++) || s->schur.elements > limit)
                 return false;
     }
     return s->schur.elements > 0;
@@ -8877,16 +8883,16 @@ GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t elemen
    to pay. met: work, of each node. */
 GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
-    int32_t e, v, most = 0, kept = 0;
+    const double limit = gproji_schur_limit(s);
+    int32_t e, most = 0;
     int64_t l;
-    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     d->first[0] = 0;
     for (e = 0; e < d->elements; ++e) {
         int32_t left;
         d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e);
         left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
-        if (left < 1 || left > gproji_schur_most * kept - d->first[e]) return false;
+        if (left < 1 || left > limit - d->first[e]) return false;
         d->first[e + 1] = d->first[e] + left;
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
             met[d->link_node[l]] += left;
@@ -9076,7 +9082,7 @@ GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int
     }
 }
 
-/* What needs the analysis. */
+/* The arrays whose sizes depend on the analysis. */
 GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproji_pool *pool = &d->pool;
@@ -9234,7 +9240,7 @@ GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_ro
 }
 
 /* The columns of an element that its multipliers are orthogonal to, m numbers each: first, where the rows add up to
-   nothing, how they do (without weight on one of them, that one); then w N. Returns the largest weight. */
+   nothing, how they do (without weight on one of them, that one); then w N. Returns the largest weight of a row of N. */
 GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e, int32_t m, double *column) {
     const gproji_schur *d = &s->schur;
     const gproji_row_name *name = d->row + d->row_start[e];
@@ -9438,9 +9444,8 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
         const double *gradient = g->local_gradient + row->local;
         const int32_t *at = g->local_at + row->local;
         int32_t count = (int32_t)(row[1].local - row->local);
-        double w2 = gproji_weight2(g, row);
-        if (!(g->weight > 0) || !row->active) continue;
-        for (i = 0; i < count; ++i) {
+        double w = gproji_acting_weight(g, row), w2 = w * w;
+        for (i = 0; i < count && w > 0; ++i) {
             b[at[i]] -= w2 * row->phi * gradient[i];
             for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
         }
@@ -9886,7 +9891,7 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
     gproji_see_rows(loop);
 }
 
-/* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
+/* The step by multipliers. */
 GPROJI_INTERNAL bool gproji_find_schur_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     bool factored;
@@ -9900,6 +9905,7 @@ GPROJI_INTERNAL bool gproji_find_schur_step(gproji_loop *loop, double epsilon) {
     return factored;
 }
 
+/* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t wide;
