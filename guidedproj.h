@@ -1419,9 +1419,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it is.
-   What follows from a restored state is what would have followed when it was saved, to the bit on the same processor and
-   build (and otherwise but for the last digits). It does not have the mesh's faces and what has been added to the form:
-   it is restored in the same form, or in one that the same calls have made from the same mesh.
+   What follows from a restored state is what would have followed when it was saved: to the bit on the same processor and
+   build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last
+   digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same form, or in
+   one that the same calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
