@@ -121,10 +121,11 @@
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
 
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
-     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing. Every
-     allocation may fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh
-     from a mesh, a curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to
-     the curves and surfaces that were added to it, and a drag to its form.
+     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless a
+     group first gets a weight or the guard first acts during a solve: then there is one analysis more. Every allocation
+     may fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh,
+     a curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and
+     surfaces that were added to it, and a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
@@ -7273,6 +7274,7 @@ typedef struct gproji_row {
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
+    bool waits;  /* a guard's that has not come near to acting: it has no multiplier */
 } gproji_row;
 
 /* What a row's weight is the product of, in a group whose elements have weights. */
@@ -7300,6 +7302,7 @@ typedef struct gproji_group {
                         they join, as n'(v_i - v_j) does around a face */
     bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;    /* of the guard: a step may violate its rows by so much */
+    int32_t wakings; /* of the guard: how often rows ceased to wait */
 
     int32_t row_count;
     gproji_row *row;
@@ -7775,6 +7778,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     row->constant = constant;
     row->weight = 1;
     row->element = element;
+    row->waits = g->guard;
     if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
     if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memset(row + 1, 0, sizeof row[1]);
@@ -8732,7 +8736,8 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
 
    The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
    takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
-   (gproji_wake_groups). Solves for the nearest point and drags always take the matrix of all variables.
+   (gproji_wake_groups). Solves for the nearest point and drags always take the matrix of all variables. Rows of the guard
+   have no multipliers until one acts, and then those that are near to it have: few ever are.
 
    Invariant: with schur.on the factorisation's variables are the multipliers, and gproji_group.local_at says where a local
    stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
@@ -8770,7 +8775,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
     bool many = false;
     int64_t l;
     *belongs = GPROJI_NOWHERE;
-    if (g->idle) return true;
+    if (g->idle || row->waits) return true;
     for (l = row->local; l < row[1].local; ++l) {
         int32_t node = s->node[g->local_variable[l]];
         int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
@@ -9722,6 +9727,7 @@ enum {
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
     GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
     GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
+    GPROJI_WAKINGS = 4,      /* from then on no row of the guard waits */
     GPROJI_LINE_SAMPLES = 40
 };
 
@@ -9938,8 +9944,12 @@ GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
     return largest;
 }
 
+GPROJI_INTERNAL void gproji_save_x(gproj_system *s) {
+    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+}
+
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
-    if (s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
+    if (s->compiled && s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
 }
 
 /* The merit along a step: c[0] + c[1] t + ... + c[4] t^4 + sum w^2 min(0, phi + t h + t^2 q)^2 over the hinges. */
@@ -10091,15 +10101,56 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
     return changed;
 }
 
+/* When a row of the guard acts that waits, it waits no more, and neither do those that are near to it, at x or where the
+   step began; each time these are more, so that steps are not analysed again and again. Returns whether there was one. */
+GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
+    bool woken = false;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        double near;
+        if (!g->guard || !(g->weight > 0)) continue;
+        for (r = 0; r < g->row_count && !(g->row[r].active && g->row[r].waits); ++r) continue;
+        if (r == g->row_count) continue;
+        near = ++g->wakings < GPROJI_WAKINGS ? g->wakings * g->slack : HUGE_VAL;
+        for (r = 0; r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            bool is_near = gproji_fmin(row->phi, gproji_row_value(g, r, s->x)) < near;
+            if (row->active || (row->weight > 0 && is_near)) row->waits = false;
+        }
+        woken = true;
+    }
+    return woken;
+}
+
+/* During a solve by multipliers a group may get its first weight, or the guard act: there is no place for them yet. x and
+   s->saved are where the step begins. Returns whether rows were compiled anew; there may be an error. */
+GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool guard) {
+    gproj_system *s = loop->system;
+    if (!s->schur.on || !(gproji_wake_groups(s) || guard || s->schur.stale)) return false;
+    gproji_system_forget(s);
+    if (gproji_compile(s, false) != GPROJ_OK) return true;
+    gproji_lap(loop, GPROJ_PHASE_ANALYSE);
+    gproji_see_rows(loop);
+    gproji_save_x(s);
+    return true;
+}
+
 /* Finds the full step with this eps, again where it meets bounds, and goes there. False: there is none. */
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
+    gproj_system *s = loop->system;
     int32_t round = 0;
-    do {
+    bool guard;
+    while (s->error.code == GPROJ_OK) {
         if (!gproji_find_step(loop, epsilon)) return false;
-        loop->iteration.step = gproji_take_step(loop->system, 1);
+        loop->iteration.step = gproji_take_step(s, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
-    } while (round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round++));
-    return true;
+        if (round == GPROJI_BOUND_ROUNDS || !gproji_switch_bounds(loop, round++)) return true;
+        guard = s->schur.on && gproji_wake_guard(s);
+        gproji_step_back(s);
+        if (gproji_place_woken(loop, guard)) round = 0;
+    }
+    return false;
 }
 
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
@@ -10129,9 +10180,9 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     int32_t attempt;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
-    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    gproji_save_x(s);
     loop->iteration.attempts = 0;
-    for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
+    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, epsilon *= 10) {
         double before = loop->standing.residual;
         bool stepped = gproji_try_step(loop, epsilon);
         if (stepped) gproji_linearise(loop);
@@ -10184,21 +10235,12 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
-/* During a solve by multipliers a group may get its first weight: it has no place among them yet. False: an error. */
-GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    if (!s->schur.on || !(gproji_wake_groups(s) || s->schur.stale)) return true;
-    gproji_system_forget(s);
-    if (gproji_compile(s, false) != GPROJ_OK) return false;
-    gproji_see_rows(loop);
-    return true;
-}
-
 /* What comes before iteration n: its weights, and rows that they or the caller have changed. */
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-    if (!gproji_place_woken(loop)) return;
+    gproji_place_woken(loop, s->schur.on && gproji_wake_guard(s));
+    if (s->error.code != GPROJ_OK) return;
     if (gproji_set_weights(s, n)) gproji_linearise(loop);
     s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
     loop->standing = gproji_take_standing(s);
@@ -10237,7 +10279,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
-        if (!gproji_iterate(loop)) return gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
+        if (!gproji_iterate(loop))
+            return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
@@ -10622,7 +10665,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     double shift = curved ? loop->shift : 0;
-    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    gproji_save_x(s);
     for (loop->iteration.attempts = 0; loop->iteration.attempts < GPROJI_NEAREST_ATTEMPTS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
@@ -21384,16 +21427,23 @@ typedef enum gproji_passing {
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* What decides how steps are found: whether the group has ever counted (gproji_wake_groups), and which rows close. */
+/* What decides how steps are found: whether the group has ever counted (gproji_wake_groups), which rows close, and which
+   of the guard wait. */
 GPROJI_INTERNAL void gproji_pass_choice(gproji_stream *stream, gproj_form *form, gproji_group *g) {
-    int32_t closing = g->closing;
-    bool idle = g->idle;
+    int32_t closing = g->closing, r;
+    bool idle = g->idle, same;
     gproji_pass_bool(stream, &idle);
     gproji_pass_integer(stream, &closing, 0, g->row_count);
-    if (stream->way != GPROJI_READ || (idle == g->idle && closing == g->closing)) return;
-    g->idle = idle;
-    g->closing = closing;
-    form->system->schur.stale = true; /* to be decided anew */
+    same = idle == g->idle && closing == g->closing;
+    if (stream->way == GPROJI_READ) g->idle = idle, g->closing = closing;
+    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
+    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
+        bool waits = g->row[r].waits;
+        gproji_pass_bool(stream, &waits);
+        same = same && waits == g->row[r].waits;
+        if (stream->way == GPROJI_READ) g->row[r].waits = waits;
+    }
+    if (stream->way == GPROJI_READ && !same) form->system->schur.stale = true; /* to be decided anew */
 }
 
 /* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
@@ -21647,7 +21697,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'B'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'C'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
