@@ -5725,6 +5725,8 @@ struct gproj_cholesky {
     int32_t batch; /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
     int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
+    const double *given; /* right-hand sides, in the order of A, that the fronts have still to take */
+    double *result;      /* where the fronts put solutions, in the order of A */
 
     double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
@@ -7285,6 +7287,13 @@ typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
+/* Where some rows of a group stand, at the last evaluation. */
+typedef struct gproji_tally {
+    double sum;     /* of w^2 phi^2, with the group's `tallied` and what counts of phi */
+    double largest; /* |phi| */
+    int32_t row;    /* the first that has it; -1: there are no rows */
+} gproji_tally;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7310,6 +7319,9 @@ typedef struct gproji_group {
     int32_t *local_variable; /* of every row, one row after the other */
     int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
     double *local_gradient;  /* at the last evaluation */
+    gproji_tally *tally;     /* of each task of the evaluation */
+    double tallied;          /* the weight at the last evaluation, or 1 */
+    int32_t first_task;      /* of the evaluation that is under way */
     size_t local_count;
     gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
@@ -7424,6 +7436,9 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
+/* Into how many tasks the evaluation of a group is cut. */
+GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
+
 /* Lets a group's terms name variables again. */
 GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
     int32_t r;
@@ -7443,10 +7458,12 @@ GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
     gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
     gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
+    gproji_give(heap, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
     gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
+    g->tally = NULL;
     g->multiplier = NULL;
 }
 
@@ -8279,7 +8296,8 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
-        if (!g->local_gradient) return false;
+        g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
+        if (!g->local_gradient || !g->tally) return false;
     }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
@@ -8348,13 +8366,6 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
 
 /* -- evaluation -- */
 
-typedef struct gproji_evaluation {
-    gproji_group *group;
-    const double *x;
-    double rounding; /* rows whose rounding may be larger than this are added up with more digits */
-    int32_t chunks;
-} gproji_evaluation;
-
 /* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
@@ -8401,41 +8412,61 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
     return phi;
 }
 
-/* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
-   violated, or where they did in the last step (gproji_switch_bounds lets them go again). */
-GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
-    const gproji_evaluation *e = (const gproji_evaluation *)data;
-    gproji_group *g = e->group;
-    int32_t r = gproji_chunk_start(g->row_count, e->chunks, chunk),
-            end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
-    for (; r < end; ++r) {
-        gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local, phi, size;
-        memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
-        row->phi = 0;
-        if (!(row->weight > 0)) row->active = false;
-        if (!(row->weight > 0)) continue;
-        phi = gproji_linearise_row(g, row, e->x, gradient, &size);
-        if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
-        row->phi = phi;
-        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
-    }
+/* phi and grad phi of a row; one without weight gets zeros. Rows of bounds act where they are violated, or where they did
+   in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger than s->rounding, phi is added
+   up with more digits. */
+GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
+    double *gradient = g->local_gradient + row->local, phi, size;
+    memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    row->phi = 0;
+    if (!(row->weight > 0)) row->active = false;
+    if (!(row->weight > 0)) return;
+    phi = gproji_linearise_row(g, row, s->x, gradient, &size);
+    if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
+    row->phi = phi;
+    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
 }
 
-/* The values and gradients of all rows at the current x. */
+/* Some rows of a group, and where they stand. */
+GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
+    gproj_system *s = (gproj_system *)data;
+    gproji_group *g = s->group;
+    gproji_tally tally = {0, 0, -1};
+    int32_t task, r, end;
+    while (index < g->first_task || index - g->first_task >= gproji_group_tasks(g)) ++g;
+    task = index - g->first_task;
+    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
+    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    for (; r < end; ++r) {
+        gproji_row *row = &g->row[r];
+        double phi;
+        gproji_evaluate_row(s, g, row);
+        phi = fabs(gproji_counted(g, row->phi));
+        if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
+        tally.sum += g->tallied * g->tallied * row->weight * row->weight * phi * phi;
+        if (tally.row >= 0 && phi <= tally.largest) continue;
+        tally.largest = phi;
+        tally.row = r;
+    }
+    g->tally[task] = tally;
+}
+
+/* The values and gradients of all rows at the current x. Global rows are long, and come first. */
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
-    int32_t i;
+    int32_t i, global, tasks = 0;
     s->changed = false;
     s->evaluated = true;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_evaluation e;
-        if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
-        e.group = &s->group[i];
-        e.x = s->x;
-        e.rounding = s->rounding;
-        e.chunks = e.group->row_count / GPROJI_ROWS_PER_TASK + 1;
-        gproji_for(&s->host.parallel, e.chunks, gproji_evaluate_chunk, &e);
-    }
+    for (global = 1; global >= 0; --global)
+        for (i = 0; i < s->group_count; ++i) {
+            gproji_group *g = &s->group[i];
+            if (g->global != (global == 1)) continue;
+            g->first_task = INT32_MAX;
+            if (g->guard && !(g->weight > 0)) continue;
+            g->tallied = g->weight > 0 ? g->weight : 1;
+            g->first_task = tasks;
+            tasks += gproji_group_tasks(g);
+        }
+    gproji_for(&s->host.parallel, tasks, gproji_evaluate_task, s);
 }
 
 /* Lets the groups with a weight re-linearise their rows at the current x. */
@@ -9721,7 +9752,9 @@ enum {
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
     GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
     GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
-    GPROJI_LINE_SAMPLES = 40
+    GPROJI_LINE_SAMPLES = 40,
+    GPROJI_PASS_TASKS = 64,          /* at most */
+    GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
 };
 
 /* Where the rows stand: sums over all groups with their present weights. */
@@ -9828,24 +9861,27 @@ GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
 /* Of a group that counts: must it hold? */
 GPROJI_INTERNAL bool gproji_must_hold(const gproji_group *g) { return gproji_group_counts(g) && g->kind != GPROJ_WISH; }
 
+/* By the last evaluation and the present weights. */
 GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
     gproji_standing standing;
-    int32_t i, r;
+    int32_t i, k;
     memset(&standing, 0, sizeof standing);
     standing.group = standing.row = -1;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        double sum = 0;
+        double sum = 0, factor;
         if (!gproji_group_counts(g)) continue;
-        for (r = 0; r < g->row_count; ++r) {
-            double phi = fabs(gproji_counted(g, g->row[r].phi));
-            if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
-            sum += gproji_weight2(g, &g->row[r]) * phi * phi;
-            if (g->kind == GPROJ_WISH || (standing.group >= 0 && phi <= standing.residual)) continue;
-            standing.residual = phi;
+        factor = g->weight / g->tallied;
+        for (k = 0; k < gproji_group_tasks(g); ++k) {
+            const gproji_tally *tally = &g->tally[k];
+            sum += tally->sum;
+            if (g->kind == GPROJ_WISH || tally->row < 0) continue;
+            if (standing.group >= 0 && tally->largest <= standing.residual) continue;
+            standing.residual = tally->largest;
             standing.group = i;
-            standing.row = r;
+            standing.row = tally->row;
         }
+        sum *= factor * factor;
         standing.merit += sum;
         if (g->kind == GPROJ_WISH) standing.energy += sum;
     }
@@ -9862,14 +9898,96 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     return 16 * DBL_EPSILON * sum;
 }
 
+/* A pass over all variables, by several threads. */
+typedef struct gproji_pass {
+    gproj_system *system;
+    double t;
+    int32_t tasks;
+    double largest[GPROJI_PASS_TASKS]; /* what each task has found; infinite where it met what is no number */
+} gproji_pass;
+
+/* Makes the pass; returns the largest number found. */
+GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task task) {
+    gproji_pass pass;
+    double largest = 0;
+    int32_t k;
+    pass.system = s, pass.t = t;
+    pass.tasks = gproji_max(1, gproji_min(GPROJI_PASS_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
+    gproji_for(&s->host.parallel, pass.tasks, task, &pass);
+    for (k = 0; k < pass.tasks; ++k) largest = gproji_fmax(largest, pass.largest[k]);
+    return largest;
+}
+
+/* The largest of some absolute values, in four parts, so that none has to wait for the one before. */
+typedef struct gproji_maximum {
+    double part[4];
+    int32_t odd[4]; /* numbers that are none, or infinite */
+} gproji_maximum;
+
+GPROJI_INLINE void gproji_maximum_see(gproji_maximum *m, int32_t k, double d) {
+    m->part[k] = d > m->part[k] ? d : m->part[k];
+    m->odd[k] += !(d <= DBL_MAX);
+}
+
+GPROJI_INTERNAL double gproji_maximum_value(const gproji_maximum *m) {
+    if (m->odd[0] + m->odd[1] + m->odd[2] + m->odd[3] > 0) return HUGE_VAL;
+    return gproji_fmax(gproji_fmax(m->part[0], m->part[1]), gproji_fmax(m->part[2], m->part[3]));
+}
+
+/* max |x| */
+GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    const gproj_system *s = pass->system;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    gproji_maximum m;
+    memset(&m, 0, sizeof m);
+    for (; v + 4 <= end; v += 4)
+        for (k = 0; k < 4; ++k) gproji_maximum_see(&m, k, fabs(s->x[v + k]));
+    for (; v < end; ++v) gproji_maximum_see(&m, 0, fabs(s->x[v]));
+    pass->largest[task] = gproji_maximum_value(&m);
+}
+
+/* saved = x */
+GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    gproj_system *s = pass->system;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    if (v < end) memcpy(s->saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
+    pass->largest[task] = 0;
+}
+
+/* x = saved + t dx; the largest |t dx| */
+GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    gproj_system *s = pass->system;
+    const double *step = s->step, *saved = s->saved;
+    double *x = s->x, t = pass->t;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    gproji_maximum m;
+    memset(&m, 0, sizeof m);
+    for (; v + 4 <= end; v += 4)
+        for (k = 0; k < 4; ++k) {
+            double d = t * step[v + k];
+            gproji_maximum_see(&m, k, fabs(d));
+            x[v + k] = saved[v + k] + d;
+        }
+    for (; v < end; ++v) {
+        gproji_maximum_see(&m, 0, fabs(t * step[v]));
+        x[v] = saved[v] + t * step[v];
+    }
+    pass->largest[task] = gproji_maximum_value(&m);
+}
+
 /* The caller's tolerance, or what rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
-    const gproj_system *s = loop->system;
-    double largest = 0, tolerance;
-    int32_t v, i, r;
+    gproj_system *s = loop->system;
+    double tolerance;
+    int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
-    for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * gproji_pass_over(s, 0, gproji_extent_task));
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
             tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], r, s->x));
@@ -9925,17 +10043,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 }
 
 /* x = saved + t dx; returns the largest |t dx|, infinite where it is not a number. */
-GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
-    double largest = 0;
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) {
-        double d = fabs(t * s->step[v]);
-        if (!(d <= DBL_MAX)) return HUGE_VAL;
-        if (d > largest) largest = d;
-        s->x[v] = s->saved[v] + t * s->step[v];
-    }
-    return largest;
-}
+GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
     if (s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
@@ -10128,7 +10236,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     int32_t attempt;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
-    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+    gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS; ++attempt, epsilon *= 10) {
         double before = loop->standing.residual;
