@@ -5722,11 +5722,11 @@ struct gproj_cholesky {
 
     gproji_load load; /* during a factorisation */
     void *load_user;
-    int32_t batch; /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
-    int32_t room;  /* for how many `solution` and `side` have room */
-    int32_t sides; /* those at work */
-    const double *given; /* right-hand sides, in the order of A, that the fronts have still to take */
-    double *result;      /* where the fronts put solutions, in the order of A */
+    int32_t batch;       /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
+    int32_t room;        /* for how many `solution` and `side` have room */
+    int32_t sides;       /* those at work */
+    const double *given; /* the right-hand sides; each front takes its part of them, */
+    double *found;       /* and puts its part of the solutions here: both in the order of A */
 
     double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
@@ -6271,19 +6271,22 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
     }
 }
 
-/* Sets the storage rows of z to 0, and its pivot rows to the front's part of x. */
-GPROJI_INTERNAL void gproji_start_rows(const gproji_front *front, const double *x, double *z) {
+/* Sets the storage rows of z to 0; returns where its pivot rows begin. */
+GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
     int32_t shift = gproji_panel_shift(front->width);
     memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
-    memcpy(z + shift, x + front->first, (size_t)front->width * sizeof(double));
+    return z + shift;
 }
 
 /* One front of L y = b; z: work. */
 GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
-    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns, *pivots;
+    size_t column = (size_t)side * (size_t)c->symbolic.columns;
+    double *x = c->solution + column, *pivots = gproji_start_rows(front, z);
+    const double *b = c->given + column;
+    const int32_t *permutation = c->permutation + front->first;
     gproji_panel panel = gproji_front_panel(c, front);
-    pivots = z + gproji_panel_shift(front->width);
-    gproji_start_rows(front, x, z);
+    int32_t k;
+    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]];
     gproji_add_sides(c, front, side, z);
     gproji_panel_forward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
@@ -6294,16 +6297,17 @@ GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_
 GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
                                            double *z) {
     const gproji_symbolic *sy = &c->symbolic;
-    double *x = c->solution + (size_t)side * (size_t)sy->columns, *pivots, *to;
-    const int32_t *node = sy->row_node + front->rows;
+    size_t column = (size_t)side * (size_t)sy->columns;
+    double *x = c->solution + column, *found = c->found + column, *pivots = gproji_start_rows(front, z), *to;
+    const int32_t *node = sy->row_node + front->rows, *permutation = c->permutation + front->first;
     int32_t i, k;
     gproji_panel panel = gproji_front_panel(c, front);
-    pivots = z + gproji_panel_shift(front->width);
-    gproji_start_rows(front, x, z);
+    memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
     for (k = 0, to = pivots + front->width; k < front->row_nodes; ++k)
         for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
     gproji_panel_backward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
+    for (k = 0; k < front->width; ++k) found[permutation[k]] = pivots[k];
 }
 
 /* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
@@ -6330,29 +6334,18 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
     }
 }
 
-/* Takes up to c->batch right-hand sides in the order of L. */
-GPROJI_INTERNAL void gproji_cholesky_take_sides(gproj_cholesky *c, int32_t count, const double *b) {
-    size_t n = (size_t)c->symbolic.columns, i;
-    int32_t r;
-    c->sides = count;
-    for (r = 0; r < count; ++r)
-        for (i = 0; i < n; ++i) c->solution[(size_t)r * n + i] = b[(size_t)r * n + (size_t)c->permutation[i]];
-}
-
 /* From L y = b, solved already, to x. */
 GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
     const gproji_symbolic *sy = &c->symbolic;
-    size_t n = (size_t)sy->columns, i;
-    int32_t r;
+    c->found = x;
     gproji_backward_group(c, sy->tasks);
     gproji_for(&c->parallel, sy->tasks, gproji_backward_group, c);
-    for (r = 0; r < c->sides; ++r)
-        for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
 /* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
 GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
-    gproji_cholesky_take_sides(c, count, b);
+    c->sides = count;
+    c->given = b;
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
     gproji_forward_group(c, c->symbolic.tasks);
 }
@@ -6410,7 +6403,8 @@ GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky 
     c->factored = false;
     c->load = load;
     c->load_user = user;
-    gproji_cholesky_take_sides(c, sides, b);
+    c->sides = sides;
+    c->given = b;
     gproji_for(&c->parallel, sy->tasks, gproji_factor_group, c);
     for (g = 0; g < sy->tasks; ++g)
         if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
