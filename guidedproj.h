@@ -8767,9 +8767,11 @@ static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplie
 static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
 static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
 enum {
-    GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
-    GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
-    GPROJI_ELEMENTS_PER_TASK = 512 /* at least, unless there are fewer */
+    GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
+    GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
+    GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
+    GPROJI_LANES = 8,               /* elements that are worked on together */
+    GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
 };
 
 /* -- compilation -- */
@@ -9087,6 +9089,28 @@ GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
     }
 }
 
+/* Consecutive elements that are alike: `left` multipliers, m rows and `count` columns, the first `closes` of which are no
+   auxiliary variables. What is done to all of them is done in lanes, number k of lane l being at [k GPROJI_LANES + l]: one
+   element alone is a chain of square roots and quotients, each of which waits for the one before. Lanes without an
+   element have zeros. */
+typedef struct gproji_alike {
+    int32_t first, lanes, m, count, closes, left;
+    double *column;   /* m x count: what the multipliers are orthogonal to; then reflections */
+    double *scale;    /* count */
+    double *diagonal; /* count */
+    double *triangle; /* (count - closes)^2 */
+    double *q;        /* m x GPROJI_SCHUR_TOGETHER */
+    double *c;        /* of one element: GPROJI_BLOCK_MAX a node */
+    double heaviest[GPROJI_LANES];
+    double share[GPROJI_LANES];
+} gproji_alike;
+
+/* The doubles that such a batch needs. */
+GPROJI_INTERNAL int64_t gproji_alike_size(int64_t m, int64_t count, int64_t nodes) {
+    int64_t lanes = m * (count + GPROJI_SCHUR_TOGETHER) + 2 * count + count * count;
+    return lanes * GPROJI_LANES + GPROJI_BLOCK_MAX * nodes * GPROJI_SCHUR_TOGETHER;
+}
+
 /* How much the elements need: `most` and `triangle_size`, and numbers of entries and of values of W. */
 GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int64_t *values) {
     gproji_schur *d = &s->schur;
@@ -9097,7 +9121,7 @@ GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int
     for (e = 0; e < d->elements; ++e) {
         int64_t rows = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
         int64_t columns = gproji_schur_columns(s, e), links = d->link_start[e + 1] - d->link_start[e];
-        int64_t most = rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * links;
+        int64_t most = gproji_alike_size(rows, columns, links);
         int32_t size = (int32_t)columns - d->closes[e];
         d->most = d->most > most ? d->most : most;
         d->triangle_size = gproji_max(d->triangle_size, size * size);
@@ -9264,14 +9288,35 @@ GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_ro
     return g->weight > 0 && row->active ? g->weight * row->weight : 0;
 }
 
-/* The columns of an element that its multipliers are orthogonal to, m numbers each: first, where the rows add up to
-   nothing, how they do (without weight on one of them, that one); then w N. Returns the largest weight of a row of N. */
-GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e, int32_t m, double *column) {
+/* As many elements as there are lanes, from e on, and before `end`. */
+GPROJI_INTERNAL gproji_alike gproji_gather_alike(const gproj_system *s, int32_t e, int32_t end, double *work) {
     const gproji_schur *d = &s->schur;
-    const gproji_row_name *name = d->row + d->row_start[e];
-    double *normal = column + d->closes[e] * m, heaviest = 0;
-    int32_t i, idle = -1;
-    memset(column, 0, (size_t)m * (size_t)gproji_schur_columns(s, e) * sizeof *column);
+    gproji_alike a;
+    memset(&a, 0, sizeof a);
+    a.first = e, a.lanes = 1;
+    a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
+    a.count = gproji_schur_columns(s, e), a.closes = d->closes[e], a.left = d->first[e + 1] - d->first[e];
+    for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
+              gproji_schur_columns(s, e) == a.count && d->closes[e] == a.closes;
+         ++e)
+        a.lanes++;
+    a.column = work;
+    a.scale = a.column + a.m * a.count * GPROJI_LANES;
+    a.diagonal = a.scale + a.count * GPROJI_LANES;
+    a.triangle = a.diagonal + a.count * GPROJI_LANES;
+    a.q = a.triangle + a.count * a.count * GPROJI_LANES;
+    a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
+    return a;
+}
+
+/* The columns of the element in a lane that its multipliers are orthogonal to: first, where the rows add up to nothing, how
+   they do (without weight on one of them, that one); then w N. They are zeros on entry. Returns the largest weight of a
+   row of N. */
+GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gproji_alike *a, int32_t lane) {
+    const gproji_schur *d = &s->schur;
+    const gproji_row_name *name = d->row + d->row_start[a->first + lane];
+    int32_t m = a->m, i, idle = -1;
+    double *column = a->column + lane, *normal = column + a->closes * m * GPROJI_LANES, heaviest = 0;
     for (i = 0; i < m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
@@ -9281,50 +9326,69 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e,
         for (l = row->local; l < row[1].local; ++l) {
             int32_t at = g->local_at[l];
             if (at < GPROJI_BLOCK_MAX)
-                normal[at * m + i] = w * g->local_gradient[l], own = true;
+                normal[(at * m + i) * GPROJI_LANES] = w * g->local_gradient[l], own = true;
             else
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
-        if (!d->closes[e] || !joins || name[i].row >= g->closing) continue;
+        if (!a->closes || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
-        column[i] = w > 0 ? 1 / w : 0;
+        column[i * GPROJI_LANES] = w > 0 ? 1 / w : 0;
     }
-    for (i = 0; idle >= 0 && i < m; ++i) column[i] = i == idle;
+    for (i = 0; idle >= 0 && i < m; ++i) column[i * GPROJI_LANES] = i == idle;
     return heaviest;
 }
 
+/* In lanes: part = sum of v[i] x[i] for i >= k, times `scale`. */
+GPROJI_INLINED void gproji_lanes_dot(int32_t m, int32_t k, const double *v, const double *x, const double *scale,
+                                     double *part) {
+    int32_t i, l;
+    for (l = 0; l < GPROJI_LANES; ++l) part[l] = 0;
+    for (i = k; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) part[l] += v[i * GPROJI_LANES + l] * x[i * GPROJI_LANES + l];
+    for (l = 0; l < GPROJI_LANES; ++l) part[l] *= scale[l];
+}
+
+/* In lanes: x -= part v for i >= k. */
+GPROJI_INLINED void gproji_lanes_take_off(int32_t m, int32_t k, const double *v, const double *part, double *x) {
+    int32_t i, l;
+    for (i = k; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) x[i * GPROJI_LANES + l] -= part[l] * v[i * GPROJI_LANES + l];
+}
+
 /* Householder's reflections that make `count` columns of m numbers triangular: the k-th is I - scale[k] v v', where v has
-   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. */
+   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. In lanes. */
 GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
-    int32_t k, j, i;
-    for (k = 0; k < count; ++k) {
-        double *v = column + k * m, square = 0, length;
-        for (i = k; i < m; ++i) square += v[i] * v[i];
-        length = v[k] < 0 ? -sqrt(square) : sqrt(square);
-        scale[k] = square > 0 ? 1 / (square + v[k] * length) : 0;
-        diagonal[k] = -length;
-        v[k] += length;
+    double part[GPROJI_LANES], one[GPROJI_LANES];
+    int32_t k, j, l;
+    for (l = 0; l < GPROJI_LANES; ++l) one[l] = 1;
+    for (k = 0; k < count; ++k, scale += GPROJI_LANES, diagonal += GPROJI_LANES) {
+        double *v = column + k * m * GPROJI_LANES, *head = v + k * GPROJI_LANES;
+        gproji_lanes_dot(m, k, v, v, one, part);
+        for (l = 0; l < GPROJI_LANES; ++l) diagonal[l] = sqrt(part[l]);
+        for (l = 0; l < GPROJI_LANES; ++l) {
+            double length = head[l] < 0 ? -diagonal[l] : diagonal[l], product = part[l] + head[l] * length;
+            scale[l] = part[l] > 0 ? 1 / product : 0;
+            diagonal[l] = -length;
+            head[l] += length;
+        }
         for (j = k + 1; j < count; ++j) {
-            double *other = column + j * m, part = 0;
-            for (i = k; i < m; ++i) part += v[i] * other[i];
-            part *= scale[k];
-            for (i = k; i < m; ++i) other[i] -= part * v[i];
+            gproji_lanes_dot(m, k, v, column + j * m * GPROJI_LANES, scale, part);
+            gproji_lanes_take_off(m, k, v, part, column + j * m * GPROJI_LANES);
         }
     }
 }
 
-/* q: the j-th unit vector, reflected back. */
+/* q: the j-th unit vector, reflected back. In lanes. */
 GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *column, const double *scale, int32_t j,
                                         double *q) {
-    int32_t k, i;
-    for (i = 0; i < m; ++i) q[i] = i == j;
+    double part[GPROJI_LANES];
+    int32_t k, i, l;
+    for (i = 0; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) q[i * GPROJI_LANES + l] = i == j;
     for (k = count - 1; k >= 0; --k) {
-        const double *v = column + k * m;
-        double part = 0;
-        for (i = k; i < m; ++i) part += v[i] * q[i];
-        part *= scale[k];
-        for (i = k; i < m; ++i) q[i] -= part * v[i];
+        gproji_lanes_dot(m, k, column + k * m * GPROJI_LANES, q, scale + k * GPROJI_LANES, part);
+        gproji_lanes_take_off(m, k, column + k * m * GPROJI_LANES, part, q);
     }
 }
 
@@ -9348,52 +9412,73 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
         for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
 }
 
-/* Keeps R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. Returns
-   the sum of the squares of R^-1, infinite where there are such columns. */
-GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t size, const double *column,
-                                            const double *diagonal, double *triangle) {
-    double sum = 0, unit[GPROJI_BLOCK_MAX];
-    bool dependent = false;
-    int32_t i, j, k;
+/* R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. a->share: the
+   sum of the squares of R^-1, infinite where there are such columns. In lanes. */
+GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
+    const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
+    double unit[GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
+    int32_t i, j, k, l;
     for (j = 0; j < size; ++j) {
-        double square = diagonal[j] * diagonal[j], all = square;
+        const double *own = diagonal + j * GPROJI_LANES;
+        double *corner = triangle + (j * size + j) * GPROJI_LANES;
+        for (l = 0; l < GPROJI_LANES; ++l) all[l] = own[l] * own[l];
         for (i = 0; i < j; ++i) {
-            triangle[i * size + j] = column[j * m + skipped + i];
-            all += triangle[i * size + j] * triangle[i * size + j];
+            const double *from = column + (j * m + closes + i) * GPROJI_LANES;
+            double *to = triangle + (i * size + j) * GPROJI_LANES;
+            for (l = 0; l < GPROJI_LANES; ++l) {
+                to[l] = from[l];
+                all[l] += from[l] * from[l];
+            }
         }
-        triangle[j * size + j] = square > 8 * DBL_EPSILON * all ? 1 / diagonal[j] : 0;
-        dependent = dependent || triangle[j * size + j] == 0;
+        for (l = 0; l < GPROJI_LANES; ++l) {
+            double inverse = 1 / own[l];
+            corner[l] = own[l] * own[l] > 8 * DBL_EPSILON * all[l] ? inverse : 0;
+        }
     }
-    if (dependent) return HUGE_VAL;
+    for (l = 0; l < GPROJI_LANES; ++l) a->share[l] = 0;
     for (j = 0; j < size; ++j) /* the columns of R^-1 */
         for (i = j; i >= 0; --i) {
-            double x = i == j;
-            for (k = i + 1; k <= j; ++k) x -= triangle[i * size + k] * unit[k];
-            unit[i] = x * triangle[i * size + i];
-            sum += unit[i] * unit[i];
+            double *x = unit + i * GPROJI_LANES;
+            const double *corner = triangle + (i * size + i) * GPROJI_LANES;
+            for (l = 0; l < GPROJI_LANES; ++l) x[l] = i == j;
+            for (k = i + 1; k <= j; ++k)
+                gproji_lanes_take_off(1, 0, triangle + (i * size + k) * GPROJI_LANES, unit + k * GPROJI_LANES, x);
+            for (l = 0; l < GPROJI_LANES; ++l) {
+                x[l] *= corner[l];
+                a->share[l] += x[l] * x[l];
+            }
         }
-    return sum;
+    for (j = 0; j < size; ++j)
+        for (l = 0; l < GPROJI_LANES; ++l)
+            if (triangle[(j * size + j) * GPROJI_LANES + l] == 0) a->share[l] = HUGE_VAL;
 }
 
-/* The row of C that belongs to q, GPROJI_BLOCK_MAX numbers a node; returns its part of r. */
-GPROJI_INTERNAL double gproji_schur_project(const gproj_system *s, int32_t e, int32_t m, const double *q, double *c) {
+/* The rows of C that belong to some q of the element in a lane, GPROJI_BLOCK_MAX numbers a node; `right`: their parts of
+   r. */
+GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t together,
+                                         double *right) {
     const gproji_schur *d = &s->schur;
+    int32_t e = a->first + lane, i, j;
+    int32_t numbers = (int32_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX;
     const gproji_row_name *name = d->row + d->row_start[e];
-    double right = 0;
-    int32_t i;
-    memset(c, 0, (size_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX * sizeof *c);
-    for (i = 0; i < m; ++i) {
+    double *c = a->c, scale[GPROJI_SCHUR_TOGETHER];
+    memset(c, 0, (size_t)(numbers * together) * sizeof *c);
+    for (j = 0; j < together; ++j) right[j] = 0;
+    for (i = 0; i < a->m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
-        double scale = q[i] * gproji_acting_weight(g, row);
+        double w = gproji_acting_weight(g, row);
         int64_t l;
-        if (scale == 0) continue;
-        right += scale * row->phi;
-        for (l = row->local; l < row[1].local; ++l)
-            if (g->local_at[l] >= GPROJI_BLOCK_MAX)
-                c[g->local_at[l] - GPROJI_BLOCK_MAX] += scale * g->local_gradient[l];
+        if (w == 0) continue;
+        for (j = 0; j < together; ++j) {
+            scale[j] = w * a->q[(j * a->m + i) * GPROJI_LANES + lane];
+            right[j] += scale[j] * row->phi;
+        }
+        for (l = row->local; l < row[1].local; ++l) {
+            int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX;
+            for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local_gradient[l];
+        }
     }
-    return right;
 }
 
 typedef struct gproji_assembly {
@@ -9402,50 +9487,76 @@ typedef struct gproji_assembly {
 } gproji_assembly;
 
 /* Both for the numbers of a quad, alone or with another row, as constants: nearly all elements have these. */
-GPROJI_INTERNAL void gproji_reflect_element(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
-    if (m == 5 && count == 4)
-        gproji_reflect(5, 4, column, scale, diagonal);
-    else if (m == 6 && count == 4)
-        gproji_reflect(6, 4, column, scale, diagonal);
+GPROJI_INTERNAL void gproji_reflect_alike(gproji_alike *a) {
+    if (a->m == 5 && a->count == 4)
+        gproji_reflect(5, 4, a->column, a->scale, a->diagonal);
+    else if (a->m == 6 && a->count == 4)
+        gproji_reflect(6, 4, a->column, a->scale, a->diagonal);
     else
-        gproji_reflect(m, count, column, scale, diagonal);
+        gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
 }
 
-GPROJI_INTERNAL void gproji_reflect_element_back(int32_t m, int32_t count, const double *column, const double *scale,
-                                                 int32_t j, double *q) {
-    if (m == 5 && count == 4)
-        gproji_reflect_back(5, 4, column, scale, j, q);
-    else if (m == 6 && count == 4)
-        gproji_reflect_back(6, 4, column, scale, j, q);
+GPROJI_INTERNAL void gproji_reflect_alike_back(const gproji_alike *a, int32_t j, double *q) {
+    if (a->m == 5 && a->count == 4)
+        gproji_reflect_back(5, 4, a->column, a->scale, j, q);
+    else if (a->m == 6 && a->count == 4)
+        gproji_reflect_back(6, 4, a->column, a->scale, j, q);
     else
-        gproji_reflect_back(m, count, column, scale, j, q);
+        gproji_reflect_back(a->m, a->count, a->column, a->scale, j, q);
 }
 
-/* C, r and R of an element, and what it adds to E at its nodes. */
-GPROJI_INTERNAL void gproji_schur_element(const gproj_system *s, int32_t e, double epsilon2, double *work) {
+/* R of the elements, and how much they add to E at their nodes. */
+GPROJI_INTERNAL void gproji_schur_triangles(const gproj_system *s, gproji_alike *a, double epsilon2) {
     const gproji_schur *d = &s->schur;
-    int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e), j;
-    int32_t closes = d->closes[e], left = d->first[e + 1] - d->first[e];
-    double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
-    double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
-    int64_t l;
-    gproji_reflect_element(m, count, work, scale, diagonal);
-    if (count > closes)
-        share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
-                                     d->triangle + (int64_t)e * d->triangle_size);
-    share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / epsilon2) : 0;
-    if (share == 1 / epsilon2)
-        gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
-                              gproji_schur_calm * epsilon2);
-    share *= gproji_schur_share;
-    for (j = 0; j < left; ++j) {
-        gproji_reflect_element_back(m, count, work, scale, count + j, q);
-        d->side[d->first[e] + j] = gproji_schur_project(s, e, m, q, c);
-        d->share[d->first[e] + j] = share / left;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+    int32_t size = a->count - a->closes, l, k;
+    if (size == 0) return;
+    if (size == 3)
+        gproji_take_triangle(a, a->m, a->closes, 3);
+    else
+        gproji_take_triangle(a, a->m, a->closes, size);
+    for (l = 0; l < a->lanes; ++l) {
+        double *triangle = d->triangle + (int64_t)(a->first + l) * d->triangle_size, heaviest = a->heaviest[l];
+        double share = heaviest > 0 ? gproji_fmin(a->share[l] * heaviest * heaviest, 1 / epsilon2) : 0;
+        for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + l];
+        if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
+        a->share[l] = share * gproji_schur_share;
+    }
+}
+
+/* The rows of C from the j-th multiplier of the element in a lane on, `together` of them, to where W is. */
+GPROJI_INTERNAL void gproji_schur_place(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t j,
+                                        int32_t together) {
+    const gproji_schur *d = &s->schur;
+    int32_t e = a->first + lane, k, p;
+    int64_t first = d->link_start[e], end = d->link_start[e + 1], l;
+    const double *c = a->c;
+    for (k = j; k < j + together; ++k)
+        for (l = first; l < end; ++l, c += GPROJI_BLOCK_MAX) {
             int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            memcpy(d->value + d->link_value[l] + (int64_t)j * size, c + (l - d->link_start[e]) * GPROJI_BLOCK_MAX,
-                   (size_t)size * sizeof *c);
+            double *to = d->value + d->link_value[l] + (int64_t)k * size;
+            for (p = 0; p < size; ++p) to[p] = c[p];
+        }
+}
+
+/* C, r and R of elements that are alike, and what they add to E at their nodes. */
+GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
+    const gproji_schur *d = &s->schur;
+    int32_t j, k, lane, together;
+    memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
+    for (lane = 0; lane < a->lanes; ++lane) a->heaviest[lane] = gproji_schur_columns_of(s, a, lane);
+    gproji_reflect_alike(a);
+    gproji_schur_triangles(s, a, epsilon2);
+    for (j = 0; j < a->left; j += together) {
+        together = gproji_min(GPROJI_SCHUR_TOGETHER, a->left - j);
+        for (k = 0; k < together; ++k) gproji_reflect_alike_back(a, a->count + j + k, a->q + k * a->m * GPROJI_LANES);
+        for (lane = 0; lane < a->lanes; ++lane) {
+            int32_t at = d->first[a->first + lane] + j;
+            if (together == 1)
+                gproji_schur_project(s, a, lane, 1, d->side + at);
+            else
+                gproji_schur_project(s, a, lane, together, d->side + at);
+            for (k = 0; k < together; ++k) d->share[at + k] = a->share[lane] / a->left;
+            gproji_schur_place(s, a, lane, j, together);
         }
     }
 }
@@ -9455,7 +9566,11 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_schur *d = &assembly->system->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    for (; e < end; ++e) gproji_schur_element(assembly->system, e, assembly->epsilon2, d->work + chunk * d->most);
+    while (e < end) {
+        gproji_alike alike = gproji_gather_alike(assembly->system, e, end, d->work + chunk * d->most);
+        gproji_schur_alike(assembly->system, &alike, assembly->epsilon2);
+        e += alike.lanes;
+    }
 }
 
 /* D and - sum w^2 phi g of a node, from its rows. */
