@@ -7281,9 +7281,9 @@ typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
-/* Where some rows of a group stand, at the last evaluation. */
+/* Where some rows of a group stand since the last evaluation. */
 typedef struct gproji_tally {
-    double sum;     /* of w^2 phi^2, with the group's `tallied` and what counts of phi */
+    double sum;     /* of w^2 phi^2 */
     double largest; /* |phi| */
     int32_t row;    /* the first that has it; -1: there are no rows */
 } gproji_tally;
@@ -7314,7 +7314,7 @@ typedef struct gproji_group {
     int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
     double *local_gradient;  /* at the last evaluation */
     gproji_tally *tally;     /* of each task of the evaluation */
-    double tallied;          /* the weight at the last evaluation, or 1 */
+    double tallied;          /* the weight for which that was made */
     int32_t first_task;      /* of the evaluation that is under way */
     size_t local_count;
     gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
@@ -7363,6 +7363,7 @@ typedef struct gproji_schur {
     double *triangle; /* elements x triangle_size: R, with the inverses of its diagonal */
     double *work;     /* chunks x most */
     int32_t chunks, wide, triangle_size;
+    int32_t kept; /* variables from this one on are auxiliary */
     int64_t most; /* what one element needs of `work` */
 } gproji_schur;
 
@@ -8421,28 +8422,36 @@ GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
 }
 
-/* Some rows of a group, and where they stand. */
-GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
-    gproj_system *s = (gproj_system *)data;
-    gproji_group *g = s->group;
+/* Where some rows of a group stand, with its `tallied`. */
+GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
+    gproji_group *g = (gproji_group *)data;
     gproji_tally tally = {0, 0, -1};
-    int32_t task, r, end;
-    while (index < g->first_task || index - g->first_task >= gproji_group_tasks(g)) ++g;
-    task = index - g->first_task;
-    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
-    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    int32_t r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
+    int32_t end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    double weight2 = g->tallied * g->tallied;
     for (; r < end; ++r) {
-        gproji_row *row = &g->row[r];
-        double phi;
-        gproji_evaluate_row(s, g, row);
-        phi = fabs(gproji_counted(g, row->phi));
+        const gproji_row *row = &g->row[r];
+        double phi = fabs(gproji_counted(g, row->phi));
         if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
-        tally.sum += g->tallied * g->tallied * row->weight * row->weight * phi * phi;
+        tally.sum += weight2 * row->weight * row->weight * phi * phi;
         if (tally.row >= 0 && phi <= tally.largest) continue;
         tally.largest = phi;
         tally.row = r;
     }
     g->tally[task] = tally;
+}
+
+/* Some rows of a group, and where they stand. */
+GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
+    gproj_system *s = (gproj_system *)data;
+    gproji_group *g = s->group;
+    int32_t task, r, end;
+    while (index < g->first_task || index - g->first_task >= gproji_group_tasks(g)) ++g;
+    task = index - g->first_task;
+    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
+    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    for (; r < end; ++r) gproji_evaluate_row(s, g, &g->row[r]);
+    gproji_tally_task(g, task);
 }
 
 /* The values and gradients of all rows at the current x. Global rows are long, and come first. */
@@ -8456,7 +8465,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
             if (g->global != (global == 1)) continue;
             g->first_task = INT32_MAX;
             if (g->guard && !(g->weight > 0)) continue;
-            g->tallied = g->weight > 0 ? g->weight : 1;
+            g->tallied = g->weight;
             g->first_task = tasks;
             tasks += gproji_group_tasks(g);
         }
@@ -9138,6 +9147,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     int64_t links = d->link_start[d->elements], nodes = s->node_count, entries, values, roots = 0;
     int32_t i;
     gproji_schur_measure(s, &entries, &values);
+    for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (i = 0; d->root_start && i < nodes; ++i) {
         int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
@@ -9592,21 +9602,32 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     }
 }
 
-/* K, b and W of a node. */
+/* K, b, W and U of a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
     double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->value + d->value_start[v];
-    double share = 1;
+    bool plain = d->own_start[v] == d->own_start[v + 1];
+    double share = 1, corner;
     int64_t k;
-    int32_t i;
+    int32_t i, j;
     for (k = d->entry_start[v]; d->turns[v] && k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
     d->metric[v] = share;
-    for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? epsilon2 * share : 0;
-    if (d->own_start[v] < d->own_start[v + 1]) gproji_schur_own(s, v, size, root, b);
+    corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
+    for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
+    memset(b, 0, (size_t)size * sizeof *b);
+    if (plain) {
+        int64_t numbers = (d->entry_start[v + 1] - d->entry_start[v]) * size;
+        for (k = 0; k < numbers; ++k) w[k] *= corner;
+        for (j = 0; j < d->wide; ++j)
+            for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
+        return;
+    }
+    gproji_schur_own(s, v, size, root, b);
     gproji_small_factor(root, size, size, DBL_MIN);
     gproji_invert_triangle(root, size);
     gproji_whiten(size, root, b);
     for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
+    for (j = 0; j < d->wide; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
 }
 
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
@@ -9616,28 +9637,48 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
         int32_t size = s->node_first[v + 1] - s->node_first[v];
-        if (s->auxiliary[s->node_first[v]]) continue;
-        if (size == 3)
+        if (s->auxiliary[s->node_first[v]])
+            memset(s->step + s->node_first[v], 0, (size_t)size * sizeof *s->step);
+        else if (size == 3)
             gproji_schur_node(s, v, 3, assembly->epsilon2);
         else
             gproji_schur_node(s, v, size, assembly->epsilon2);
     }
 }
 
-/* r + W b of some elements. */
+/* Have nodes rows of their own? If not, b = 0. */
+GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
+    return s->schur.own_start[0] < s->schur.own_start[s->node_count];
+}
+
+/* side += W x at the multipliers of an element. */
+GPROJI_INLINE void gproji_schur_times(const gproj_system *s, int32_t e, const double *x, double *side) {
+    const gproji_schur *d = &s->schur;
+    int32_t j, k;
+    int64_t l;
+    for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+        int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+        const double *w = d->value + d->link_value[l], *b = x + s->node_first[v];
+        for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
+            for (k = 0; k < size; ++k) side[j] += w[k] * b[k];
+    }
+}
+
+/* r + W b and W U of some elements. */
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
-    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j, k;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i, j;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    int64_t l;
-    for (; e < end; ++e)
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            const double *w = d->value + d->link_value[l], *b = s->step + s->node_first[v];
-            for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
-                for (k = 0; k < size; ++k) d->side[j] += w[k] * b[k];
+    bool own = gproji_schur_has_own(s);
+    for (; e < end; ++e) {
+        if (own) gproji_schur_times(s, e, s->step, d->side);
+        for (i = 0; i < d->wide; ++i) {
+            double *side = d->side + (int64_t)(i + 1) * d->first[d->elements];
+            for (j = d->first[e]; j < d->first[e + 1]; ++j) side[j] = 0;
+            gproji_schur_times(s, e, gproji_wide_side(s, i), side);
         }
+    }
 }
 
 /* W W' at a node. */
@@ -9671,57 +9712,34 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
 }
 
-/* U at a node, and its part of W U. */
-GPROJI_INLINED void gproji_schur_wide_node(const gproji_schur *d, int32_t v, int32_t size, double *u, double *product) {
-    const double *w = d->value + d->value_start[v];
-    int64_t i;
-    int32_t p;
-    gproji_whiten(size, d->root + d->root_start[v], u);
-    for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, w += size) {
-        double sum = 0;
-        for (p = 0; p < size; ++p) sum += w[p] * u[p];
-        product[d->entry[i]] += sum;
-    }
+/* w g_i, without auxiliary variables, where U will be. */
+GPROJI_INTERNAL void gproji_schur_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                              int32_t index) {
+    double *column = gproji_wide_side(s, index);
+    memset(column, 0, (size_t)s->schur.kept * sizeof *column);
+    gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
 
-/* From w g_i, which are the system's sides, to U in their place and to W U. */
-GPROJI_INTERNAL void gproji_schur_wide(gproj_system *s) {
+/* From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
+GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
-    int64_t multipliers = d->first[d->elements];
-    int32_t k, v;
-    for (k = 0; k < d->wide; ++k) {
-        double *u = gproji_wide_side(s, k), *product = d->side + (k + 1) * multipliers;
-        memset(product, 0, (size_t)multipliers * sizeof *product);
-        for (v = 0; v < s->node_count; ++v) {
-            int32_t size = s->node_first[v + 1] - s->node_first[v];
-            if (s->auxiliary[s->node_first[v]]) continue;
-            if (size == 3)
-                gproji_schur_wide_node(d, v, 3, u + s->node_first[v], product);
-            else
-                gproji_schur_wide_node(d, v, size, u + s->node_first[v], product);
-        }
-    }
-}
-
-/* From z = L^-1 (r + W b) and Y = L^-1 W U: m, and z - Y m. */
-GPROJI_INTERNAL void gproji_schur_border(gproj_system *s) {
-    const gproji_schur *d = &s->schur;
-    size_t n = (size_t)s->variable_count, multipliers = (size_t)d->first[d->elements], j;
+    size_t n = (size_t)d->kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     gproji_for_wide_rows(s, gproji_wide_value);
     for (i = 0; i < d->wide; ++i) {
-        const double *y = d->side + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
+        const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
             s->wide_matrix[(int64_t)i * s->wide_count + k] =
                 (k == i) + gproji_dot(u, gproji_wide_side(s, k), n) -
-                gproji_dot(y, d->side + (size_t)(k + 1) * multipliers, multipliers);
-        s->wide_vector[i] += gproji_dot(u, s->step, n) - gproji_dot(y, d->side, multipliers);
+                gproji_dot(y, z + (size_t)(k + 1) * multipliers, multipliers);
+        if (gproji_schur_has_own(s)) s->wide_vector[i] += gproji_dot(u, s->step, n);
+        s->wide_vector[i] -= gproji_dot(y, z, multipliers);
     }
     gproji_small_factor(s->wide_matrix, d->wide, s->wide_count, 1);
     gproji_small_solve(s->wide_matrix, d->wide, s->wide_count, s->wide_vector);
     for (k = 0; k < d->wide; ++k) {
-        const double *y = d->side + (size_t)(k + 1) * multipliers;
-        for (j = 0; j < multipliers; ++j) d->side[j] -= s->wide_vector[k] * y[j];
+        const double *y = z + (size_t)(k + 1) * multipliers;
+        for (j = 0; j < multipliers; ++j) z[j] -= s->wide_vector[k] * y[j];
     }
 }
 
@@ -9801,12 +9819,10 @@ GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    memset(s->step, 0, (size_t)s->variable_count * sizeof *s->step);
+    d->wide = gproji_for_wide_rows(s, gproji_schur_wide_column);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
-    if (d->own_start[0] < d->own_start[s->node_count]) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
-    d->wide = gproji_for_wide_rows(s, gproji_wide_column);
-    gproji_schur_wide(s);
+    if (d->wide > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
 /* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
@@ -9819,14 +9835,13 @@ GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
 GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproj_cholesky *c = s->cholesky;
-    if (d->wide == 0) {
+    if (d->wide < c->batch) {
+        if (d->wide > 0) gproji_schur_border(s, c->solution);
+        c->sides = 1;
         gproji_cholesky_finish(c, d->side);
     } else {
-        if (d->wide < c->batch)
-            memcpy(d->side, c->solution, ((size_t)d->wide + 1) * (size_t)d->first[d->elements] * sizeof *d->side);
-        else
-            gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
-        gproji_schur_border(s);
+        gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
+        gproji_schur_border(s, d->side);
         gproji_cholesky_backward(c, d->side, d->side);
     }
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_move, s);
@@ -9971,16 +9986,19 @@ GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
 GPROJI_INTERNAL bool gproji_must_hold(const gproji_group *g) { return gproji_group_counts(g) && g->kind != GPROJ_WISH; }
 
 /* By the last evaluation and the present weights. */
-GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
+GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     gproji_standing standing;
     int32_t i, k;
     memset(&standing, 0, sizeof standing);
     standing.group = standing.row = -1;
     for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        double sum = 0, factor;
+        gproji_group *g = &s->group[i];
+        double sum = 0;
         if (!gproji_group_counts(g)) continue;
-        factor = g->weight / g->tallied;
+        if (g->tallied != g->weight) {
+            g->tallied = g->weight;
+            gproji_for(&s->host.parallel, gproji_group_tasks(g), gproji_tally_task, g);
+        }
         for (k = 0; k < gproji_group_tasks(g); ++k) {
             const gproji_tally *tally = &g->tally[k];
             sum += tally->sum;
@@ -9990,7 +10008,6 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
             standing.group = i;
             standing.row = tally->row;
         }
-        sum *= factor * factor;
         standing.merit += sum;
         if (g->kind == GPROJ_WISH) standing.energy += sum;
     }
@@ -15735,15 +15752,10 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
 /* The volume of one triangle of the mesh, with the vectorial area A: of a closed mesh, the tetrahedron with the origin,
    a'A / 3; else the prism over the plane z = -height, A_z times its mean height. With `gradient` (of a, b, c) the
    derivatives are added to it; those of a closed mesh, A / 3 each, are right for all triangles together. */
-GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], bool closed,
-                                              double height, double *const gradient[3]) {
-    double mean;
+GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], double height,
+                                              double *const gradient[3]) {
+    double mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
     int32_t k;
-    if (closed) {
-        for (k = 0; gradient && k < 3; ++k) gproji_add_scaled3(1.0 / 3, area, gradient[k]);
-        return gproji_dot3(corner[0], area) / 3;
-    }
-    mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
     for (k = 0; gradient && k < 3; ++k) {
         const double *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
         gradient[k][0] += mean * (b[1] - c[1]) / 2;
@@ -15751,6 +15763,29 @@ GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], con
         gradient[k][2] += area[2] / 3;
     }
     return area[2] * mean;
+}
+
+/* What a face adds to the volume of a closed mesh, by the triangles from its first corner, and to the derivatives; `face`:
+   its vectorial area. */
+GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, int32_t f, double *gradient,
+                                          double face[3]) {
+    int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
+    const double *first = position + 3 * (size_t)mesh->origin[start];
+    double b[3], c[3], area[3], before[3] = {0, 0, 0};
+    gproji_sub3(position + 3 * (size_t)mesh->origin[h], first, b);
+    for (; (next = mesh->next[h]) != start; h = next) {
+        gproji_sub3(position + 3 * (size_t)mesh->origin[next], first, c);
+        gproji_cross3(b, c, area);
+        gproji_set3(area[0] / 2, area[1] / 2, area[2] / 2, area);
+        gproji_add_scaled3(1, area, face);
+        gproji_add_scaled3(1, area, before); /* both triangles at this corner */
+        if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
+        gproji_copy3(area, before);
+        gproji_copy3(c, b);
+    }
+    if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
+    if (gradient) gproji_add_scaled3(1.0 / 3, face, gradient + 3 * (size_t)mesh->origin[start]);
+    return gproji_dot3(first, face) / 3;
 }
 
 /* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
@@ -15764,7 +15799,8 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t start = mesh->face_halfedge[f];
         double face[3] = {0, 0, 0}, b[3], c[3], vector[3];
-        for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
+        if (closed) sum += gproji_face_volume(mesh, position, f, gradient, face);
+        for (h = mesh->next[start]; !closed && mesh->next[h] != start; h = mesh->next[h]) {
             size_t vertex[3];
             vertex[0] = (size_t)mesh->origin[start];
             vertex[1] = (size_t)mesh->origin[h];
@@ -15778,7 +15814,7 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
             gproji_cross3(b, c, vector);
             gproji_set3(vector[0] / 2, vector[1] / 2, vector[2] / 2, vector);
             gproji_add_scaled3(1, vector, face);
-            sum += gproji_triangle_volume(corner, vector, closed, height, gradient ? slope : NULL);
+            sum += gproji_triangle_volume(corner, vector, height, gradient ? slope : NULL);
         }
         all += gproji_length3(face);
     }
@@ -19554,11 +19590,9 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     area = gproji_fmax(area, 1e-12);
-    constant /= area;
-    for (t = 0; t < count; ++t) {
-        term[t].a = part->gradient[t] / area;
-        constant -= term[t].a * x[t];
-    }
+    for (t = 0; t < count; ++t) part->gradient[t] /= area;
+    for (t = 0; t < count; ++t) term[t].a = part->gradient[t];
+    constant = constant / area - gproji_dot(part->gradient, x, (size_t)count);
     gproj_system_set_row(system, group, 0, NULL, constant);
 }
 
