@@ -1419,9 +1419,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it is.
-   What follows from a restored state is what would have followed when it was saved, to the bit on the same processor and
-   build (and otherwise but for the last digits). It does not have the mesh's faces and what has been added to the form:
-   it is restored in the same form, or in one that the same calls have made from the same mesh.
+   What follows from a restored state is what would have followed when it was saved: to the bit on the same processor and
+   build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last
+   digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same form, or in
+   one that the same calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -19941,16 +19942,32 @@ GPROJI_INTERNAL int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex,
     return row;
 }
 
-/* The coefficients of the weight on `vertex` in its z row, for vertex `other`: += s d. */
-GPROJI_INTERNAL void gproji_add_weight_terms(const gproj_form *form, int32_t vertex, int32_t other, double s,
-                                             const double d[3]) {
+/* Where the z row of a vertex has its weight: a constant, and three terms for each vertex that it depends on. */
+typedef struct gproji_weight_row {
+    double *constant;
+    const int32_t *vertex;
+    gproj_term *term;
+} gproji_weight_row;
+
+GPROJI_INTERNAL gproji_weight_row gproji_weight_row_of(const gproj_form *form, int32_t vertex) {
     const gproji_statics *statics = form->statics;
-    int64_t at = statics->load_start[vertex];
-    int32_t count, k;
-    gproj_term *term = gproji_row_terms(form->system, statics->group, gproji_axis_row(statics, vertex, 2), &count);
-    term += count - 3 * (statics->load_start[vertex + 1] - at);
-    while (statics->load_vertex[at] != other) ++at;
-    term += 3 * (at - statics->load_start[vertex]);
+    int64_t first = statics->load_start[vertex];
+    int32_t count, row = gproji_axis_row(statics, vertex, 2);
+    gproji_weight_row weight;
+    weight.constant = &form->system->group[statics->group].row[row].constant;
+    weight.vertex = statics->load_vertex + first;
+    weight.term = gproji_row_terms(form->system, statics->group, row, &count);
+    weight.term += count - 3 * (statics->load_start[vertex + 1] - first);
+    return weight;
+}
+
+/* The coefficients of vertex `other`: += s d. */
+GPROJI_INLINE void gproji_add_weight_terms(const gproji_weight_row *weight, int32_t other, double s,
+                                           const double d[3]) {
+    gproj_term *term = weight->term;
+    const int32_t *vertex;
+    int32_t k;
+    for (vertex = weight->vertex; *vertex != other; ++vertex) term += 3;
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
@@ -19965,9 +19982,11 @@ GPROJI_INTERNAL void gproji_linearise_edge_load(const gproj_form *form, const do
     gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], d);
     gproji_normalise3(d, none);
     for (k = 0; k < 2; ++k) {
+        gproji_weight_row weight;
         if (!gproji_has_weight(form->statics, end[k])) continue;
-        gproji_add_weight_terms(form, end[k], end[0], -half, d);
-        gproji_add_weight_terms(form, end[k], end[1], half, d);
+        weight = gproji_weight_row_of(form, end[k]);
+        gproji_add_weight_terms(&weight, end[0], -half, d);
+        gproji_add_weight_terms(&weight, end[1], half, d);
     }
 }
 
@@ -19976,19 +19995,21 @@ GPROJI_INTERNAL void gproji_linearise_edge_load(const gproj_form *form, const do
 GPROJI_INTERNAL void gproji_linearise_face_load(const gproj_form *form, const double *x, double per_area,
                                                 int32_t face) {
     const gproj_mesh *mesh = form->mesh;
-    const gproji_statics *statics = form->statics;
     int32_t degree = mesh->face_degree[face], hi = mesh->face_halfedge[face], hj = hi, i, j;
     double h[3], scale = per_area / degree;
-    double part = scale * gproji_face_load(mesh, &statics->loads, x, face, h);
-    for (j = 0; j < degree; ++j, hj = mesh->next[hj]) {
-        double across[3], gradient[3];
-        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[hj]], x + 3 * (size_t)mesh->origin[mesh->prev[hj]], across);
-        gproji_cross3(across, h, gradient);
-        for (i = 0; i < degree; ++i, hi = mesh->next[hi])
-            if (gproji_has_weight(statics, mesh->origin[hi]))
-                gproji_add_weight_terms(form, mesh->origin[hi], mesh->origin[hj], -0.5 * scale, gradient);
-        if (gproji_has_weight(statics, mesh->origin[hj]))
-            form->system->group[statics->group].row[gproji_axis_row(statics, mesh->origin[hj], 2)].constant += part;
+    double part = scale * gproji_face_load(mesh, &form->statics->loads, x, face, h);
+    for (i = 0; i < degree; ++i, hi = mesh->next[hi]) {
+        gproji_weight_row weight;
+        if (!gproji_has_weight(form->statics, mesh->origin[hi])) continue;
+        weight = gproji_weight_row_of(form, mesh->origin[hi]);
+        *weight.constant += part;
+        for (j = 0; j < degree; ++j, hj = mesh->next[hj]) {
+            double across[3], gradient[3];
+            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[hj]], x + 3 * (size_t)mesh->origin[mesh->prev[hj]],
+                        across);
+            gproji_cross3(across, h, gradient);
+            gproji_add_weight_terms(&weight, mesh->origin[hj], -0.5 * scale, gradient);
+        }
     }
 }
 
