@@ -5724,9 +5724,11 @@ struct gproj_cholesky {
 
     gproji_load load; /* during a factorisation */
     void *load_user;
-    int32_t batch; /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
-    int32_t room;  /* for how many `solution` and `side` have room */
-    int32_t sides; /* those at work */
+    int32_t batch;       /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
+    int32_t room;        /* for how many `solution` and `side` have room */
+    int32_t sides;       /* those at work */
+    const double *given; /* the right-hand sides; each front takes its part of them, */
+    double *found;       /* and puts its part of the solutions here: both in the order of A */
 
     double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
     double *inverse;      /* columns: the inverses of the diagonal of L */
@@ -6271,19 +6273,22 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
     }
 }
 
-/* Sets the storage rows of z to 0, and its pivot rows to the front's part of x. */
-GPROJI_INTERNAL void gproji_start_rows(const gproji_front *front, const double *x, double *z) {
+/* Sets the storage rows of z to 0; returns where its pivot rows begin. */
+GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
     int32_t shift = gproji_panel_shift(front->width);
     memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
-    memcpy(z + shift, x + front->first, (size_t)front->width * sizeof(double));
+    return z + shift;
 }
 
 /* One front of L y = b; z: work. */
 GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
-    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns, *pivots;
+    size_t column = (size_t)side * (size_t)c->symbolic.columns;
+    double *x = c->solution + column, *pivots = gproji_start_rows(front, z);
+    const double *b = c->given + column;
+    const int32_t *permutation = c->permutation + front->first;
     gproji_panel panel = gproji_front_panel(c, front);
-    pivots = z + gproji_panel_shift(front->width);
-    gproji_start_rows(front, x, z);
+    int32_t k;
+    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]];
     gproji_add_sides(c, front, side, z);
     gproji_panel_forward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
@@ -6294,16 +6299,17 @@ GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_
 GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
                                            double *z) {
     const gproji_symbolic *sy = &c->symbolic;
-    double *x = c->solution + (size_t)side * (size_t)sy->columns, *pivots, *to;
-    const int32_t *node = sy->row_node + front->rows;
+    size_t column = (size_t)side * (size_t)sy->columns;
+    double *x = c->solution + column, *found = c->found + column, *pivots = gproji_start_rows(front, z), *to;
+    const int32_t *node = sy->row_node + front->rows, *permutation = c->permutation + front->first;
     int32_t i, k;
     gproji_panel panel = gproji_front_panel(c, front);
-    pivots = z + gproji_panel_shift(front->width);
-    gproji_start_rows(front, x, z);
+    memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
     for (k = 0, to = pivots + front->width; k < front->row_nodes; ++k)
         for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
     gproji_panel_backward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
+    for (k = 0; k < front->width; ++k) found[permutation[k]] = pivots[k];
 }
 
 /* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
@@ -6330,29 +6336,18 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
     }
 }
 
-/* Takes up to c->batch right-hand sides in the order of L. */
-GPROJI_INTERNAL void gproji_cholesky_take_sides(gproj_cholesky *c, int32_t count, const double *b) {
-    size_t n = (size_t)c->symbolic.columns, i;
-    int32_t r;
-    c->sides = count;
-    for (r = 0; r < count; ++r)
-        for (i = 0; i < n; ++i) c->solution[(size_t)r * n + i] = b[(size_t)r * n + (size_t)c->permutation[i]];
-}
-
 /* From L y = b, solved already, to x. */
 GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
     const gproji_symbolic *sy = &c->symbolic;
-    size_t n = (size_t)sy->columns, i;
-    int32_t r;
+    c->found = x;
     gproji_backward_group(c, sy->tasks);
     gproji_for(&c->parallel, sy->tasks, gproji_backward_group, c);
-    for (r = 0; r < c->sides; ++r)
-        for (i = 0; i < n; ++i) x[(size_t)r * n + (size_t)c->permutation[i]] = c->solution[(size_t)r * n + i];
 }
 
 /* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
 GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
-    gproji_cholesky_take_sides(c, count, b);
+    c->sides = count;
+    c->given = b;
     gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
     gproji_forward_group(c, c->symbolic.tasks);
 }
@@ -6410,7 +6405,8 @@ GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky 
     c->factored = false;
     c->load = load;
     c->load_user = user;
-    gproji_cholesky_take_sides(c, sides, b);
+    c->sides = sides;
+    c->given = b;
     gproji_for(&c->parallel, sy->tasks, gproji_factor_group, c);
     for (g = 0; g < sy->tasks; ++g)
         if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
@@ -7288,6 +7284,13 @@ typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
+/* Where some rows of a group stand since the last evaluation. */
+typedef struct gproji_tally {
+    double sum;     /* of w^2 phi^2 */
+    double largest; /* |phi| */
+    int32_t row;    /* the first that has it; -1: there are no rows */
+} gproji_tally;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7314,6 +7317,9 @@ typedef struct gproji_group {
     int32_t *local_variable; /* of every row, one row after the other */
     int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
     double *local_gradient;  /* at the last evaluation */
+    gproji_tally *tally;     /* of each task of the evaluation */
+    double tallied;          /* the weight for which that was made */
+    int32_t first_task;      /* of the evaluation that is under way */
     size_t local_count;
     gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
@@ -7361,6 +7367,7 @@ typedef struct gproji_schur {
     double *triangle; /* elements x triangle_size: R, with the inverses of its diagonal */
     double *work;     /* chunks x most */
     int32_t chunks, wide, triangle_size;
+    int32_t kept; /* variables from this one on are auxiliary */
     int64_t most; /* what one element needs of `work` */
 } gproji_schur;
 
@@ -7428,6 +7435,9 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
+/* Into how many tasks the evaluation of a group is cut. */
+GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
+
 /* Lets a group's terms name variables again. */
 GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
     int32_t r;
@@ -7447,10 +7457,12 @@ GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
     gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
     gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
     gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
+    gproji_give(heap, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
     gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
     g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
+    g->tally = NULL;
     g->multiplier = NULL;
 }
 
@@ -8284,7 +8296,8 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
-        if (!g->local_gradient) return false;
+        g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
+        if (!g->local_gradient || !g->tally) return false;
     }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
@@ -8353,13 +8366,6 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
 
 /* -- evaluation -- */
 
-typedef struct gproji_evaluation {
-    gproji_group *group;
-    const double *x;
-    double rounding; /* rows whose rounding may be larger than this are added up with more digits */
-    int32_t chunks;
-} gproji_evaluation;
-
 /* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
@@ -8406,41 +8412,69 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
     return phi;
 }
 
-/* phi and grad phi of one chunk of a group's rows; rows without weight get zeros. Rows of bounds act where they are
-   violated, or where they did in the last step (gproji_switch_bounds lets them go again). */
-GPROJI_INTERNAL void gproji_evaluate_chunk(void *data, int32_t chunk) {
-    const gproji_evaluation *e = (const gproji_evaluation *)data;
-    gproji_group *g = e->group;
-    int32_t r = gproji_chunk_start(g->row_count, e->chunks, chunk),
-            end = gproji_chunk_start(g->row_count, e->chunks, chunk + 1);
-    for (; r < end; ++r) {
-        gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local, phi, size;
-        memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
-        row->phi = 0;
-        if (!(row->weight > 0)) row->active = false;
-        if (!(row->weight > 0)) continue;
-        phi = gproji_linearise_row(g, row, e->x, gradient, &size);
-        if (size * DBL_EPSILON > e->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, e->x);
-        row->phi = phi;
-        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
-    }
+/* phi and grad phi of a row; one without weight gets zeros. Rows of bounds act where they are violated, or where they did
+   in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger than s->rounding, phi is added
+   up with more digits. */
+GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
+    double *gradient = g->local_gradient + row->local, phi, size;
+    memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    row->phi = 0;
+    if (!(row->weight > 0)) row->active = false;
+    if (!(row->weight > 0)) return;
+    phi = gproji_linearise_row(g, row, s->x, gradient, &size);
+    if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
+    row->phi = phi;
+    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
 }
 
-/* The values and gradients of all rows at the current x. */
+/* Where some rows of a group stand, with its `tallied`. */
+GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
+    gproji_group *g = (gproji_group *)data;
+    gproji_tally tally = {0, 0, -1};
+    int32_t r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
+    int32_t end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    double weight2 = g->tallied * g->tallied;
+    for (; r < end; ++r) {
+        const gproji_row *row = &g->row[r];
+        double phi = fabs(gproji_counted(g, row->phi));
+        if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
+        tally.sum += weight2 * row->weight * row->weight * phi * phi;
+        if (tally.row >= 0 && phi <= tally.largest) continue;
+        tally.largest = phi;
+        tally.row = r;
+    }
+    g->tally[task] = tally;
+}
+
+/* Some rows of a group, and where they stand. */
+GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
+    gproj_system *s = (gproj_system *)data;
+    gproji_group *g = s->group;
+    int32_t task, r, end;
+    while (index < g->first_task || index - g->first_task >= gproji_group_tasks(g)) ++g;
+    task = index - g->first_task;
+    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
+    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
+    for (; r < end; ++r) gproji_evaluate_row(s, g, &g->row[r]);
+    gproji_tally_task(g, task);
+}
+
+/* The values and gradients of all rows at the current x. Global rows are long, and come first. */
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
-    int32_t i;
+    int32_t i, global, tasks = 0;
     s->changed = false;
     s->evaluated = true;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_evaluation e;
-        if (s->group[i].guard && !(s->group[i].weight > 0)) continue;
-        e.group = &s->group[i];
-        e.x = s->x;
-        e.rounding = s->rounding;
-        e.chunks = e.group->row_count / GPROJI_ROWS_PER_TASK + 1;
-        gproji_for(&s->host.parallel, e.chunks, gproji_evaluate_chunk, &e);
-    }
+    for (global = 1; global >= 0; --global)
+        for (i = 0; i < s->group_count; ++i) {
+            gproji_group *g = &s->group[i];
+            if (g->global != (global == 1)) continue;
+            g->first_task = INT32_MAX;
+            if (g->guard && !(g->weight > 0)) continue;
+            g->tallied = g->weight;
+            g->first_task = tasks;
+            tasks += gproji_group_tasks(g);
+        }
+    gproji_for(&s->host.parallel, tasks, gproji_evaluate_task, s);
 }
 
 /* Lets the groups with a weight re-linearise their rows at the current x. */
@@ -8748,9 +8782,11 @@ static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplie
 static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
 static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
 enum {
-    GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
-    GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
-    GPROJI_ELEMENTS_PER_TASK = 512 /* at least, unless there are fewer */
+    GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
+    GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
+    GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
+    GPROJI_LANES = 8,               /* elements that are worked on together */
+    GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
 };
 
 /* -- compilation -- */
@@ -9068,6 +9104,28 @@ GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
     }
 }
 
+/* Consecutive elements that are alike: `left` multipliers, m rows and `count` columns, the first `closes` of which are no
+   auxiliary variables. What is done to all of them is done in lanes, number k of lane l being at [k GPROJI_LANES + l]: one
+   element alone is a chain of square roots and quotients, each of which waits for the one before. Lanes without an
+   element have zeros. */
+typedef struct gproji_alike {
+    int32_t first, lanes, m, count, closes, left;
+    double *column;   /* m x count: what the multipliers are orthogonal to; then reflections */
+    double *scale;    /* count */
+    double *diagonal; /* count */
+    double *triangle; /* (count - closes)^2 */
+    double *q;        /* m x GPROJI_SCHUR_TOGETHER */
+    double *c;        /* of one element: GPROJI_BLOCK_MAX a node */
+    double heaviest[GPROJI_LANES];
+    double share[GPROJI_LANES];
+} gproji_alike;
+
+/* The doubles that such a batch needs. */
+GPROJI_INTERNAL int64_t gproji_alike_size(int64_t m, int64_t count, int64_t nodes) {
+    int64_t lanes = m * (count + GPROJI_SCHUR_TOGETHER) + 2 * count + count * count;
+    return lanes * GPROJI_LANES + GPROJI_BLOCK_MAX * nodes * GPROJI_SCHUR_TOGETHER;
+}
+
 /* How much the elements need: `most` and `triangle_size`, and numbers of entries and of values of W. */
 GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int64_t *values) {
     gproji_schur *d = &s->schur;
@@ -9078,7 +9136,7 @@ GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int
     for (e = 0; e < d->elements; ++e) {
         int64_t rows = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
         int64_t columns = gproji_schur_columns(s, e), links = d->link_start[e + 1] - d->link_start[e];
-        int64_t most = rows * (columns + 1) + 2 * columns + GPROJI_BLOCK_MAX * links;
+        int64_t most = gproji_alike_size(rows, columns, links);
         int32_t size = (int32_t)columns - d->closes[e];
         d->most = d->most > most ? d->most : most;
         d->triangle_size = gproji_max(d->triangle_size, size * size);
@@ -9095,6 +9153,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     int64_t links = d->link_start[d->elements], nodes = s->node_count, entries, values, roots = 0;
     int32_t i;
     gproji_schur_measure(s, &entries, &values);
+    for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (i = 0; d->root_start && i < nodes; ++i) {
         int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
@@ -9245,14 +9304,35 @@ GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_ro
     return g->weight > 0 && row->active ? g->weight * row->weight : 0;
 }
 
-/* The columns of an element that its multipliers are orthogonal to, m numbers each: first, where the rows add up to
-   nothing, how they do (without weight on one of them, that one); then w N. Returns the largest weight of a row of N. */
-GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e, int32_t m, double *column) {
+/* As many elements as there are lanes, from e on, and before `end`. */
+GPROJI_INTERNAL gproji_alike gproji_gather_alike(const gproj_system *s, int32_t e, int32_t end, double *work) {
     const gproji_schur *d = &s->schur;
-    const gproji_row_name *name = d->row + d->row_start[e];
-    double *normal = column + d->closes[e] * m, heaviest = 0;
-    int32_t i, idle = -1;
-    memset(column, 0, (size_t)m * (size_t)gproji_schur_columns(s, e) * sizeof *column);
+    gproji_alike a;
+    memset(&a, 0, sizeof a);
+    a.first = e, a.lanes = 1;
+    a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
+    a.count = gproji_schur_columns(s, e), a.closes = d->closes[e], a.left = d->first[e + 1] - d->first[e];
+    for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
+              gproji_schur_columns(s, e) == a.count && d->closes[e] == a.closes;
+         ++e)
+        a.lanes++;
+    a.column = work;
+    a.scale = a.column + a.m * a.count * GPROJI_LANES;
+    a.diagonal = a.scale + a.count * GPROJI_LANES;
+    a.triangle = a.diagonal + a.count * GPROJI_LANES;
+    a.q = a.triangle + a.count * a.count * GPROJI_LANES;
+    a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
+    return a;
+}
+
+/* The columns of the element in a lane that its multipliers are orthogonal to: first, where the rows add up to nothing, how
+   they do (without weight on one of them, that one); then w N. They are zeros on entry. Returns the largest weight of a
+   row of N. */
+GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gproji_alike *a, int32_t lane) {
+    const gproji_schur *d = &s->schur;
+    const gproji_row_name *name = d->row + d->row_start[a->first + lane];
+    int32_t m = a->m, i, idle = -1;
+    double *column = a->column + lane, *normal = column + a->closes * m * GPROJI_LANES, heaviest = 0;
     for (i = 0; i < m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
@@ -9262,50 +9342,69 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, int32_t e,
         for (l = row->local; l < row[1].local; ++l) {
             int32_t at = g->local_at[l];
             if (at < GPROJI_BLOCK_MAX)
-                normal[at * m + i] = w * g->local_gradient[l], own = true;
+                normal[(at * m + i) * GPROJI_LANES] = w * g->local_gradient[l], own = true;
             else
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
-        if (!d->closes[e] || !joins || name[i].row >= g->closing) continue;
+        if (!a->closes || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
-        column[i] = w > 0 ? 1 / w : 0;
+        column[i * GPROJI_LANES] = w > 0 ? 1 / w : 0;
     }
-    for (i = 0; idle >= 0 && i < m; ++i) column[i] = i == idle;
+    for (i = 0; idle >= 0 && i < m; ++i) column[i * GPROJI_LANES] = i == idle;
     return heaviest;
 }
 
+/* In lanes: part = sum of v[i] x[i] for i >= k, times `scale`. */
+GPROJI_INLINED void gproji_lanes_dot(int32_t m, int32_t k, const double *v, const double *x, const double *scale,
+                                     double *part) {
+    int32_t i, l;
+    for (l = 0; l < GPROJI_LANES; ++l) part[l] = 0;
+    for (i = k; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) part[l] += v[i * GPROJI_LANES + l] * x[i * GPROJI_LANES + l];
+    for (l = 0; l < GPROJI_LANES; ++l) part[l] *= scale[l];
+}
+
+/* In lanes: x -= part v for i >= k. */
+GPROJI_INLINED void gproji_lanes_take_off(int32_t m, int32_t k, const double *v, const double *part, double *x) {
+    int32_t i, l;
+    for (i = k; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) x[i * GPROJI_LANES + l] -= part[l] * v[i * GPROJI_LANES + l];
+}
+
 /* Householder's reflections that make `count` columns of m numbers triangular: the k-th is I - scale[k] v v', where v has
-   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. */
+   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. In lanes. */
 GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
-    int32_t k, j, i;
-    for (k = 0; k < count; ++k) {
-        double *v = column + k * m, square = 0, length;
-        for (i = k; i < m; ++i) square += v[i] * v[i];
-        length = v[k] < 0 ? -sqrt(square) : sqrt(square);
-        scale[k] = square > 0 ? 1 / (square + v[k] * length) : 0;
-        diagonal[k] = -length;
-        v[k] += length;
+    double part[GPROJI_LANES], one[GPROJI_LANES];
+    int32_t k, j, l;
+    for (l = 0; l < GPROJI_LANES; ++l) one[l] = 1;
+    for (k = 0; k < count; ++k, scale += GPROJI_LANES, diagonal += GPROJI_LANES) {
+        double *v = column + k * m * GPROJI_LANES, *head = v + k * GPROJI_LANES;
+        gproji_lanes_dot(m, k, v, v, one, part);
+        for (l = 0; l < GPROJI_LANES; ++l) diagonal[l] = sqrt(part[l]);
+        for (l = 0; l < GPROJI_LANES; ++l) {
+            double length = head[l] < 0 ? -diagonal[l] : diagonal[l], product = part[l] + head[l] * length;
+            scale[l] = part[l] > 0 ? 1 / product : 0;
+            diagonal[l] = -length;
+            head[l] += length;
+        }
         for (j = k + 1; j < count; ++j) {
-            double *other = column + j * m, part = 0;
-            for (i = k; i < m; ++i) part += v[i] * other[i];
-            part *= scale[k];
-            for (i = k; i < m; ++i) other[i] -= part * v[i];
+            gproji_lanes_dot(m, k, v, column + j * m * GPROJI_LANES, scale, part);
+            gproji_lanes_take_off(m, k, v, part, column + j * m * GPROJI_LANES);
         }
     }
 }
 
-/* q: the j-th unit vector, reflected back. */
+/* q: the j-th unit vector, reflected back. In lanes. */
 GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *column, const double *scale, int32_t j,
                                         double *q) {
-    int32_t k, i;
-    for (i = 0; i < m; ++i) q[i] = i == j;
+    double part[GPROJI_LANES];
+    int32_t k, i, l;
+    for (i = 0; i < m; ++i)
+        for (l = 0; l < GPROJI_LANES; ++l) q[i * GPROJI_LANES + l] = i == j;
     for (k = count - 1; k >= 0; --k) {
-        const double *v = column + k * m;
-        double part = 0;
-        for (i = k; i < m; ++i) part += v[i] * q[i];
-        part *= scale[k];
-        for (i = k; i < m; ++i) q[i] -= part * v[i];
+        gproji_lanes_dot(m, k, column + k * m * GPROJI_LANES, q, scale + k * GPROJI_LANES, part);
+        gproji_lanes_take_off(m, k, column + k * m * GPROJI_LANES, part, q);
     }
 }
 
@@ -9329,52 +9428,73 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
         for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
 }
 
-/* Keeps R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. Returns
-   the sum of the squares of R^-1, infinite where there are such columns. */
-GPROJI_INTERNAL double gproji_keep_triangle(int32_t m, int32_t skipped, int32_t size, const double *column,
-                                            const double *diagonal, double *triangle) {
-    double sum = 0, unit[GPROJI_BLOCK_MAX];
-    bool dependent = false;
-    int32_t i, j, k;
+/* R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. a->share: the
+   sum of the squares of R^-1, infinite where there are such columns. In lanes. */
+GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
+    const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
+    double unit[GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
+    int32_t i, j, k, l;
     for (j = 0; j < size; ++j) {
-        double square = diagonal[j] * diagonal[j], all = square;
+        const double *own = diagonal + j * GPROJI_LANES;
+        double *corner = triangle + (j * size + j) * GPROJI_LANES;
+        for (l = 0; l < GPROJI_LANES; ++l) all[l] = own[l] * own[l];
         for (i = 0; i < j; ++i) {
-            triangle[i * size + j] = column[j * m + skipped + i];
-            all += triangle[i * size + j] * triangle[i * size + j];
+            const double *from = column + (j * m + closes + i) * GPROJI_LANES;
+            double *to = triangle + (i * size + j) * GPROJI_LANES;
+            for (l = 0; l < GPROJI_LANES; ++l) {
+                to[l] = from[l];
+                all[l] += from[l] * from[l];
+            }
         }
-        triangle[j * size + j] = square > 8 * DBL_EPSILON * all ? 1 / diagonal[j] : 0;
-        dependent = dependent || triangle[j * size + j] == 0;
+        for (l = 0; l < GPROJI_LANES; ++l) {
+            double inverse = 1 / own[l];
+            corner[l] = own[l] * own[l] > 8 * DBL_EPSILON * all[l] ? inverse : 0;
+        }
     }
-    if (dependent) return HUGE_VAL;
+    for (l = 0; l < GPROJI_LANES; ++l) a->share[l] = 0;
     for (j = 0; j < size; ++j) /* the columns of R^-1 */
         for (i = j; i >= 0; --i) {
-            double x = i == j;
-            for (k = i + 1; k <= j; ++k) x -= triangle[i * size + k] * unit[k];
-            unit[i] = x * triangle[i * size + i];
-            sum += unit[i] * unit[i];
+            double *x = unit + i * GPROJI_LANES;
+            const double *corner = triangle + (i * size + i) * GPROJI_LANES;
+            for (l = 0; l < GPROJI_LANES; ++l) x[l] = i == j;
+            for (k = i + 1; k <= j; ++k)
+                gproji_lanes_take_off(1, 0, triangle + (i * size + k) * GPROJI_LANES, unit + k * GPROJI_LANES, x);
+            for (l = 0; l < GPROJI_LANES; ++l) {
+                x[l] *= corner[l];
+                a->share[l] += x[l] * x[l];
+            }
         }
-    return sum;
+    for (j = 0; j < size; ++j)
+        for (l = 0; l < GPROJI_LANES; ++l)
+            if (triangle[(j * size + j) * GPROJI_LANES + l] == 0) a->share[l] = HUGE_VAL;
 }
 
-/* The row of C that belongs to q, GPROJI_BLOCK_MAX numbers a node; returns its part of r. */
-GPROJI_INTERNAL double gproji_schur_project(const gproj_system *s, int32_t e, int32_t m, const double *q, double *c) {
+/* The rows of C that belong to some q of the element in a lane, GPROJI_BLOCK_MAX numbers a node; `right`: their parts of
+   r. */
+GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t together,
+                                         double *right) {
     const gproji_schur *d = &s->schur;
+    int32_t e = a->first + lane, i, j;
+    int32_t numbers = (int32_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX;
     const gproji_row_name *name = d->row + d->row_start[e];
-    double right = 0;
-    int32_t i;
-    memset(c, 0, (size_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX * sizeof *c);
-    for (i = 0; i < m; ++i) {
+    double *c = a->c, scale[GPROJI_SCHUR_TOGETHER];
+    memset(c, 0, (size_t)(numbers * together) * sizeof *c);
+    for (j = 0; j < together; ++j) right[j] = 0;
+    for (i = 0; i < a->m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
-        double scale = q[i] * gproji_acting_weight(g, row);
+        double w = gproji_acting_weight(g, row);
         int64_t l;
-        if (scale == 0) continue;
-        right += scale * row->phi;
-        for (l = row->local; l < row[1].local; ++l)
-            if (g->local_at[l] >= GPROJI_BLOCK_MAX)
-                c[g->local_at[l] - GPROJI_BLOCK_MAX] += scale * g->local_gradient[l];
+        if (w == 0) continue;
+        for (j = 0; j < together; ++j) {
+            scale[j] = w * a->q[(j * a->m + i) * GPROJI_LANES + lane];
+            right[j] += scale[j] * row->phi;
+        }
+        for (l = row->local; l < row[1].local; ++l) {
+            int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX;
+            for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local_gradient[l];
+        }
     }
-    return right;
 }
 
 typedef struct gproji_assembly {
@@ -9383,50 +9503,76 @@ typedef struct gproji_assembly {
 } gproji_assembly;
 
 /* Both for the numbers of a quad, alone or with another row, as constants: nearly all elements have these. */
-GPROJI_INTERNAL void gproji_reflect_element(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
-    if (m == 5 && count == 4)
-        gproji_reflect(5, 4, column, scale, diagonal);
-    else if (m == 6 && count == 4)
-        gproji_reflect(6, 4, column, scale, diagonal);
+GPROJI_INTERNAL void gproji_reflect_alike(gproji_alike *a) {
+    if (a->m == 5 && a->count == 4)
+        gproji_reflect(5, 4, a->column, a->scale, a->diagonal);
+    else if (a->m == 6 && a->count == 4)
+        gproji_reflect(6, 4, a->column, a->scale, a->diagonal);
     else
-        gproji_reflect(m, count, column, scale, diagonal);
+        gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
 }
 
-GPROJI_INTERNAL void gproji_reflect_element_back(int32_t m, int32_t count, const double *column, const double *scale,
-                                                 int32_t j, double *q) {
-    if (m == 5 && count == 4)
-        gproji_reflect_back(5, 4, column, scale, j, q);
-    else if (m == 6 && count == 4)
-        gproji_reflect_back(6, 4, column, scale, j, q);
+GPROJI_INTERNAL void gproji_reflect_alike_back(const gproji_alike *a, int32_t j, double *q) {
+    if (a->m == 5 && a->count == 4)
+        gproji_reflect_back(5, 4, a->column, a->scale, j, q);
+    else if (a->m == 6 && a->count == 4)
+        gproji_reflect_back(6, 4, a->column, a->scale, j, q);
     else
-        gproji_reflect_back(m, count, column, scale, j, q);
+        gproji_reflect_back(a->m, a->count, a->column, a->scale, j, q);
 }
 
-/* C, r and R of an element, and what it adds to E at its nodes. */
-GPROJI_INTERNAL void gproji_schur_element(const gproj_system *s, int32_t e, double epsilon2, double *work) {
+/* R of the elements, and how much they add to E at their nodes. */
+GPROJI_INTERNAL void gproji_schur_triangles(const gproj_system *s, gproji_alike *a, double epsilon2) {
     const gproji_schur *d = &s->schur;
-    int32_t m = (int32_t)(d->row_start[e + 1] - d->row_start[e]), count = gproji_schur_columns(s, e), j;
-    int32_t closes = d->closes[e], left = d->first[e + 1] - d->first[e];
-    double *q = work + (int64_t)m * count, *scale = q + m, *diagonal = scale + count, *c = diagonal + count;
-    double heaviest = gproji_schur_columns_of(s, e, m, work), share = 0;
-    int64_t l;
-    gproji_reflect_element(m, count, work, scale, diagonal);
-    if (count > closes)
-        share = gproji_keep_triangle(m, closes, count - closes, work + closes * m, diagonal + closes,
-                                     d->triangle + (int64_t)e * d->triangle_size);
-    share = heaviest > 0 ? gproji_fmin(share * heaviest * heaviest, 1 / epsilon2) : 0;
-    if (share == 1 / epsilon2)
-        gproji_shift_triangle(d->triangle + (int64_t)e * d->triangle_size, count - closes,
-                              gproji_schur_calm * epsilon2);
-    share *= gproji_schur_share;
-    for (j = 0; j < left; ++j) {
-        gproji_reflect_element_back(m, count, work, scale, count + j, q);
-        d->side[d->first[e] + j] = gproji_schur_project(s, e, m, q, c);
-        d->share[d->first[e] + j] = share / left;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+    int32_t size = a->count - a->closes, l, k;
+    if (size == 0) return;
+    if (size == 3)
+        gproji_take_triangle(a, a->m, a->closes, 3);
+    else
+        gproji_take_triangle(a, a->m, a->closes, size);
+    for (l = 0; l < a->lanes; ++l) {
+        double *triangle = d->triangle + (int64_t)(a->first + l) * d->triangle_size, heaviest = a->heaviest[l];
+        double share = heaviest > 0 ? gproji_fmin(a->share[l] * heaviest * heaviest, 1 / epsilon2) : 0;
+        for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + l];
+        if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
+        a->share[l] = share * gproji_schur_share;
+    }
+}
+
+/* The rows of C from the j-th multiplier of the element in a lane on, `together` of them, to where W is. */
+GPROJI_INTERNAL void gproji_schur_place(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t j,
+                                        int32_t together) {
+    const gproji_schur *d = &s->schur;
+    int32_t e = a->first + lane, k, p;
+    int64_t first = d->link_start[e], end = d->link_start[e + 1], l;
+    const double *c = a->c;
+    for (k = j; k < j + together; ++k)
+        for (l = first; l < end; ++l, c += GPROJI_BLOCK_MAX) {
             int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            memcpy(d->value + d->link_value[l] + (int64_t)j * size, c + (l - d->link_start[e]) * GPROJI_BLOCK_MAX,
-                   (size_t)size * sizeof *c);
+            double *to = d->value + d->link_value[l] + (int64_t)k * size;
+            for (p = 0; p < size; ++p) to[p] = c[p];
+        }
+}
+
+/* C, r and R of elements that are alike, and what they add to E at their nodes. */
+GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
+    const gproji_schur *d = &s->schur;
+    int32_t j, k, lane, together;
+    memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
+    for (lane = 0; lane < a->lanes; ++lane) a->heaviest[lane] = gproji_schur_columns_of(s, a, lane);
+    gproji_reflect_alike(a);
+    gproji_schur_triangles(s, a, epsilon2);
+    for (j = 0; j < a->left; j += together) {
+        together = gproji_min(GPROJI_SCHUR_TOGETHER, a->left - j);
+        for (k = 0; k < together; ++k) gproji_reflect_alike_back(a, a->count + j + k, a->q + k * a->m * GPROJI_LANES);
+        for (lane = 0; lane < a->lanes; ++lane) {
+            int32_t at = d->first[a->first + lane] + j;
+            if (together == 1)
+                gproji_schur_project(s, a, lane, 1, d->side + at);
+            else
+                gproji_schur_project(s, a, lane, together, d->side + at);
+            for (k = 0; k < together; ++k) d->share[at + k] = a->share[lane] / a->left;
+            gproji_schur_place(s, a, lane, j, together);
         }
     }
 }
@@ -9436,7 +9582,11 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_schur *d = &assembly->system->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    for (; e < end; ++e) gproji_schur_element(assembly->system, e, assembly->epsilon2, d->work + chunk * d->most);
+    while (e < end) {
+        gproji_alike alike = gproji_gather_alike(assembly->system, e, end, d->work + chunk * d->most);
+        gproji_schur_alike(assembly->system, &alike, assembly->epsilon2);
+        e += alike.lanes;
+    }
 }
 
 /* D and - sum w^2 phi g of a node, from its rows. */
@@ -9458,21 +9608,32 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     }
 }
 
-/* K, b and W of a node. */
+/* K, b, W and U of a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
     double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->value + d->value_start[v];
-    double share = 1;
+    bool plain = d->own_start[v] == d->own_start[v + 1];
+    double share = 1, corner;
     int64_t k;
-    int32_t i;
+    int32_t i, j;
     for (k = d->entry_start[v]; d->turns[v] && k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
     d->metric[v] = share;
-    for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? epsilon2 * share : 0;
-    if (d->own_start[v] < d->own_start[v + 1]) gproji_schur_own(s, v, size, root, b);
+    corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
+    for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
+    memset(b, 0, (size_t)size * sizeof *b);
+    if (plain) {
+        int64_t numbers = (d->entry_start[v + 1] - d->entry_start[v]) * size;
+        for (k = 0; k < numbers; ++k) w[k] *= corner;
+        for (j = 0; j < d->wide; ++j)
+            for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
+        return;
+    }
+    gproji_schur_own(s, v, size, root, b);
     gproji_small_factor(root, size, size, DBL_MIN);
     gproji_invert_triangle(root, size);
     gproji_whiten(size, root, b);
     for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
+    for (j = 0; j < d->wide; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
 }
 
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
@@ -9482,28 +9643,48 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
         int32_t size = s->node_first[v + 1] - s->node_first[v];
-        if (s->auxiliary[s->node_first[v]]) continue;
-        if (size == 3)
+        if (s->auxiliary[s->node_first[v]])
+            memset(s->step + s->node_first[v], 0, (size_t)size * sizeof *s->step);
+        else if (size == 3)
             gproji_schur_node(s, v, 3, assembly->epsilon2);
         else
             gproji_schur_node(s, v, size, assembly->epsilon2);
     }
 }
 
-/* r + W b of some elements. */
+/* Have nodes rows of their own? If not, b = 0. */
+GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
+    return s->schur.own_start[0] < s->schur.own_start[s->node_count];
+}
+
+/* side += W x at the multipliers of an element. */
+GPROJI_INLINE void gproji_schur_times(const gproj_system *s, int32_t e, const double *x, double *side) {
+    const gproji_schur *d = &s->schur;
+    int32_t j, k;
+    int64_t l;
+    for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+        int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+        const double *w = d->value + d->link_value[l], *b = x + s->node_first[v];
+        for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
+            for (k = 0; k < size; ++k) side[j] += w[k] * b[k];
+    }
+}
+
+/* r + W b and W U of some elements. */
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
-    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), j, k;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i, j;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    int64_t l;
-    for (; e < end; ++e)
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            const double *w = d->value + d->link_value[l], *b = s->step + s->node_first[v];
-            for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
-                for (k = 0; k < size; ++k) d->side[j] += w[k] * b[k];
+    bool own = gproji_schur_has_own(s);
+    for (; e < end; ++e) {
+        if (own) gproji_schur_times(s, e, s->step, d->side);
+        for (i = 0; i < d->wide; ++i) {
+            double *side = d->side + (int64_t)(i + 1) * d->first[d->elements];
+            for (j = d->first[e]; j < d->first[e + 1]; ++j) side[j] = 0;
+            gproji_schur_times(s, e, gproji_wide_side(s, i), side);
         }
+    }
 }
 
 /* W W' at a node. */
@@ -9537,57 +9718,34 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
 }
 
-/* U at a node, and its part of W U. */
-GPROJI_INLINED void gproji_schur_wide_node(const gproji_schur *d, int32_t v, int32_t size, double *u, double *product) {
-    const double *w = d->value + d->value_start[v];
-    int64_t i;
-    int32_t p;
-    gproji_whiten(size, d->root + d->root_start[v], u);
-    for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, w += size) {
-        double sum = 0;
-        for (p = 0; p < size; ++p) sum += w[p] * u[p];
-        product[d->entry[i]] += sum;
-    }
+/* w g_i, without auxiliary variables, where U will be. */
+GPROJI_INTERNAL void gproji_schur_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                              int32_t index) {
+    double *column = gproji_wide_side(s, index);
+    memset(column, 0, (size_t)s->schur.kept * sizeof *column);
+    gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
 }
 
-/* From w g_i, which are the system's sides, to U in their place and to W U. */
-GPROJI_INTERNAL void gproji_schur_wide(gproj_system *s) {
+/* From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
+GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
-    int64_t multipliers = d->first[d->elements];
-    int32_t k, v;
-    for (k = 0; k < d->wide; ++k) {
-        double *u = gproji_wide_side(s, k), *product = d->side + (k + 1) * multipliers;
-        memset(product, 0, (size_t)multipliers * sizeof *product);
-        for (v = 0; v < s->node_count; ++v) {
-            int32_t size = s->node_first[v + 1] - s->node_first[v];
-            if (s->auxiliary[s->node_first[v]]) continue;
-            if (size == 3)
-                gproji_schur_wide_node(d, v, 3, u + s->node_first[v], product);
-            else
-                gproji_schur_wide_node(d, v, size, u + s->node_first[v], product);
-        }
-    }
-}
-
-/* From z = L^-1 (r + W b) and Y = L^-1 W U: m, and z - Y m. */
-GPROJI_INTERNAL void gproji_schur_border(gproj_system *s) {
-    const gproji_schur *d = &s->schur;
-    size_t n = (size_t)s->variable_count, multipliers = (size_t)d->first[d->elements], j;
+    size_t n = (size_t)d->kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     gproji_for_wide_rows(s, gproji_wide_value);
     for (i = 0; i < d->wide; ++i) {
-        const double *y = d->side + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
+        const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
             s->wide_matrix[(int64_t)i * s->wide_count + k] =
                 (k == i) + gproji_dot(u, gproji_wide_side(s, k), n) -
-                gproji_dot(y, d->side + (size_t)(k + 1) * multipliers, multipliers);
-        s->wide_vector[i] += gproji_dot(u, s->step, n) - gproji_dot(y, d->side, multipliers);
+                gproji_dot(y, z + (size_t)(k + 1) * multipliers, multipliers);
+        if (gproji_schur_has_own(s)) s->wide_vector[i] += gproji_dot(u, s->step, n);
+        s->wide_vector[i] -= gproji_dot(y, z, multipliers);
     }
     gproji_small_factor(s->wide_matrix, d->wide, s->wide_count, 1);
     gproji_small_solve(s->wide_matrix, d->wide, s->wide_count, s->wide_vector);
     for (k = 0; k < d->wide; ++k) {
-        const double *y = d->side + (size_t)(k + 1) * multipliers;
-        for (j = 0; j < multipliers; ++j) d->side[j] -= s->wide_vector[k] * y[j];
+        const double *y = z + (size_t)(k + 1) * multipliers;
+        for (j = 0; j < multipliers; ++j) z[j] -= s->wide_vector[k] * y[j];
     }
 }
 
@@ -9667,12 +9825,10 @@ GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    memset(s->step, 0, (size_t)s->variable_count * sizeof *s->step);
+    d->wide = gproji_for_wide_rows(s, gproji_schur_wide_column);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
-    if (d->own_start[0] < d->own_start[s->node_count]) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
-    d->wide = gproji_for_wide_rows(s, gproji_wide_column);
-    gproji_schur_wide(s);
+    if (d->wide > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
 /* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
@@ -9685,14 +9841,13 @@ GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
 GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproj_cholesky *c = s->cholesky;
-    if (d->wide == 0) {
+    if (d->wide < c->batch) {
+        if (d->wide > 0) gproji_schur_border(s, c->solution);
+        c->sides = 1;
         gproji_cholesky_finish(c, d->side);
     } else {
-        if (d->wide < c->batch)
-            memcpy(d->side, c->solution, ((size_t)d->wide + 1) * (size_t)d->first[d->elements] * sizeof *d->side);
-        else
-            gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
-        gproji_schur_border(s);
+        gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
+        gproji_schur_border(s, d->side);
         gproji_cholesky_backward(c, d->side, d->side);
     }
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_move, s);
@@ -9727,8 +9882,14 @@ enum {
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
     GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
     GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
+<<<<<<< HEAD
     GPROJI_WAKINGS = 4,      /* from then on no row of the guard waits */
     GPROJI_LINE_SAMPLES = 40
+=======
+    GPROJI_LINE_SAMPLES = 40,
+    GPROJI_PASS_TASKS = 64,          /* at most */
+    GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
+>>>>>>> 1aec22a21d7e1bc44a4d33825de2c1b31ed2f781
 };
 
 /* Where the rows stand: sums over all groups with their present weights. */
@@ -9835,23 +9996,28 @@ GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
 /* Of a group that counts: must it hold? */
 GPROJI_INTERNAL bool gproji_must_hold(const gproji_group *g) { return gproji_group_counts(g) && g->kind != GPROJ_WISH; }
 
-GPROJI_INTERNAL gproji_standing gproji_take_standing(const gproj_system *s) {
+/* By the last evaluation and the present weights. */
+GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     gproji_standing standing;
-    int32_t i, r;
+    int32_t i, k;
     memset(&standing, 0, sizeof standing);
     standing.group = standing.row = -1;
     for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
+        gproji_group *g = &s->group[i];
         double sum = 0;
         if (!gproji_group_counts(g)) continue;
-        for (r = 0; r < g->row_count; ++r) {
-            double phi = fabs(gproji_counted(g, g->row[r].phi));
-            if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
-            sum += gproji_weight2(g, &g->row[r]) * phi * phi;
-            if (g->kind == GPROJ_WISH || (standing.group >= 0 && phi <= standing.residual)) continue;
-            standing.residual = phi;
+        if (g->tallied != g->weight) {
+            g->tallied = g->weight;
+            gproji_for(&s->host.parallel, gproji_group_tasks(g), gproji_tally_task, g);
+        }
+        for (k = 0; k < gproji_group_tasks(g); ++k) {
+            const gproji_tally *tally = &g->tally[k];
+            sum += tally->sum;
+            if (g->kind == GPROJ_WISH || tally->row < 0) continue;
+            if (standing.group >= 0 && tally->largest <= standing.residual) continue;
+            standing.residual = tally->largest;
             standing.group = i;
-            standing.row = r;
+            standing.row = tally->row;
         }
         standing.merit += sum;
         if (g->kind == GPROJ_WISH) standing.energy += sum;
@@ -9869,14 +10035,96 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     return 16 * DBL_EPSILON * sum;
 }
 
+/* A pass over all variables, by several threads. */
+typedef struct gproji_pass {
+    gproj_system *system;
+    double t;
+    int32_t tasks;
+    double largest[GPROJI_PASS_TASKS]; /* what each task has found; infinite where it met what is no number */
+} gproji_pass;
+
+/* Makes the pass; returns the largest number found. */
+GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task task) {
+    gproji_pass pass;
+    double largest = 0;
+    int32_t k;
+    pass.system = s, pass.t = t;
+    pass.tasks = gproji_max(1, gproji_min(GPROJI_PASS_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
+    gproji_for(&s->host.parallel, pass.tasks, task, &pass);
+    for (k = 0; k < pass.tasks; ++k) largest = gproji_fmax(largest, pass.largest[k]);
+    return largest;
+}
+
+/* The largest of some absolute values, in four parts, so that none has to wait for the one before. */
+typedef struct gproji_maximum {
+    double part[4];
+    int32_t odd[4]; /* numbers that are none, or infinite */
+} gproji_maximum;
+
+GPROJI_INLINE void gproji_maximum_see(gproji_maximum *m, int32_t k, double d) {
+    m->part[k] = d > m->part[k] ? d : m->part[k];
+    m->odd[k] += !(d <= DBL_MAX);
+}
+
+GPROJI_INTERNAL double gproji_maximum_value(const gproji_maximum *m) {
+    if (m->odd[0] + m->odd[1] + m->odd[2] + m->odd[3] > 0) return HUGE_VAL;
+    return gproji_fmax(gproji_fmax(m->part[0], m->part[1]), gproji_fmax(m->part[2], m->part[3]));
+}
+
+/* max |x| */
+GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    const gproj_system *s = pass->system;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    gproji_maximum m;
+    memset(&m, 0, sizeof m);
+    for (; v + 4 <= end; v += 4)
+        for (k = 0; k < 4; ++k) gproji_maximum_see(&m, k, fabs(s->x[v + k]));
+    for (; v < end; ++v) gproji_maximum_see(&m, 0, fabs(s->x[v]));
+    pass->largest[task] = gproji_maximum_value(&m);
+}
+
+/* saved = x */
+GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    gproj_system *s = pass->system;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    if (v < end) memcpy(s->saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
+    pass->largest[task] = 0;
+}
+
+/* x = saved + t dx; the largest |t dx| */
+GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
+    gproji_pass *pass = (gproji_pass *)data;
+    gproj_system *s = pass->system;
+    const double *step = s->step, *saved = s->saved;
+    double *x = s->x, t = pass->t;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
+    gproji_maximum m;
+    memset(&m, 0, sizeof m);
+    for (; v + 4 <= end; v += 4)
+        for (k = 0; k < 4; ++k) {
+            double d = t * step[v + k];
+            gproji_maximum_see(&m, k, fabs(d));
+            x[v + k] = saved[v + k] + d;
+        }
+    for (; v < end; ++v) {
+        gproji_maximum_see(&m, 0, fabs(t * step[v]));
+        x[v] = saved[v] + t * step[v];
+    }
+    pass->largest[task] = gproji_maximum_value(&m);
+}
+
 /* The caller's tolerance, or what rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
-    const gproj_system *s = loop->system;
-    double largest = 0, tolerance;
-    int32_t v, i, r;
+    gproj_system *s = loop->system;
+    double tolerance;
+    int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
-    for (v = 0; v < s->variable_count; ++v) largest = gproji_fmax(largest, fabs(s->x[v]));
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * largest);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * gproji_pass_over(s, 0, gproji_extent_task));
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
             tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], r, s->x));
@@ -9932,17 +10180,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 }
 
 /* x = saved + t dx; returns the largest |t dx|, infinite where it is not a number. */
-GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
-    double largest = 0;
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) {
-        double d = fabs(t * s->step[v]);
-        if (!(d <= DBL_MAX)) return HUGE_VAL;
-        if (d > largest) largest = d;
-        s->x[v] = s->saved[v] + t * s->step[v];
-    }
-    return largest;
-}
+GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
 
 GPROJI_INTERNAL void gproji_save_x(gproj_system *s) {
     if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
@@ -10180,7 +10418,11 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     int32_t attempt;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
+<<<<<<< HEAD
     gproji_save_x(s);
+=======
+    gproji_pass_over(s, 0, gproji_save_task);
+>>>>>>> 1aec22a21d7e1bc44a4d33825de2c1b31ed2f781
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, epsilon *= 10) {
         double before = loop->standing.residual;
@@ -15562,15 +15804,10 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
 /* The volume of one triangle of the mesh, with the vectorial area A: of a closed mesh, the tetrahedron with the origin,
    a'A / 3; else the prism over the plane z = -height, A_z times its mean height. With `gradient` (of a, b, c) the
    derivatives are added to it; those of a closed mesh, A / 3 each, are right for all triangles together. */
-GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], bool closed,
-                                              double height, double *const gradient[3]) {
-    double mean;
+GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], double height,
+                                              double *const gradient[3]) {
+    double mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
     int32_t k;
-    if (closed) {
-        for (k = 0; gradient && k < 3; ++k) gproji_add_scaled3(1.0 / 3, area, gradient[k]);
-        return gproji_dot3(corner[0], area) / 3;
-    }
-    mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
     for (k = 0; gradient && k < 3; ++k) {
         const double *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
         gradient[k][0] += mean * (b[1] - c[1]) / 2;
@@ -15578,6 +15815,29 @@ GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], con
         gradient[k][2] += area[2] / 3;
     }
     return area[2] * mean;
+}
+
+/* What a face adds to the volume of a closed mesh, by the triangles from its first corner, and to the derivatives; `face`:
+   its vectorial area. */
+GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, int32_t f, double *gradient,
+                                          double face[3]) {
+    int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
+    const double *first = position + 3 * (size_t)mesh->origin[start];
+    double b[3], c[3], area[3], before[3] = {0, 0, 0};
+    gproji_sub3(position + 3 * (size_t)mesh->origin[h], first, b);
+    for (; (next = mesh->next[h]) != start; h = next) {
+        gproji_sub3(position + 3 * (size_t)mesh->origin[next], first, c);
+        gproji_cross3(b, c, area);
+        gproji_set3(area[0] / 2, area[1] / 2, area[2] / 2, area);
+        gproji_add_scaled3(1, area, face);
+        gproji_add_scaled3(1, area, before); /* both triangles at this corner */
+        if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
+        gproji_copy3(area, before);
+        gproji_copy3(c, b);
+    }
+    if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
+    if (gradient) gproji_add_scaled3(1.0 / 3, face, gradient + 3 * (size_t)mesh->origin[start]);
+    return gproji_dot3(first, face) / 3;
 }
 
 /* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
@@ -15591,7 +15851,8 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t start = mesh->face_halfedge[f];
         double face[3] = {0, 0, 0}, b[3], c[3], vector[3];
-        for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
+        if (closed) sum += gproji_face_volume(mesh, position, f, gradient, face);
+        for (h = mesh->next[start]; !closed && mesh->next[h] != start; h = mesh->next[h]) {
             size_t vertex[3];
             vertex[0] = (size_t)mesh->origin[start];
             vertex[1] = (size_t)mesh->origin[h];
@@ -15605,7 +15866,7 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
             gproji_cross3(b, c, vector);
             gproji_set3(vector[0] / 2, vector[1] / 2, vector[2] / 2, vector);
             gproji_add_scaled3(1, vector, face);
-            sum += gproji_triangle_volume(corner, vector, closed, height, gradient ? slope : NULL);
+            sum += gproji_triangle_volume(corner, vector, height, gradient ? slope : NULL);
         }
         all += gproji_length3(face);
     }
@@ -19381,11 +19642,9 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     area = gproji_fmax(area, 1e-12);
-    constant /= area;
-    for (t = 0; t < count; ++t) {
-        term[t].a = part->gradient[t] / area;
-        constant -= term[t].a * x[t];
-    }
+    for (t = 0; t < count; ++t) part->gradient[t] /= area;
+    for (t = 0; t < count; ++t) term[t].a = part->gradient[t];
+    constant = constant / area - gproji_dot(part->gradient, x, (size_t)count);
     gproj_system_set_row(system, group, 0, NULL, constant);
 }
 

@@ -5,14 +5,23 @@
        ...
        gprojx_threads_destroy(threads);
 
-   The pool has count - 1 threads, because the calling thread works too. Include guidedproj.h before this file. */
+   The pool has count - 1 threads, because the calling thread works too. To wake a sleeping thread takes longer than many
+   loops do, and the next loop is near: threads without work stay awake for a while. Include guidedproj.h before this
+   file. */
 #ifndef GPROJX_THREADS_H
 #define GPROJX_THREADS_H
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <time.h>
+
+/* Nanoseconds for which a thread stays awake without work. */
+enum {
+    GPROJX_AWAKE = 200000
+};
 
 typedef struct gprojx_threads {
     pthread_mutex_t lock;
@@ -24,9 +33,32 @@ typedef struct gprojx_threads {
     int32_t taken; /* indices given to threads so far */
     int32_t done;  /* indices whose call has returned */
     bool quit;
+    int32_t asleep;   /* threads that wait for `wake` */
+    atomic_int begun; /* loops so far, and the end; these two are read without the lock, too */
+    atomic_int ended; /* loops all of whose indices are done */
     int32_t thread_count;
     pthread_t *thread;
 } gprojx_threads;
+
+/* Waits until a number is no longer what it was, but not for long. The lock is held on entry and on return, not in
+   between. */
+static void gprojx_threads_linger(gprojx_threads *threads, atomic_int *number, int before) {
+    struct timespec start, now;
+    int i;
+    if (atomic_load(number) != before) return;
+    pthread_mutex_unlock(&threads->lock);
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    do {
+        for (i = 0; i < 16 && atomic_load(number) == before; ++i) {
+#if defined(__x86_64__) || defined(__i386__)
+            __builtin_ia32_pause();
+#endif
+        }
+        clock_gettime(CLOCK_MONOTONIC, &now);
+    } while (atomic_load(number) == before &&
+             (now.tv_sec - start.tv_sec) * 1000000000LL + now.tv_nsec - start.tv_nsec < GPROJX_AWAKE);
+    pthread_mutex_lock(&threads->lock);
+}
 
 /* Works on the present loop until all its indices are taken. The lock is held on entry and on return. */
 static void gprojx_threads_work(gprojx_threads *threads) {
@@ -37,7 +69,9 @@ static void gprojx_threads_work(gprojx_threads *threads) {
         pthread_mutex_unlock(&threads->lock);
         task(data, index);
         pthread_mutex_lock(&threads->lock);
-        if (++threads->done == threads->count) pthread_cond_broadcast(&threads->ready);
+        if (++threads->done < threads->count) continue;
+        atomic_fetch_add(&threads->ended, 1);
+        pthread_cond_broadcast(&threads->ready);
     }
 }
 
@@ -45,19 +79,25 @@ static void *gprojx_threads_main(void *user) {
     gprojx_threads *threads = (gprojx_threads *)user;
     pthread_mutex_lock(&threads->lock);
     while (!threads->quit) {
+        int begun = atomic_load(&threads->begun);
         gprojx_threads_work(threads);
-        if (!threads->quit) pthread_cond_wait(&threads->wake, &threads->lock);
+        gprojx_threads_linger(threads, &threads->begun, begun);
+        threads->asleep++;
+        while (atomic_load(&threads->begun) == begun) pthread_cond_wait(&threads->wake, &threads->lock);
+        threads->asleep--;
     }
     pthread_mutex_unlock(&threads->lock);
     return NULL;
 }
 
-/* gproj_parallel.run. A loop that is begun inside a task of another one runs on its own thread alone. */
+/* gproj_parallel.run. A loop that is begun inside a task of another one runs on its own thread alone, and so does one that
+   is a single call. */
 static void gprojx_threads_run(void *user, int32_t count, gproj_task task, void *data) {
     gprojx_threads *threads = (gprojx_threads *)user;
     int32_t i;
+    int ended;
     pthread_mutex_lock(&threads->lock);
-    if (threads->task) {
+    if (threads->task || count < 2) {
         pthread_mutex_unlock(&threads->lock);
         for (i = 0; i < count; ++i) task(data, i);
         return;
@@ -67,9 +107,12 @@ static void gprojx_threads_run(void *user, int32_t count, gproj_task task, void 
     threads->count = count;
     threads->taken = 0;
     threads->done = 0;
-    pthread_cond_broadcast(&threads->wake);
+    ended = atomic_load(&threads->ended);
+    atomic_fetch_add(&threads->begun, 1);
+    if (threads->asleep > 0) pthread_cond_broadcast(&threads->wake);
     gprojx_threads_work(threads);
-    while (threads->done < threads->count) pthread_cond_wait(&threads->ready, &threads->lock);
+    gprojx_threads_linger(threads, &threads->ended, ended);
+    while (atomic_load(&threads->ended) == ended) pthread_cond_wait(&threads->ready, &threads->lock);
     threads->task = NULL;
     pthread_mutex_unlock(&threads->lock);
 }
@@ -79,6 +122,7 @@ static void gprojx_threads_destroy(gprojx_threads *threads) {
     if (!threads) return;
     pthread_mutex_lock(&threads->lock);
     threads->quit = true;
+    atomic_fetch_add(&threads->begun, 1);
     pthread_cond_broadcast(&threads->wake);
     pthread_mutex_unlock(&threads->lock);
     for (i = 0; i < threads->thread_count; ++i) pthread_join(threads->thread[i], NULL);
