@@ -8745,6 +8745,7 @@ static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inv
 enum {
     GPROJI_SCHUR_MEETINGS = 256,   /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,      /* tasks at most */
+    GPROJI_SCHUR_AHEAD = 8,        /* nodes whose values are on their way into the cache */
     GPROJI_ELEMENTS_PER_TASK = 512 /* at least, unless there are fewer */
 };
 
@@ -9516,6 +9517,25 @@ GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int
     }
 }
 
+/* Begins to bring what gproji_schur_load_node needs into the cache: of the k-th node, and where it is of a later one. */
+GPROJI_INLINED void gproji_schur_expect(const gproj_system *s, int64_t k) {
+    const gproji_schur *d = &s->schur;
+    int64_t end = d->front_start[s->cholesky->symbolic.fronts];
+    if (k + GPROJI_SCHUR_AHEAD < end) {
+        int32_t v = d->front_node[k + GPROJI_SCHUR_AHEAD];
+        GPROJI_PREFETCH(s->node_first + v);
+        GPROJI_PREFETCH(d->entry_start + v);
+        GPROJI_PREFETCH(d->value_start + v);
+    }
+    if (k < end) {
+        int32_t v = d->front_node[k];
+        const double *w = d->value + d->value_start[v];
+        GPROJI_PREFETCH(d->entry_at + d->entry_start[v]);
+        GPROJI_PREFETCH(w);
+        GPROJI_PREFETCH(w + 8);
+    }
+}
+
 /* I + W W' of one front: see gproji_load. */
 GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel) {
     const gproj_system *s = (const gproj_system *)user;
@@ -9524,6 +9544,7 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     int64_t k;
     for (k = d->front_start[front]; k < d->front_start[front + 1]; ++k) {
         int32_t v = d->front_node[k], size = s->node_first[v + 1] - s->node_first[v];
+        gproji_schur_expect(s, k + GPROJI_SCHUR_AHEAD);
         if (size == 3)
             gproji_schur_load_node(d, v, 3, panel);
         else
