@@ -4937,21 +4937,20 @@ typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;         /* independent tasks; the fronts on top of them are one more group */
-    int32_t *order;        /* nodes: the node at each place */
-    int32_t *place;        /* nodes: the place of each node */
-    int32_t *column;       /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;     /* nodes: the front of each place */
-    gproji_front *front;   /* fronts */
-    int32_t *row_node;     /* row nodes of all fronts: their places */
-    int32_t *row_at;       /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;     /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
-    int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
-    int64_t values_size;   /* doubles for all panels */
-    int64_t work_size;     /* doubles after them, for the update matrices that do not fit in between */
-    int64_t side_size;     /* `below` rows of all fronts */
+    int32_t tasks;       /* independent tasks; the fronts on top of them are one more group */
+    int32_t *order;      /* nodes: the node at each place */
+    int32_t *place;      /* nodes: the place of each node */
+    int32_t *column;     /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;   /* nodes: the front of each place */
+    gproji_front *front; /* fronts */
+    int32_t *row_node;   /* row nodes of all fronts: their places */
+    int32_t *row_at;     /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;   /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;   /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start; /* tasks + 2: where the groups begin in `schedule` */
+    int64_t values_size; /* doubles for all panels */
+    int64_t work_size;   /* doubles after them, for the update matrices that do not fit in between */
+    int64_t side_size;   /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
     double flops;
@@ -5393,8 +5392,7 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     int32_t k, g;
     out->schedule = (int32_t *)gproji_pool_take(an->keep, out->fronts, sizeof(int32_t));
     out->task_start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
-    out->pieces_start = (int64_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 2, sizeof(int64_t));
-    if (!out->schedule || !out->task_start || !out->pieces_start) return false;
+    if (!out->schedule || !out->task_start) return false;
     for (k = 0; k < out->fronts; ++k) out->task_start[group[k] + 2]++;
     for (g = 0; g <= out->tasks; ++g) out->task_start[g + 2] += out->task_start[g + 1];
     for (k = 0; k < out->fronts; ++k) out->schedule[out->task_start[group[sequence[k]] + 1]++] = sequence[k];
@@ -5491,20 +5489,11 @@ GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group)
 
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
-    int32_t *sequence = an->a, *group = an->c, g, k;
+    int32_t *sequence = an->a, *group = an->c;
     gproji_size_panels(out);
     gproji_front_sequence(an, sequence);
-    if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
-    for (g = 0; g <= out->tasks; ++g) {
-        int32_t most = 0;
-        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
-            int32_t c = out->front[out->schedule[k]].child;
-            for (; c >= 0; c = out->front[c].sibling)
-                most = gproji_max(most, gproji_pieces_most(out->front[c].row_nodes, out->front[c].below));
-        }
-        out->pieces_start[g + 1] = out->pieces_start[g] + most;
-    }
-    return gproji_place_all(an, group);
+    return gproji_make_tasks(an, sequence, group) && gproji_make_schedule(an, sequence, group) &&
+           gproji_place_all(an, group);
 }
 
 /* Entries and flops of the factor without any zeros of relaxed supernodes. */
@@ -5714,6 +5703,8 @@ struct gproj_cholesky {
     const gproji_kernels *kernels;
     gproji_symbolic symbolic;
     int32_t *permutation; /* columns: the column of A at each column of L */
+    gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
+    int64_t *piece_start; /* fronts + 1 */
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
     int64_t entries;
     int64_t *entry;       /* entries: the number of each in the caller's arrays */
@@ -5727,13 +5718,12 @@ struct gproj_cholesky {
     int32_t room;  /* for how many `solution` and `side` have room */
     int32_t sides; /* those at work */
 
-    double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
-    double *inverse;      /* columns: the inverses of the diagonal of L */
-    gproji_piece *pieces; /* of a child, for each group of fronts */
-    int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution;     /* columns * batch: right-hand sides in the order of L */
-    double *side;         /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
-    double *rows;         /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
+    double *values;   /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
+    double *inverse;  /* columns: the inverses of the diagonal of L */
+    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution; /* columns * batch: right-hand sides in the order of L */
+    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
+    double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
 };
 
 /* -- life -- */
@@ -5745,6 +5735,8 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     c->analysed = c->factored = false;
     c->failed_column = -1;
     c->permutation = NULL;
+    c->piece = NULL;
+    c->piece_start = NULL;
     c->entry = c->target = c->entry_start = NULL;
     c->source = NULL;
     c->entries = 0;
@@ -5802,7 +5794,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
-           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)sy->pieces_start[sy->tasks + 1]; /* a piece: 2 numbers */
+           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)cholesky->piece_start[sy->fronts]; /* a piece: 2 numbers */
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -5821,6 +5813,34 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
     return true;
+}
+
+/* The pieces of front f on its way to its parent; returns their number. */
+GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, gproji_piece *piece) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f], *parent = sy->front + front->parent;
+    if (front->parent < 0) return 0;
+    return gproji_find_pieces(c->kernels, front->row_nodes, sy->row_at + front->rows,
+                              front->width + gproji_panel_shift(front->width), front->below, sy->relative + front->rows,
+                              parent->width + gproji_panel_shift(parent->width), piece);
+}
+
+/* The pieces of all fronts: counted, then kept. */
+GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t most = 0, f;
+    gproji_piece *work;
+    for (f = 0; f < sy->fronts; ++f)
+        most = gproji_max(most, gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below));
+    c->piece_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
+    work = (gproji_piece *)gproji_take(&c->own, (size_t)most, sizeof(gproji_piece));
+    if (c->piece_start && work) {
+        for (f = 0; f < sy->fronts; ++f) c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, work);
+        c->piece = (gproji_piece *)gproji_pool_take(&c->kept, c->piece_start[sy->fronts], sizeof(gproji_piece));
+    }
+    gproji_give(&c->own, work, (size_t)most, sizeof(gproji_piece));
+    for (f = 0; c->piece && f < sy->fronts; ++f) gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
+    return c->piece != NULL;
 }
 
 /* The storage rows of a front in its panel: at[variable] for the variables that have one. */
@@ -5862,7 +5882,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
         done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
                               &c->symbolic) &&
-               gproji_cholesky_permute(c, start, NULL);
+               gproji_cholesky_permute(c, start, NULL) && gproji_cholesky_find_pieces(c);
     }
     gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
     if (!done) {
@@ -6120,7 +6140,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
     graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
     if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
-        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
+        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_find_pieces(c) ||
+        !gproji_cholesky_sort_entries(c, x, start, row))
         return gproji_fail_memory(&c->error);
     gproji_cholesky_find_targets(c, x);
     return GPROJ_OK;
@@ -6168,11 +6189,10 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
-    c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
+    if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -6194,17 +6214,15 @@ GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
 
 /* Adds the children's update matrices to the front's pivot columns and to its own update matrix. */
 GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
-                                         const gproj_parallel *parallel, gproji_piece *pieces) {
+                                         const gproj_parallel *parallel) {
     const gproji_symbolic *sy = &c->symbolic;
     int32_t i;
     for (i = front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
-        add.panel = panel, add.piece = pieces, add.update = c->values + child->update, add.rows = child->update_rows;
-        add.pieces = gproji_find_pieces(
-            c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
-            child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
+        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
         gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_STRIP), gproji_add_task, &add);
     }
 }
@@ -6233,15 +6251,14 @@ GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
 }
 
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
-GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
-                                            gproji_piece *pieces) {
+GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel) {
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
     memset(panel.values, 0, (size_t)front->entries * sizeof(double));
     memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
     c->load(c->load_user, f, &panel);
-    gproji_add_children(c, front, &panel, parallel, pieces);
+    gproji_add_children(c, front, &panel, parallel);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
     if (front->below > 0) gproji_panel_update(parallel, &panel);
@@ -6387,12 +6404,11 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
-    gproji_piece *pieces = c->pieces + sy->pieces_start[group];
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
-        failed = gproji_factor_front(c, sy->schedule[k], parallel, pieces);
+        failed = gproji_factor_front(c, sy->schedule[k], parallel);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
     }
