@@ -2472,10 +2472,11 @@ typedef struct gproji_kernels {
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     /* Adds columns of which only the lower triangle counts: those that belong to the rows first..last-1 (counted from
-       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column,
-       `target` to row 0 of the column that belongs to row piece[0].to. */
+       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column;
+       `stride` leads to the next one, but after `left` columns it has become less by GPROJI_STRIP. `target` points to
+       row 0 of the column that belongs to row piece[0].to. */
     void (*add)(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, const double *source,
-                ptrdiff_t source_stride, double *target, ptrdiff_t target_stride);
+                ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
 /* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
@@ -2506,6 +2507,14 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 8
 #else
 #define GPROJI_BLOCK 4
+#endif
+
+/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory, many give a
+   BLAS matrices that are not so narrow. */
+#ifdef GPROJ_USE_CBLAS
+#define GPROJI_STRIP 48
+#else
+#define GPROJI_STRIP GPROJI_BLOCK
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -2701,12 +2710,15 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     }
 
 /* See `add`; pieces have no gaps. */
+#define GPROJI_ADD_NEXT                                                                                                \
+    if (--left == 0) left = GPROJI_STRIP, stride -= GPROJI_STRIP;                                                      \
+    source += stride;
 #define GPROJI_DEFINE_ADD(kind, L)                                                                                     \
     GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,  \
-                                               const double *source, ptrdiff_t source_stride, double *target,          \
+                                               const double *source, ptrdiff_t stride, int32_t left, double *target,   \
                                                ptrdiff_t target_stride) {                                              \
         GPROJI_BEGIN(L)                                                                                                \
-        for (; first < last; ++first, source += source_stride) {                                                       \
+        for (; first < last; ++first) {                                                                                \
             double *column = target + first * target_stride;                                                           \
             int32_t r = first, k;                                                                                      \
             for (k = 0; k < count; ++k, r = 0) {                                                                       \
@@ -2718,6 +2730,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
                 }                                                                                                      \
                 for (; r < piece[k].rows; ++r) d[r] += s[r];                                                           \
             }                                                                                                          \
+            GPROJI_ADD_NEXT                                                                                            \
         }                                                                                                              \
     }
 
@@ -2753,15 +2766,16 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_ADD_SPREAD(d, s, mask)                                                                                  \
     _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,
-                                             const double *source, ptrdiff_t source_stride, double *target,
+                                             const double *source, ptrdiff_t stride, int32_t left, double *target,
                                              ptrdiff_t target_stride) {
     uint32_t mask = piece->mask;
     int32_t i, k;
     for (i = 0; i < first; ++i) mask &= mask - 1;
-    for (; i < last; ++i, mask &= mask - 1, source += source_stride) {
+    for (; i < last; ++i, mask &= mask - 1) {
         double *column = target + __builtin_ctz(mask) * target_stride;
         GPROJI_ADD_SPREAD(column + piece->to, source + piece->from + i, mask);
         for (k = 1; k < count; ++k) GPROJI_ADD_SPREAD(column + piece[k].to, source + piece[k].from, piece[k].mask);
+        GPROJI_ADD_NEXT
     }
 }
 #endif
@@ -2841,11 +2855,11 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192,    /* so many columns, if they are the last, are taken off an update matrix together */
-    GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
-    GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+    GPROJI_CHUNK = 128,  /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
+    GPROJI_TASK_COLUMNS = 48, /* columns that one task takes the pivots' effect off; a multiple of GPROJI_STRIP */
+    GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_ROW_BLOCK = 480    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
 /* The number of pieces of `size` that cover `all`. */
@@ -2912,21 +2926,24 @@ GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
    after the other, each with the rows from its first column on. A matrix has `rows` rows, a multiple of B. */
 
-/* The stride of the strip that holds a column. */
-GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) {
-    return rows - column / GPROJI_STRIP * GPROJI_STRIP;
+/* The first column of the strip that holds a column. */
+GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
+    return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
 
-/* Row r of a column is at this offset + r; r is at least the strip's first column. */
+/* The strip's stride. */
+GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) { return rows - gproji_strip_begin(column); }
+
+/* Row r of a column is at this offset + r; r is at least the strip's first column. As if all rows were stored, less those
+   that the columns up to this one do not have. */
 GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
-    ptrdiff_t strip = column / GPROJI_STRIP, first = strip * GPROJI_STRIP;
-    ptrdiff_t before = first * rows - first * (first - GPROJI_STRIP) / 2;
-    return before + (column - first) * (rows - first) - first;
+    int32_t first = gproji_strip_begin(column);
+    return (ptrdiff_t)column * rows - (ptrdiff_t)first * (column + 1 - (first + GPROJI_STRIP) / 2);
 }
 
 /* The number of entries. */
 GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
-    int64_t first = rows / GPROJI_STRIP * GPROJI_STRIP, rest = rows - first;
+    int64_t first = gproji_strip_begin(rows), rest = rows - first;
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
@@ -2983,7 +3000,7 @@ GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
-/* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
+/* Takes the effect of the pivot columns [first, last) off at most GPROJI_TASK_COLUMNS columns, of later pivots or of
    the update matrix, from storage row `at` on. */
 GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
                                          int32_t last) {
@@ -3002,10 +3019,11 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
     }
 }
 
-/* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
+/* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
+    int32_t at = panel->w + panel->shift + index * GPROJI_TASK_COLUMNS;
+    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->rows);
     int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
         last = gproji_next_chunk(panel, first);
@@ -3014,11 +3032,11 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     }
 }
 
-/* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
+/* Some of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->last + panel->shift + index * GPROJI_STRIP;
-    int32_t end = gproji_min(at + GPROJI_STRIP, panel->w + panel->shift);
+    int32_t at = panel->last + panel->shift + index * GPROJI_TASK_COLUMNS;
+    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->w + panel->shift);
     gproji_strip_update(panel, at, end, panel->first, panel->last);
 }
 
@@ -3128,18 +3146,19 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
-/* Adds strip `index` of a child's update matrix to its parent's panel and update matrix. Different columns go to
+/* Adds some columns of a child's update matrix to its parent's panel and update matrix. Different columns go to
    different columns. A task. */
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
     const gproji_panel *panel = add->panel;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k;
+    int32_t begin = index * GPROJI_TASK_COLUMNS, end = begin + GPROJI_TASK_COLUMNS, k;
     for (k = 0; k < add->pieces; ++k) {
         const gproji_piece *piece = add->piece + k;
         int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
-        const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
+        int32_t column = piece->from + first;
         if (first >= last) continue;
-        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin),
+        panel->kernels->add(piece, add->pieces - k, first, last, add->update + gproji_update_offset(add->rows, column),
+                            gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
                             gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
     }
 }
@@ -3185,15 +3204,15 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
     gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_STRIP), gproji_trailing_task,
-                     panel);
+    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_TASK_COLUMNS),
+                     gproji_trailing_task, panel);
 }
 
 /* The effect of a factored panel on its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->w - panel->shift;
-    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
-                     panel);
+    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_TASK_COLUMNS),
+                     gproji_update_task, panel);
 }
 #endif
 
@@ -6223,7 +6242,8 @@ GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_f
         double rows = child->below;
         add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
         add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_STRIP), gproji_add_task, &add);
+        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_TASK_COLUMNS), gproji_add_task,
+                         &add);
     }
 }
 
