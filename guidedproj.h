@@ -5185,7 +5185,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
 GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
     double rows = width + below;
     double flops = width * (below * rows + width * width / 3.0);
-    return 200.0 + flops / 30.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
+    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
 }
 
 /* Keeps the supernodes that are not joined to their parent, numbered anew in the same order. joined: 0 or 1 for each on
