@@ -3146,21 +3146,59 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
+/* Adds the columns of the k-th piece's rows first..last-1, counted from its first one. */
+GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k, int32_t first, int32_t last) {
+    const gproji_panel *panel = add->panel;
+    const gproji_piece *piece = add->piece + k;
+    int32_t column = piece->from + first;
+    panel->kernels->add(piece, add->pieces - k, first, last, add->update + gproji_update_offset(add->rows, column),
+                        gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
+                        gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
+}
+
 /* Adds some columns of a child's update matrix to its parent's panel and update matrix. Different columns go to
    different columns. A task. */
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
-    const gproji_panel *panel = add->panel;
     int32_t begin = index * GPROJI_TASK_COLUMNS, end = begin + GPROJI_TASK_COLUMNS, k;
     for (k = 0; k < add->pieces; ++k) {
-        const gproji_piece *piece = add->piece + k;
-        int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
-        int32_t column = piece->from + first;
-        if (first >= last) continue;
-        panel->kernels->add(piece, add->pieces - k, first, last, add->update + gproji_update_offset(add->rows, column),
-                            gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
-                            gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
+        int32_t from = add->piece[k].from;
+        int32_t first = gproji_max(0, begin - from), last = gproji_min(add->piece[k].rows, end - from);
+        if (first < last) gproji_add_piece(add, k, first, last);
     }
+}
+
+/* Sets the columns that belong to the storage rows [from, to) to 0. */
+GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
+    int32_t pivot_end = panel->w + panel->shift, end = gproji_min(to, pivot_end);
+    from = gproji_max(from, panel->shift);
+    if (from < end) {
+        ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
+        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
+        memset(panel->values + begin, 0, (size_t)(next - begin) * sizeof(double));
+    }
+    from = gproji_max(from, pivot_end) - pivot_end, to -= pivot_end;
+    if (from < to) {
+        ptrdiff_t begin = gproji_update_offset(panel->update_rows, from) + gproji_strip_begin(from);
+        ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
+        memset(panel->update + begin, 0, (size_t)(next - begin) * sizeof(double));
+    }
+}
+
+/* Sets a panel and its update matrix to 0. */
+GPROJI_INTERNAL void gproji_clear_panel(const gproji_panel *panel) {
+    gproji_clear_columns(panel, 0, panel->w + panel->shift + panel->update_rows);
+}
+
+/* The same, and adds a child's update matrix: each column is still in the cache when it is added to. */
+GPROJI_INTERNAL void gproji_clear_and_add(const gproji_addition *add) {
+    int32_t k, at = 0, end;
+    for (k = 0; k < add->pieces; ++k, at = end) {
+        end = gproji_max(at, (add->piece[k].to & -GPROJI_BLOCK) + GPROJI_BLOCK);
+        gproji_clear_columns(add->panel, at, end);
+        gproji_add_piece(add, k, 0, add->piece[k].rows);
+    }
+    gproji_clear_columns(add->panel, at, add->panel->w + add->panel->shift + add->panel->update_rows);
 }
 
 #ifdef GPROJ_USE_CBLAS
@@ -5686,7 +5724,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    dense, ordering, symbolic.
 
    Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
-   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are
+   panels will be that come after its parent's. Both are cleared, the children's update matrices and A's values are
    added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
    in the cache; right-hand sides that are known then take part.
 
@@ -6231,19 +6269,26 @@ GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
     return true;
 }
 
-/* Adds the children's update matrices to the front's pivot columns and to its own update matrix. */
-GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
-                                         const gproj_parallel *parallel) {
+/* The children's update matrices in the front's pivot columns and in its own update matrix, and 0 elsewhere. */
+GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
+                                            const gproji_panel *panel, const gproj_parallel *parallel) {
     const gproji_symbolic *sy = &c->symbolic;
+    int64_t entries = front->entries + gproji_update_entries(front->update_rows);
+    bool cleared = (parallel && parallel->run) || front->child < 0 || entries <= GPROJI_CACHED;
     int32_t i;
+    if (cleared) gproji_clear_panel(panel);
     for (i = front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
         add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
         add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_TASK_COLUMNS), gproji_add_task,
-                         &add);
+        if (cleared)
+            gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_TASK_COLUMNS),
+                             gproji_add_task, &add);
+        else
+            gproji_clear_and_add(&add);
+        cleared = true;
     }
 }
 
@@ -6275,10 +6320,8 @@ GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const 
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(panel.values, 0, (size_t)front->entries * sizeof(double));
-    memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
+    gproji_gather_children(c, front, &panel, parallel);
     c->load(c->load_user, f, &panel);
-    gproji_add_children(c, front, &panel, parallel);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
     if (front->below > 0) gproji_panel_update(parallel, &panel);
