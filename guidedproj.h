@@ -2473,10 +2473,11 @@ typedef struct gproji_kernels {
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     /* Adds columns of which only the lower triangle counts: those that belong to the rows first..last-1 (counted from
-       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column,
-       `target` to row 0 of the column that belongs to row piece[0].to. */
+       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column;
+       `stride` leads to the next one, but after `left` columns it has become less by GPROJI_STRIP. `target` points to
+       row 0 of the column that belongs to row piece[0].to. */
     void (*add)(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, const double *source,
-                ptrdiff_t source_stride, double *target, ptrdiff_t target_stride);
+                ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
 /* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
@@ -2507,6 +2508,14 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 8
 #else
 #define GPROJI_BLOCK 4
+#endif
+
+/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory, many give a
+   BLAS matrices that are not so narrow. */
+#ifdef GPROJ_USE_CBLAS
+#define GPROJI_STRIP 48
+#else
+#define GPROJI_STRIP GPROJI_BLOCK
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -2702,12 +2711,15 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     }
 
 /* See `add`; pieces have no gaps. */
+#define GPROJI_ADD_NEXT                                                                                                \
+    if (--left == 0) left = GPROJI_STRIP, stride -= GPROJI_STRIP;                                                      \
+    source += stride;
 #define GPROJI_DEFINE_ADD(kind, L)                                                                                     \
     GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,  \
-                                               const double *source, ptrdiff_t source_stride, double *target,          \
+                                               const double *source, ptrdiff_t stride, int32_t left, double *target,   \
                                                ptrdiff_t target_stride) {                                              \
         GPROJI_BEGIN(L)                                                                                                \
-        for (; first < last; ++first, source += source_stride) {                                                       \
+        for (; first < last; ++first) {                                                                                \
             double *column = target + first * target_stride;                                                           \
             int32_t r = first, k;                                                                                      \
             for (k = 0; k < count; ++k, r = 0) {                                                                       \
@@ -2719,6 +2731,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
                 }                                                                                                      \
                 for (; r < piece[k].rows; ++r) d[r] += s[r];                                                           \
             }                                                                                                          \
+            GPROJI_ADD_NEXT                                                                                            \
         }                                                                                                              \
     }
 
@@ -2754,15 +2767,16 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_ADD_SPREAD(d, s, mask)                                                                                  \
     _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,
-                                             const double *source, ptrdiff_t source_stride, double *target,
+                                             const double *source, ptrdiff_t stride, int32_t left, double *target,
                                              ptrdiff_t target_stride) {
     uint32_t mask = piece->mask;
     int32_t i, k;
     for (i = 0; i < first; ++i) mask &= mask - 1;
-    for (; i < last; ++i, mask &= mask - 1, source += source_stride) {
+    for (; i < last; ++i, mask &= mask - 1) {
         double *column = target + __builtin_ctz(mask) * target_stride;
         GPROJI_ADD_SPREAD(column + piece->to, source + piece->from + i, mask);
         for (k = 1; k < count; ++k) GPROJI_ADD_SPREAD(column + piece[k].to, source + piece[k].from, piece[k].mask);
+        GPROJI_ADD_NEXT
     }
 }
 #endif
@@ -2842,11 +2856,11 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,     /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192,    /* so many columns, if they are the last, are taken off an update matrix together */
-    GPROJI_STRIP = 48,      /* columns of an update matrix that are stored with the same rows; a multiple of B */
-    GPROJI_TASK_ROWS = 120, /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 480  /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+    GPROJI_CHUNK = 128,  /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
+    GPROJI_TASK_COLUMNS = 48, /* columns that one task takes the pivots' effect off; a multiple of GPROJI_STRIP */
+    GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_ROW_BLOCK = 480    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
 /* The number of pieces of `size` that cover `all`. */
@@ -2913,21 +2927,24 @@ GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
    after the other, each with the rows from its first column on. A matrix has `rows` rows, a multiple of B. */
 
-/* The stride of the strip that holds a column. */
-GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) {
-    return rows - column / GPROJI_STRIP * GPROJI_STRIP;
+/* The first column of the strip that holds a column. */
+GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
+    return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
 
-/* Row r of a column is at this offset + r; r is at least the strip's first column. */
+/* The strip's stride. */
+GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) { return rows - gproji_strip_begin(column); }
+
+/* Row r of a column is at this offset + r; r is at least the strip's first column. As if all rows were stored, less those
+   that the columns up to this one do not have. */
 GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
-    ptrdiff_t strip = column / GPROJI_STRIP, first = strip * GPROJI_STRIP;
-    ptrdiff_t before = first * rows - first * (first - GPROJI_STRIP) / 2;
-    return before + (column - first) * (rows - first) - first;
+    int32_t first = gproji_strip_begin(column);
+    return (ptrdiff_t)column * rows - (ptrdiff_t)first * (column + 1 - (first + GPROJI_STRIP) / 2);
 }
 
 /* The number of entries. */
 GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
-    int64_t first = rows / GPROJI_STRIP * GPROJI_STRIP, rest = rows - first;
+    int64_t first = gproji_strip_begin(rows), rest = rows - first;
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
@@ -2984,7 +3001,7 @@ GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
-/* Takes the effect of the pivot columns [first, last) off a strip of at most GPROJI_STRIP columns, of later pivots or of
+/* Takes the effect of the pivot columns [first, last) off at most GPROJI_TASK_COLUMNS columns, of later pivots or of
    the update matrix, from storage row `at` on. */
 GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
                                          int32_t last) {
@@ -3003,10 +3020,11 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
     }
 }
 
-/* Strip `index` of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
+/* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->w + panel->shift + index * GPROJI_STRIP, end = gproji_min(at + GPROJI_STRIP, panel->rows);
+    int32_t at = panel->w + panel->shift + index * GPROJI_TASK_COLUMNS;
+    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->rows);
     int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
         last = gproji_next_chunk(panel, first);
@@ -3015,11 +3033,11 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     }
 }
 
-/* Strip `index` of the pivot columns after a chunk: takes off the chunk's effect. A task. */
+/* Some of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->last + panel->shift + index * GPROJI_STRIP;
-    int32_t end = gproji_min(at + GPROJI_STRIP, panel->w + panel->shift);
+    int32_t at = panel->last + panel->shift + index * GPROJI_TASK_COLUMNS;
+    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->w + panel->shift);
     gproji_strip_update(panel, at, end, panel->first, panel->last);
 }
 
@@ -3129,20 +3147,59 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
-/* Adds strip `index` of a child's update matrix to its parent's panel and update matrix. Different columns go to
+/* Adds the columns of the k-th piece's rows first..last-1, counted from its first one. */
+GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k, int32_t first, int32_t last) {
+    const gproji_panel *panel = add->panel;
+    const gproji_piece *piece = add->piece + k;
+    int32_t column = piece->from + first;
+    panel->kernels->add(piece, add->pieces - k, first, last, add->update + gproji_update_offset(add->rows, column),
+                        gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
+                        gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
+}
+
+/* Adds some columns of a child's update matrix to its parent's panel and update matrix. Different columns go to
    different columns. A task. */
 GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
     const gproji_addition *add = (const gproji_addition *)data;
-    const gproji_panel *panel = add->panel;
-    int32_t begin = index * GPROJI_STRIP, end = begin + GPROJI_STRIP, k;
+    int32_t begin = index * GPROJI_TASK_COLUMNS, end = begin + GPROJI_TASK_COLUMNS, k;
     for (k = 0; k < add->pieces; ++k) {
-        const gproji_piece *piece = add->piece + k;
-        int32_t first = gproji_max(0, begin - piece->from), last = gproji_min(piece->rows, end - piece->from);
-        const double *source = add->update + gproji_update_offset(add->rows, piece->from + first);
-        if (first >= last) continue;
-        panel->kernels->add(piece, add->pieces - k, first, last, source, gproji_update_stride(add->rows, begin),
-                            gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
+        int32_t from = add->piece[k].from;
+        int32_t first = gproji_max(0, begin - from), last = gproji_min(add->piece[k].rows, end - from);
+        if (first < last) gproji_add_piece(add, k, first, last);
     }
+}
+
+/* Sets the columns that belong to the storage rows [from, to) to 0. */
+GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
+    int32_t pivot_end = panel->w + panel->shift, end = gproji_min(to, pivot_end);
+    from = gproji_max(from, panel->shift);
+    if (from < end) {
+        ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
+        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
+        memset(panel->values + begin, 0, (size_t)(next - begin) * sizeof(double));
+    }
+    from = gproji_max(from, pivot_end) - pivot_end, to -= pivot_end;
+    if (from < to) {
+        ptrdiff_t begin = gproji_update_offset(panel->update_rows, from) + gproji_strip_begin(from);
+        ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
+        memset(panel->update + begin, 0, (size_t)(next - begin) * sizeof(double));
+    }
+}
+
+/* Sets a panel and its update matrix to 0. */
+GPROJI_INTERNAL void gproji_clear_panel(const gproji_panel *panel) {
+    gproji_clear_columns(panel, 0, panel->w + panel->shift + panel->update_rows);
+}
+
+/* The same, and adds a child's update matrix: each column is still in the cache when it is added to. */
+GPROJI_INTERNAL void gproji_clear_and_add(const gproji_addition *add) {
+    int32_t k, at = 0, end;
+    for (k = 0; k < add->pieces; ++k, at = end) {
+        end = gproji_max(at, (add->piece[k].to & -GPROJI_BLOCK) + GPROJI_BLOCK);
+        gproji_clear_columns(add->panel, at, end);
+        gproji_add_piece(add, k, 0, add->piece[k].rows);
+    }
+    gproji_clear_columns(add->panel, at, add->panel->w + add->panel->shift + add->panel->update_rows);
 }
 
 #ifdef GPROJ_USE_CBLAS
@@ -3186,15 +3243,15 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
     gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_STRIP), gproji_trailing_task,
-                     panel);
+    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_TASK_COLUMNS),
+                     gproji_trailing_task, panel);
 }
 
 /* The effect of a factored panel on its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->w - panel->shift;
-    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_STRIP), gproji_update_task,
-                     panel);
+    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_TASK_COLUMNS),
+                     gproji_update_task, panel);
 }
 #endif
 
@@ -4938,21 +4995,20 @@ typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;         /* independent tasks; the fronts on top of them are one more group */
-    int32_t *order;        /* nodes: the node at each place */
-    int32_t *place;        /* nodes: the place of each node */
-    int32_t *column;       /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;     /* nodes: the front of each place */
-    gproji_front *front;   /* fronts */
-    int32_t *row_node;     /* row nodes of all fronts: their places */
-    int32_t *row_at;       /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;     /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;     /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start;   /* tasks + 2: where the groups begin in `schedule` */
-    int64_t *pieces_start; /* tasks + 2: where the groups' room for pieces begins */
-    int64_t values_size;   /* doubles for all panels */
-    int64_t work_size;     /* doubles after them, for the update matrices that do not fit in between */
-    int64_t side_size;     /* `below` rows of all fronts */
+    int32_t tasks;       /* independent tasks; the fronts on top of them are one more group */
+    int32_t *order;      /* nodes: the node at each place */
+    int32_t *place;      /* nodes: the place of each node */
+    int32_t *column;     /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;   /* nodes: the front of each place */
+    gproji_front *front; /* fronts */
+    int32_t *row_node;   /* row nodes of all fronts: their places */
+    int32_t *row_at;     /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;   /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;   /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start; /* tasks + 2: where the groups begin in `schedule` */
+    int64_t values_size; /* doubles for all panels */
+    int64_t work_size;   /* doubles after them, for the update matrices that do not fit in between */
+    int64_t side_size;   /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
     double flops;
@@ -5168,7 +5224,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
 GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
     double rows = width + below;
     double flops = width * (below * rows + width * width / 3.0);
-    return 200.0 + flops / 30.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
+    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
 }
 
 /* Keeps the supernodes that are not joined to their parent, numbered anew in the same order. joined: 0 or 1 for each on
@@ -5394,8 +5450,7 @@ GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *se
     int32_t k, g;
     out->schedule = (int32_t *)gproji_pool_take(an->keep, out->fronts, sizeof(int32_t));
     out->task_start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
-    out->pieces_start = (int64_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 2, sizeof(int64_t));
-    if (!out->schedule || !out->task_start || !out->pieces_start) return false;
+    if (!out->schedule || !out->task_start) return false;
     for (k = 0; k < out->fronts; ++k) out->task_start[group[k] + 2]++;
     for (g = 0; g <= out->tasks; ++g) out->task_start[g + 2] += out->task_start[g + 1];
     for (k = 0; k < out->fronts; ++k) out->schedule[out->task_start[group[sequence[k]] + 1]++] = sequence[k];
@@ -5492,20 +5547,11 @@ GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group)
 
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
-    int32_t *sequence = an->a, *group = an->c, g, k;
+    int32_t *sequence = an->a, *group = an->c;
     gproji_size_panels(out);
     gproji_front_sequence(an, sequence);
-    if (!gproji_make_tasks(an, sequence, group) || !gproji_make_schedule(an, sequence, group)) return false;
-    for (g = 0; g <= out->tasks; ++g) {
-        int32_t most = 0;
-        for (k = out->task_start[g]; k < out->task_start[g + 1]; ++k) {
-            int32_t c = out->front[out->schedule[k]].child;
-            for (; c >= 0; c = out->front[c].sibling)
-                most = gproji_max(most, gproji_pieces_most(out->front[c].row_nodes, out->front[c].below));
-        }
-        out->pieces_start[g + 1] = out->pieces_start[g] + most;
-    }
-    return gproji_place_all(an, group);
+    return gproji_make_tasks(an, sequence, group) && gproji_make_schedule(an, sequence, group) &&
+           gproji_place_all(an, group);
 }
 
 /* Entries and flops of the factor without any zeros of relaxed supernodes. */
@@ -5679,7 +5725,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    dense, ordering, symbolic.
 
    Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
-   panels will be that come after its parent's. Both are cleared, A's values and the children's update matrices are
+   panels will be that come after its parent's. Both are cleared, the children's update matrices and A's values are
    added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
    in the cache; right-hand sides that are known then take part.
 
@@ -5715,6 +5761,8 @@ struct gproj_cholesky {
     const gproji_kernels *kernels;
     gproji_symbolic symbolic;
     int32_t *permutation; /* columns: the column of A at each column of L */
+    gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
+    int64_t *piece_start; /* fronts + 1 */
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
     int64_t entries;
     int64_t *entry;       /* entries: the number of each in the caller's arrays */
@@ -5730,13 +5778,12 @@ struct gproj_cholesky {
     const double *given; /* the right-hand sides; each front takes its part of them, */
     double *found;       /* and puts its part of the solutions here: both in the order of A */
 
-    double *values;       /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
-    double *inverse;      /* columns: the inverses of the diagonal of L */
-    gproji_piece *pieces; /* of a child, for each group of fronts */
-    int32_t *failed;      /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution;     /* columns * batch: right-hand sides in the order of L */
-    double *side;         /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
-    double *rows;         /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
+    double *values;   /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
+    double *inverse;  /* columns: the inverses of the diagonal of L */
+    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution; /* columns * batch: right-hand sides in the order of L */
+    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
+    double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
 };
 
 /* -- life -- */
@@ -5748,6 +5795,8 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     c->analysed = c->factored = false;
     c->failed_column = -1;
     c->permutation = NULL;
+    c->piece = NULL;
+    c->piece_start = NULL;
     c->entry = c->target = c->entry_start = NULL;
     c->source = NULL;
     c->entries = 0;
@@ -5805,7 +5854,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
-           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)sy->pieces_start[sy->tasks + 1]; /* a piece: 2 numbers */
+           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)cholesky->piece_start[sy->fronts]; /* a piece: 2 numbers */
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -5824,6 +5873,34 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
     return true;
+}
+
+/* The pieces of front f on its way to its parent; returns their number. */
+GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, gproji_piece *piece) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f], *parent = sy->front + front->parent;
+    if (front->parent < 0) return 0;
+    return gproji_find_pieces(c->kernels, front->row_nodes, sy->row_at + front->rows,
+                              front->width + gproji_panel_shift(front->width), front->below, sy->relative + front->rows,
+                              parent->width + gproji_panel_shift(parent->width), piece);
+}
+
+/* The pieces of all fronts: counted, then kept. */
+GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t most = 0, f;
+    gproji_piece *work;
+    for (f = 0; f < sy->fronts; ++f)
+        most = gproji_max(most, gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below));
+    c->piece_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
+    work = (gproji_piece *)gproji_take(&c->own, (size_t)most, sizeof(gproji_piece));
+    if (c->piece_start && work) {
+        for (f = 0; f < sy->fronts; ++f) c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, work);
+        c->piece = (gproji_piece *)gproji_pool_take(&c->kept, c->piece_start[sy->fronts], sizeof(gproji_piece));
+    }
+    gproji_give(&c->own, work, (size_t)most, sizeof(gproji_piece));
+    for (f = 0; c->piece && f < sy->fronts; ++f) gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
+    return c->piece != NULL;
 }
 
 /* The storage rows of a front in its panel: at[variable] for the variables that have one. */
@@ -5865,7 +5942,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
         done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
                               &c->symbolic) &&
-               gproji_cholesky_permute(c, start, NULL);
+               gproji_cholesky_permute(c, start, NULL) && gproji_cholesky_find_pieces(c);
     }
     gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
     if (!done) {
@@ -6123,7 +6200,8 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gpro
     if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
     graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
     if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
-        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_sort_entries(c, x, start, row))
+        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_find_pieces(c) ||
+        !gproji_cholesky_sort_entries(c, x, start, row))
         return gproji_fail_memory(&c->error);
     gproji_cholesky_find_targets(c, x);
     return GPROJ_OK;
@@ -6171,11 +6249,10 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
-    c->pieces = (gproji_piece *)gproji_pool_take(&c->numeric, sy->pieces_start[groups], sizeof(gproji_piece));
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->inverse && c->rows && c->solution && c->side && c->pieces && c->failed && c->values) return true;
+    if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -6195,20 +6272,26 @@ GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
     return true;
 }
 
-/* Adds the children's update matrices to the front's pivot columns and to its own update matrix. */
-GPROJI_INTERNAL void gproji_add_children(const gproj_cholesky *c, const gproji_front *front, const gproji_panel *panel,
-                                         const gproj_parallel *parallel, gproji_piece *pieces) {
+/* The children's update matrices in the front's pivot columns and in its own update matrix, and 0 elsewhere. */
+GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
+                                            const gproji_panel *panel, const gproj_parallel *parallel) {
     const gproji_symbolic *sy = &c->symbolic;
+    int64_t entries = front->entries + gproji_update_entries(front->update_rows);
+    bool cleared = (parallel && parallel->run) || front->child < 0 || entries <= GPROJI_CACHED;
     int32_t i;
+    if (cleared) gproji_clear_panel(panel);
     for (i = front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
         double rows = child->below;
-        add.panel = panel, add.piece = pieces, add.update = c->values + child->update, add.rows = child->update_rows;
-        add.pieces = gproji_find_pieces(
-            c->kernels, child->row_nodes, sy->row_at + child->rows, child->width + gproji_panel_shift(child->width),
-            child->below, sy->relative + child->rows, front->width + gproji_panel_shift(front->width), pieces);
-        gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_STRIP), gproji_add_task, &add);
+        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
+        if (cleared)
+            gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_TASK_COLUMNS),
+                             gproji_add_task, &add);
+        else
+            gproji_clear_and_add(&add);
+        cleared = true;
     }
 }
 
@@ -6236,15 +6319,12 @@ GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
 }
 
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
-GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel,
-                                            gproji_piece *pieces) {
+GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel) {
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
     int32_t failed;
-    memset(panel.values, 0, (size_t)front->entries * sizeof(double));
-    memset(panel.update, 0, (size_t)gproji_update_entries(front->update_rows) * sizeof(double));
+    gproji_gather_children(c, front, &panel, parallel);
     c->load(c->load_user, f, &panel);
-    gproji_add_children(c, front, &panel, parallel, pieces);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
     if (front->below > 0) gproji_panel_update(parallel, &panel);
@@ -6383,12 +6463,11 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
-    gproji_piece *pieces = c->pieces + sy->pieces_start[group];
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
-        failed = gproji_factor_front(c, sy->schedule[k], parallel, pieces);
+        failed = gproji_factor_front(c, sy->schedule[k], parallel);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
     }
@@ -8784,6 +8863,7 @@ static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inv
 enum {
     GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
+    GPROJI_SCHUR_AHEAD = 8,         /* nodes whose values are on their way into the cache */
     GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
     GPROJI_LANES = 8,               /* elements that are worked on together */
     GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
@@ -9702,6 +9782,25 @@ GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int
     }
 }
 
+/* Begins to bring what gproji_schur_load_node needs into the cache: of the k-th node, and where it is of a later one. */
+GPROJI_INLINED void gproji_schur_expect(const gproj_system *s, int64_t k) {
+    const gproji_schur *d = &s->schur;
+    int64_t end = d->front_start[s->cholesky->symbolic.fronts];
+    if (k + GPROJI_SCHUR_AHEAD < end) {
+        int32_t v = d->front_node[k + GPROJI_SCHUR_AHEAD];
+        GPROJI_PREFETCH(s->node_first + v);
+        GPROJI_PREFETCH(d->entry_start + v);
+        GPROJI_PREFETCH(d->value_start + v);
+    }
+    if (k < end) {
+        int32_t v = d->front_node[k];
+        const double *w = d->value + d->value_start[v];
+        GPROJI_PREFETCH(d->entry_at + d->entry_start[v]);
+        GPROJI_PREFETCH(w);
+        GPROJI_PREFETCH(w + 8);
+    }
+}
+
 /* I + W W' of one front: see gproji_load. */
 GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel) {
     const gproj_system *s = (const gproj_system *)user;
@@ -9710,6 +9809,7 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     int64_t k;
     for (k = d->front_start[front]; k < d->front_start[front + 1]; ++k) {
         int32_t v = d->front_node[k], size = s->node_first[v + 1] - s->node_first[v];
+        gproji_schur_expect(s, k + GPROJI_SCHUR_AHEAD);
         if (size == 3)
             gproji_schur_load_node(d, v, 3, panel);
         else
@@ -9882,14 +9982,10 @@ enum {
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
     GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
     GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
-<<<<<<< HEAD
     GPROJI_WAKINGS = 4,      /* from then on no row of the guard waits */
-    GPROJI_LINE_SAMPLES = 40
-=======
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
->>>>>>> 1aec22a21d7e1bc44a4d33825de2c1b31ed2f781
 };
 
 /* Where the rows stand: sums over all groups with their present weights. */
@@ -10182,10 +10278,6 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 /* x = saved + t dx; returns the largest |t dx|, infinite where it is not a number. */
 GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
 
-GPROJI_INTERNAL void gproji_save_x(gproj_system *s) {
-    if (s->variable_count) memcpy(s->saved, s->x, (size_t)s->variable_count * sizeof *s->x);
-}
-
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
     if (s->compiled && s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
 }
@@ -10370,7 +10462,7 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool guard) {
     if (gproji_compile(s, false) != GPROJ_OK) return true;
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
-    gproji_save_x(s);
+    gproji_pass_over(s, 0, gproji_save_task);
     return true;
 }
 
@@ -10418,11 +10510,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     int32_t attempt;
     if (!(epsilon > 0))
         epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
-<<<<<<< HEAD
-    gproji_save_x(s);
-=======
     gproji_pass_over(s, 0, gproji_save_task);
->>>>>>> 1aec22a21d7e1bc44a4d33825de2c1b31ed2f781
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, epsilon *= 10) {
         double before = loop->standing.residual;
@@ -10907,7 +10995,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     double shift = curved ? loop->shift : 0;
-    gproji_save_x(s);
+    gproji_pass_over(s, 0, gproji_save_task);
     for (loop->iteration.attempts = 0; loop->iteration.attempts < GPROJI_NEAREST_ATTEMPTS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {

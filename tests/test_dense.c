@@ -249,7 +249,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
     add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
     GPROJT_CHECK(add.pieces <= gproji_pieces_most(groups, below));
-    for (i = 0; i < gproji_pieces(below, GPROJI_STRIP); ++i) gproji_add_task(&add, i);
+    for (i = 0; i < gproji_pieces(below, GPROJI_TASK_COLUMNS); ++i) gproji_add_task(&add, i);
     for (j = 0; j < below; ++j)
         for (i = j; i < below; ++i) {
             double *entry = entry_of(&panel, values, row_to[i], row_to[j]);
