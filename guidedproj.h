@@ -9876,7 +9876,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
 /* ============================================================================================================
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
-   error, system, schur.
+   error, parallel, system, schur.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
