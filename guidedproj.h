@@ -7348,6 +7348,7 @@ typedef struct gproji_row {
     double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* compiled: kept out of the matrix */
+    bool run;    /* compiled, of a wide row: its terms are linear, and their variables follow each other */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
     bool waits;  /* a guard's that has not come near to acting: it has no multiplier */
 } gproji_row;
@@ -7382,6 +7383,7 @@ typedef struct gproji_group {
     bool idle;       /* whenever the rows were compiled, its schedule was without weight */
     int32_t closing; /* the first so many rows close: those of an auxiliary node add up to nothing at the nodes that
                         they join, as n'(v_i - v_j) does around a face */
+    bool has_wide;   /* compiled: some rows are kept out of the matrix */
     bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;    /* of the guard: a step may violate its rows by so much */
     int32_t wakings; /* of the guard: how often rows ceased to wait */
@@ -7446,7 +7448,7 @@ typedef struct gproji_schur {
     double *triangle; /* elements x triangle_size: R, with the inverses of its diagonal */
     double *work;     /* chunks x most */
     int32_t chunks, wide, triangle_size;
-    int32_t kept; /* variables from this one on are auxiliary */
+    int32_t kept; /* variables from this one on are auxiliary (those before may be) */
     int64_t most; /* what one element needs of `work` */
 } gproji_schur;
 
@@ -8028,6 +8030,14 @@ GPROJI_INTERNAL void gproji_couple_blocks(const gproj_system *s, int32_t r, gpro
     }
 }
 
+/* Are its terms linear, and do their variables follow each other? */
+GPROJI_INTERNAL bool gproji_is_run(const gproji_group *g, const gproji_row *row) {
+    const gproj_term *term = g->term + row->term;
+    int64_t count = row[1].term - row->term, t;
+    for (t = 0; t < count && term[t].j < 0 && term[t].i == term[0].i + t;) ++t;
+    return t == count && count > 0;
+}
+
 /* Step 1: the variables of all rows; which rows are wide; which blocks are coupled, for which `node` serves as marks. */
 GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gproji_named *named) {
     size_t most = 2 * (size_t)g->row[g->row_count].term;
@@ -8038,11 +8048,14 @@ GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gpr
     g->local_count = most;
     if (!g->local_variable) return false;
     for (v = 0; v < s->variable_count; ++v) named[v].row = named[v].block = -1;
+    g->has_wide = false;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         row->local = filled;
         count = gproji_name_locals(g, r, named, g->local_variable + filled);
         row->wide = g->global || count > GPROJI_WIDE_ROW;
+        row->run = row->wide && gproji_is_run(g, row);
+        g->has_wide = g->has_wide || row->wide;
         s->wide_count += row->wide;
         if (!row->wide) gproji_couple_blocks(s, r, named, count, g->local_variable + filled, s->node);
         filled += count;
@@ -8578,8 +8591,14 @@ GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row 
 
 /* out += scale * gradient */
 GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row, double scale, double *out) {
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l) out[g->local_variable[l]] += scale * g->local_gradient[l];
+    int64_t l, count = row[1].local - row->local;
+    const double *gradient = g->local_gradient + row->local;
+    const int32_t *variable = g->local_variable + row->local;
+    if (row->run) {
+        for (out += variable[0], l = 0; l < count; ++l) out[l] += scale * gradient[l];
+        return;
+    }
+    for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
 /* gradient = sum w^2 phi grad phi over narrow rows that act: half the gradient of their part of the merit. */
@@ -8695,7 +8714,7 @@ GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide 
     if (s->wide_count == 0) return 0;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r)
+        for (r = 0; g->has_wide && g->weight > 0 && r < g->row_count; ++r)
             if (g->row[r].wide && g->row[r].active) visit(s, g, &g->row[r], index++);
     }
     return index;
@@ -9234,6 +9253,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     int32_t i;
     gproji_schur_measure(s, &entries, &values);
     for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
+    d->kept =
+        gproji_min(gproji_round_up(d->kept, 4), s->variable_count); /* gproji_dot's sums do not see what follows */
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (i = 0; d->root_start && i < nodes; ++i) {
         int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
@@ -9737,16 +9758,23 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
 
-/* side += W x at the multipliers of an element. */
-GPROJI_INLINE void gproji_schur_times(const gproj_system *s, int32_t e, const double *x, double *side) {
+/* side = a + W x at the multipliers of an element. */
+GPROJI_INLINED void gproji_schur_times(const gproj_system *s, int32_t e, const double *a, const double *x,
+                                       double *side) {
     const gproji_schur *d = &s->schur;
-    int32_t j, k;
+    int32_t first = d->first[e], left = d->first[e + 1] - first, j, k;
     int64_t l;
-    for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-        int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-        const double *w = d->value + d->link_value[l], *b = x + s->node_first[v];
-        for (j = d->first[e]; j < d->first[e + 1]; ++j, w += size)
-            for (k = 0; k < size; ++k) side[j] += w[k] * b[k];
+    for (j = 0; j < left; ++j) {
+        double sum = a ? a[first + j] : 0;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            int32_t v = d->link_node[l], at = s->node_first[v], size = s->node_first[v + 1] - at;
+            const double *w = d->value + d->link_value[l] + (int64_t)j * size, *b = x + at;
+            if (size == 3)
+                sum += w[0] * b[0] + w[1] * b[1] + w[2] * b[2];
+            else
+                for (k = 0; k < size; ++k) sum += w[k] * b[k];
+        }
+        side[first + j] = sum;
     }
 }
 
@@ -9754,16 +9782,13 @@ GPROJI_INLINE void gproji_schur_times(const gproj_system *s, int32_t e, const do
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
-    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i, j;
+    int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     bool own = gproji_schur_has_own(s);
     for (; e < end; ++e) {
-        if (own) gproji_schur_times(s, e, s->step, d->side);
-        for (i = 0; i < d->wide; ++i) {
-            double *side = d->side + (int64_t)(i + 1) * d->first[d->elements];
-            for (j = d->first[e]; j < d->first[e + 1]; ++j) side[j] = 0;
-            gproji_schur_times(s, e, gproji_wide_side(s, i), side);
-        }
+        if (own) gproji_schur_times(s, e, d->side, s->step, d->side);
+        for (i = 0; i < d->wide; ++i)
+            gproji_schur_times(s, e, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
     }
 }
 
@@ -9956,7 +9981,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
 /* ============================================================================================================
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
-   error, system, schur.
+   error, parallel, system, schur.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
@@ -15905,8 +15930,8 @@ GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], con
     return area[2] * mean;
 }
 
-/* What a face adds to the volume of a closed mesh, by the triangles from its first corner, and to the derivatives; `face`:
-   its vectorial area. */
+/* What a face adds to six times the volume of a closed mesh, by the triangles from its first corner, and to the derivatives
+   of that; `face`: twice its vectorial area. */
 GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, int32_t f, double *gradient,
                                           double face[3]) {
     int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
@@ -15916,31 +15941,46 @@ GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *
     for (; (next = mesh->next[h]) != start; h = next) {
         gproji_sub3(position + 3 * (size_t)mesh->origin[next], first, c);
         gproji_cross3(b, c, area);
-        gproji_set3(area[0] / 2, area[1] / 2, area[2] / 2, area);
         gproji_add_scaled3(1, area, face);
         gproji_add_scaled3(1, area, before); /* both triangles at this corner */
-        if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
+        if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
         gproji_copy3(area, before);
         gproji_copy3(c, b);
     }
-    if (gradient) gproji_add_scaled3(1.0 / 3, before, gradient + 3 * (size_t)mesh->origin[h]);
-    if (gradient) gproji_add_scaled3(1.0 / 3, face, gradient + 3 * (size_t)mesh->origin[start]);
-    return gproji_dot3(first, face) / 3;
+    if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
+    if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
+    return gproji_dot3(first, face);
+}
+
+/* gproji_volume of a closed mesh. */
+GPROJI_INTERNAL double gproji_closed_volume(const gproj_mesh *mesh, const double *position, double *gradient,
+                                            double *area) {
+    size_t count = gradient ? 3 * (size_t)mesh->vertex_count : 0, i;
+    double sum = 0, all = 0;
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double face[3] = {0, 0, 0};
+        sum += gproji_face_volume(mesh, position, f, gradient, face);
+        all += gproji_length3(face);
+    }
+    for (i = 0; i < count; ++i) gradient[i] *= 1.0 / 6;
+    if (area) *area = all / 2;
+    return sum / 6;
 }
 
 /* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
-   areas; adds the volume's derivatives to `gradient`, 3 numbers a vertex, unless that is NULL. */
+   areas; `gradient` becomes the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
 GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
                                      double *area) {
-    bool closed = mesh->loop_count == 0;
     double sum = 0, all = 0, *slope[3];
     const double *corner[3];
     int32_t f, k, h;
+    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    if (mesh->loop_count == 0) return gproji_closed_volume(mesh, position, gradient, area);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t start = mesh->face_halfedge[f];
         double face[3] = {0, 0, 0}, b[3], c[3], vector[3];
-        if (closed) sum += gproji_face_volume(mesh, position, f, gradient, face);
-        for (h = mesh->next[start]; !closed && mesh->next[h] != start; h = mesh->next[h]) {
+        for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
             size_t vertex[3];
             vertex[0] = (size_t)mesh->origin[start];
             vertex[1] = (size_t)mesh->origin[h];
@@ -19727,12 +19767,13 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     double height = form->centre[2] * form->scale, area, constant;
     int32_t count, t;
     gproj_term *term = gproji_row_terms(system, group, 0, &count);
-    memset(part->gradient, 0, (size_t)count * sizeof *part->gradient);
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     area = gproji_fmax(area, 1e-12);
-    for (t = 0; t < count; ++t) part->gradient[t] /= area;
-    for (t = 0; t < count; ++t) term[t].a = part->gradient[t];
-    constant = constant / area - gproji_dot(part->gradient, x, (size_t)count);
+    constant /= area;
+    for (t = 0; t < count; ++t) {
+        term[t].a = part->gradient[t] / area;
+        constant -= term[t].a * x[t]; /* in the order of the row's value: their roundings are alike */
+    }
     gproj_system_set_row(system, group, 0, NULL, constant);
 }
 
