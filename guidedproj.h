@@ -6342,6 +6342,8 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
         const gproji_front *child = &sy->front[f];
         const double *from = gproji_front_side(c, child, side), *end = from + child->below;
         const int32_t *relative = sy->relative + child->rows, *at = sy->row_at + child->rows;
+        if (child->below == child->row_nodes) /* nodes of one variable */
+            for (; from < end; ++from, ++relative) z[*relative] += *from;
         for (; from < end; from += i, ++relative, ++at) {
             int32_t count =
                 at + 1 < sy->row_at + child->rows + child->row_nodes ? at[1] - at[0] : (int32_t)(end - from);
@@ -6379,8 +6381,12 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
     gproji_panel panel = gproji_front_panel(c, front);
     pivots = z + gproji_panel_shift(front->width);
     gproji_start_rows(front, x, z);
-    for (k = 0, to = pivots + front->width; k < front->row_nodes; ++k)
-        for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
+    to = pivots + front->width;
+    if (sy->columns == sy->nodes) /* a node's place is its column */
+        for (k = 0; k < front->row_nodes; ++k) to[k] = x[node[k]];
+    else
+        for (k = 0; k < front->row_nodes; ++k)
+            for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
     gproji_panel_backward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
 }
