@@ -2509,12 +2509,14 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 4
 #endif
 
-/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory, many give a
-   BLAS matrices that are not so narrow. */
+/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory; where
+   pieces have no gaps, more make them longer, and a BLAS wants matrices that are not too narrow. */
 #ifdef GPROJ_USE_CBLAS
 #define GPROJI_STRIP 48
+#elif GPROJI_BLOCK == 8
+#define GPROJI_STRIP 8
 #else
-#define GPROJI_STRIP GPROJI_BLOCK
+#define GPROJI_STRIP 16
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -3194,7 +3196,7 @@ GPROJI_INTERNAL void gproji_clear_panel(const gproji_panel *panel) {
 GPROJI_INTERNAL void gproji_clear_and_add(const gproji_addition *add) {
     int32_t k, at = 0, end;
     for (k = 0; k < add->pieces; ++k, at = end) {
-        end = gproji_max(at, (add->piece[k].to & -GPROJI_BLOCK) + GPROJI_BLOCK);
+        end = gproji_max(at, gproji_round_up(add->piece[k].to + add->piece[k].rows, GPROJI_BLOCK));
         gproji_clear_columns(add->panel, at, end);
         gproji_add_piece(add, k, 0, add->piece[k].rows);
     }
