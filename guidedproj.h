@@ -2510,12 +2510,14 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 4
 #endif
 
-/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory, many give a
-   BLAS matrices that are not so narrow. */
+/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory; where
+   pieces have no gaps, more make them longer, and a BLAS wants matrices that are not too narrow. */
 #ifdef GPROJ_USE_CBLAS
 #define GPROJI_STRIP 48
+#elif GPROJI_BLOCK == 8
+#define GPROJI_STRIP 8
 #else
-#define GPROJI_STRIP GPROJI_BLOCK
+#define GPROJI_STRIP 16
 #endif
 
 /* Vectors, and the same in memory: aligned like a double only. */
@@ -3195,7 +3197,7 @@ GPROJI_INTERNAL void gproji_clear_panel(const gproji_panel *panel) {
 GPROJI_INTERNAL void gproji_clear_and_add(const gproji_addition *add) {
     int32_t k, at = 0, end;
     for (k = 0; k < add->pieces; ++k, at = end) {
-        end = gproji_max(at, (add->piece[k].to & -GPROJI_BLOCK) + GPROJI_BLOCK);
+        end = gproji_max(at, gproji_round_up(add->piece[k].to + add->piece[k].rows, GPROJI_BLOCK));
         gproji_clear_columns(add->panel, at, end);
         gproji_add_piece(add, k, 0, add->piece[k].rows);
     }
@@ -6345,6 +6347,8 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
         const gproji_front *child = &sy->front[f];
         const double *from = gproji_front_side(c, child, side), *end = from + child->below;
         const int32_t *relative = sy->relative + child->rows, *at = sy->row_at + child->rows;
+        if (child->below == child->row_nodes) /* nodes of one variable */
+            for (; from < end; ++from, ++relative) z[*relative] += *from;
         for (; from < end; from += i, ++relative, ++at) {
             int32_t count =
                 at + 1 < sy->row_at + child->rows + child->row_nodes ? at[1] - at[0] : (int32_t)(end - from);
@@ -6385,8 +6389,12 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
     int32_t i, k;
     gproji_panel panel = gproji_front_panel(c, front);
     memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
-    for (k = 0, to = pivots + front->width; k < front->row_nodes; ++k)
-        for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
+    to = pivots + front->width;
+    if (sy->columns == sy->nodes) /* a node's place is its column */
+        for (k = 0; k < front->row_nodes; ++k) to[k] = x[node[k]];
+    else
+        for (k = 0; k < front->row_nodes; ++k)
+            for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
     gproji_panel_backward(&panel, z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
     for (k = 0; k < front->width; ++k) found[permutation[k]] = pivots[k];
