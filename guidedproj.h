@@ -4107,15 +4107,15 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part)
 
 /* -- coordinates -- */
 
-/* Breadth-first search from a root over nodes without distance (-1). The queue has `tail` nodes before; returns how many
-   afterwards. */
+/* Breadth-first search from a root over nodes without distance (-1), until all have one. The queue has `tail` nodes
+   before; returns how many afterwards. */
 GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
     const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
     const int64_t *from = nd->here.from;
     int32_t *queue = nd->queue, head = tail;
     distance[root] = 0;
     queue[tail++] = root;
-    while (head < tail) {
+    while (head < tail && tail < nd->nodes) {
         int32_t at = queue[head++], next = distance[at] + 1;
         const int32_t *list = adjacent + from[at], *end = list + inner[at];
         for (; list < end; ++list) {
