@@ -8016,8 +8016,9 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
                 in->row_node[entries++] = node;
             }
             if (entries - begin < 2 ||
-                (entries - begin == begin - before && memcmp(in->row_node + begin, in->row_node + before,
-                                                             (size_t)(entries - begin) * sizeof(int32_t)) == 0)) {
+                (entries - begin == begin - before && in->row_node[begin + 1] == in->row_node[before + 1] &&
+                 memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) ==
+                     0)) {
                 for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
                 entries = begin;
                 continue;
