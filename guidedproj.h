@@ -3821,9 +3821,9 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
                   cost is estimated from its weight and that of its halo, the separators next to it, which become rows
                   of all its fronts.
      separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
-                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation by rounds of depth-first searches as
-                  in Pothen, Fan 1990). It straightens what distances leave ragged. Of the smallest sets those next to
-                  the two rims and the one next to the threshold are compared.
+                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation along shortest paths, all of a
+                  length at once: Dinitz 1970). It straightens what distances leave ragged. Of the smallest sets those
+                  next to the two rims and the one next to the threshold are compared.
    Small parts are ordered by exact minimum degree, halo included, with sets of bits.
 
    Two kinds of nodes are not dissected. Dense ones (see gproji_dense_degree) come last. Light ones come right before the
@@ -3881,6 +3881,7 @@ typedef struct gproji_band {
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
     int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
     int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
     int32_t *queue;      /* states; also the path that is looked for */
     int32_t *to;         /* arcs: the neighbour */
@@ -3893,7 +3894,7 @@ typedef struct gproji_band {
 
 enum {
     GPROJI_BAND_UNITS = 16, /* the largest capacity */
-    GPROJI_BAND_SOURCE = 1, /* reached from the source: also, being seen in a search */
+    GPROJI_BAND_SOURCE = 1, /* reached from the source */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
     GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
 };
@@ -4167,15 +4168,15 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part)
 
 /* -- coordinates -- */
 
-/* Breadth-first search from a root over nodes without distance (-1). The queue has `tail` nodes before; returns how many
-   afterwards. */
+/* Breadth-first search from a root over nodes without distance (-1), until all have one. The queue has `tail` nodes
+   before; returns how many afterwards. */
 GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
     const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
     const int64_t *from = nd->here.from;
     int32_t *queue = nd->queue, head = tail;
     distance[root] = 0;
     queue[tail++] = root;
-    while (head < tail) {
+    while (head < tail && tail < nd->nodes) {
         int32_t at = queue[head++], next = distance[at] + 1;
         const int32_t *list = adjacent + from[at], *end = list + inner[at];
         for (; list < end; ++list) {
@@ -4470,7 +4471,7 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
 
 GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
                                       int64_t units) {
-    size_t ints = (size_t)nodes * 8 + 2 + (size_t)arcs + (size_t)units;
+    size_t ints = (size_t)nodes * 10 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
@@ -4479,6 +4480,7 @@ GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int6
     band->start = at, at += nodes + 1;
     band->unit = at, at += nodes + 1;
     band->load = at, at += nodes;
+    band->level = at, at += 2 * nodes;
     band->turn = at, at += 2 * nodes;
     band->queue = at, at += 2 * nodes;
     band->to = at, at += arcs;
@@ -4567,57 +4569,55 @@ GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* The next state to which more can flow from state s and that has not been seen, or -1: from an exit along an arc, then
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1: from an exit along an arc, then
    back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
 GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
-    int32_t v = s >> 1, c = band->turn[s], end, next = -1;
+    const int32_t *level = band->level;
+    int32_t v = s >> 1, c = band->turn[s], nearer = level[s] - 1, end, next = -1;
     if (s & 1) {
-        for (end = band->start[v + 1]; c < end && band->mark[2 * band->to[c]]; ++c) continue;
+        for (end = band->start[v + 1]; c < end && level[2 * band->to[c]] != nearer; ++c) continue;
         if (c < end)
             next = 2 * band->to[c];
-        else if (band->load[v] > 0 && !band->mark[2 * v])
+        else if (band->load[v] > 0 && level[2 * v] == nearer)
             next = 2 * v;
     } else {
         if (c < band->unit[v]) {
-            if (gproji_band_has_room(band, v) && !band->mark[s + 1]) return s + 1;
+            if (gproji_band_has_room(band, v) && level[s + 1] == nearer) return s + 1;
             ++c;
         }
         for (end = band->unit[v] + band->load[v]; c < end; ++c)
-            if (band->origin[c] >= 0 && !band->mark[2 * band->origin[c] + 1]) break;
+            if (band->origin[c] >= 0 && level[2 * band->origin[c] + 1] == nearer) break;
         if (c < end) next = 2 * band->origin[c] + 1;
     }
     band->turn[s] = c;
     return next;
 }
 
-/* Looks for a path from a state to the sink over states not yet seen. Returns its last index in the queue, or -1. */
+/* Looks for a path from a state to the sink that comes nearer with each step. Returns its last index in the queue, or
+   -1. */
 GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
     int32_t *path = band->queue, depth = 0;
     path[0] = source;
-    band->mark[source] = GPROJI_BAND_SOURCE;
     while (depth >= 0) {
         int32_t s = path[depth], next;
-        if ((s & 1) && (band->ends[s >> 1] & GPROJI_BAND_SINK)) return depth;
+        if (band->level[s] == 0) return depth;
         next = gproji_band_next(band, s);
-        if (next >= 0) {
-            band->mark[next] = GPROJI_BAND_SOURCE;
+        if (next >= 0)
             path[++depth] = next;
-        } else {
-            --depth;
-        }
+        else
+            band->level[path[depth--]] = -1;
     }
     return -1;
 }
 
-/* Sends a unit along the path; its states may be seen again. */
+/* Sends a unit along the path. */
 GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
     const int32_t *path = band->queue;
     int32_t k, from = -1; /* the exit that was passed last */
     for (k = 0; k < depth; ++k) {
         int32_t s = path[k], v = s >> 1;
         bool turns = (path[k + 1] ^ s) == 1;
-        band->mark[s] = 0;
         if (s & 1)
             from = v;
         else if (turns) /* another unit passes; */
@@ -4627,27 +4627,63 @@ GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
         else /* one comes from elsewhere */
             band->origin[band->turn[s]] = from;
     }
-    band->mark[path[depth]] = 0;
 }
 
-/* A round: paths from all sources, none through states from which the sink was not reached before. False when there was
-   none; then all that is reached from the source is marked. */
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Adds a state without a level to a queue of `tail`; returns how many there are then. */
+GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
+    if (band->level[s] >= 0) return tail;
+    band->level[s] = level;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* The levels of all states, by a breadth-first search from the sink. Is the source among them? */
+GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
+    int32_t head = 0, tail = 0, i, c;
+    bool found = false;
+    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
+        if (s & 1) {
+            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+        } else {
+            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
+            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
+        }
+    }
+    return found;
+}
+
+/* A round: paths from all sources, as short as they can be now. False when there was none; then the states with a level
+   are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
     int32_t i, depth;
-    bool found = false;
-    memset(band->mark, 0, 2 * (size_t)band->nodes);
+    if (!gproji_band_find_levels(band)) return false;
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        while (!band->mark[2 * i] && (depth = gproji_band_find_path(band, 2 * i)) >= 0) {
+        while (band->level[2 * i] >= 0 && (depth = gproji_band_find_path(band, 2 * i)) >= 0)
             gproji_band_push(band, depth);
-            found = true;
-        }
     }
-    return found;
+    return true;
 }
 
 /* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
@@ -4675,42 +4711,15 @@ GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigne
     }
 }
 
-/* Does a unit come to band node v from u? */
-GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
-    int32_t c;
-    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-        if (band->origin[c] == u) return true;
-    return false;
-}
-
-/* Marks what reaches the states in the queue. */
-GPROJI_INTERNAL void gproji_band_spread_back(gproji_band *band, int32_t tail, unsigned char mark) {
-    int32_t head = 0, c;
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1;
-        if (s & 1) {
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
-            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, 2 * v, mark, tail);
-        } else {
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_reach(band, 2 * band->to[c] + 1, mark, tail);
-            if (band->load[v] > 0) tail = gproji_band_reach(band, s + 1, mark, tail);
-        }
-    }
-}
-
-/* Marks for the cuts next to the sink and next to the threshold. Returns how many cuts there are: 1 when all are one. */
+/* Marks for the cuts next to the source, to the sink and to the threshold. Returns how many cuts there are: 1 when all are
+   one. */
 GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *cut) {
     gproji_band *band = &nd->band;
     int32_t i, tail = 0, states = 2 * band->nodes, open = 0;
-    for (i = 0; i < band->nodes; ++i) {
-        if (!(band->ends[i] & GPROJI_BAND_SINK)) continue;
-        band->mark[2 * i + 1] |= GPROJI_BAND_SINK;
-        band->queue[tail++] = 2 * i + 1;
-    }
-    gproji_band_spread_back(band, tail, GPROJI_BAND_SINK);
+    for (i = 0; i < states; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
+    gproji_band_spread(band, tail, GPROJI_BAND_SOURCE);
     for (i = tail = 0; i < states; ++i) {
         bool below = nd->best_position[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
@@ -8124,8 +8133,9 @@ GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_inciden
                 in->row_node[entries++] = node;
             }
             if (entries - begin < 2 ||
-                (entries - begin == begin - before && memcmp(in->row_node + begin, in->row_node + before,
-                                                             (size_t)(entries - begin) * sizeof(int32_t)) == 0)) {
+                (entries - begin == begin - before && in->row_node[begin + 1] == in->row_node[before + 1] &&
+                 memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) ==
+                     0)) {
                 for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
                 entries = begin;
                 continue;
