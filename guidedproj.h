@@ -1484,12 +1484,13 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INTERNAL static
 #endif
 
+/* GPROJI_NOINLINE: what is called from many places and seldom, so that the rest compiles sooner and stays small. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
-#define GPROJI_NOINLINE __attribute__((noinline))
+#define GPROJI_NOINLINE __attribute__((unused, noinline)) static
 #else
 #define GPROJI_INLINE static inline
-#define GPROJI_NOINLINE
+#define GPROJI_NOINLINE GPROJI_INTERNAL
 #endif
 
 #if defined(__cplusplus)
@@ -2072,7 +2073,7 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
 }
 
 /* NULL when there is no memory. The contents are undefined. */
-GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
     heap->account.allocations++;
@@ -2082,14 +2083,14 @@ GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) 
     return block;
 }
 
-GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_NOINLINE void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
     void *block = gproji_take(heap, count, size);
     if (block) memset(block, 0, count * size);
     return block;
 }
 
 /* Gives a block back; NULL is allowed. */
-GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
+GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
     gproji_account(heap, bytes, 0);
@@ -2118,7 +2119,7 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
 
 /* Makes room in a growing array: *block has *capacity elements, `needed` are wanted. Doubles, so that n additions cost
    O(n). False when there is no memory; the array is then unchanged. */
-GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+GPROJI_NOINLINE bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
     void *moved;
     if (needed <= *capacity) return true;
@@ -2148,7 +2149,7 @@ GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32
     return true;
 }
 
-GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
+GPROJI_NOINLINE void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
@@ -2200,7 +2201,7 @@ GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->count = 0;
 }
 
-GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
+GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
     while (pool->count > 0) {
         pool->count--;
         gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
@@ -2208,7 +2209,7 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
 }
 
 /* NULL when there is no memory, also where the count is negative or too large for the address space. */
-GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     size_t bytes;
     void *block;
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
@@ -2221,7 +2222,7 @@ GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t 
     return block;
 }
 
-GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
     if (block) memset(block, 0, pool->bytes[pool->count - 1]);
     return block;
@@ -2317,11 +2318,11 @@ GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error 
     return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
+GPROJI_NOINLINE gproj_code gproji_fail_memory(gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
 }
 
-GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
+GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
     error->index = -1;
@@ -9551,7 +9552,7 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
    sum of the squares of R^-1, infinite where there are such columns. In lanes. */
 GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
     const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
-    double unit[GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
+    double unit[(int32_t)GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
     int32_t i, j, k, l;
     for (j = 0; j < size; ++j) {
         const double *own = diagonal + j * GPROJI_LANES;
@@ -11886,7 +11887,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
     return NULL;
 }
 
-GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
+GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object));
     gproji_error_clear(error);
     if (!object) gproji_fail_memory(error);
@@ -12119,7 +12120,7 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
 }
 
 /* The next word of the text, over line ends and comments; false at the end of the text. */
-GPROJI_INTERNAL bool gproji_next_word_anywhere(gproji_reader *reader) {
+GPROJI_NOINLINE bool gproji_next_word_anywhere(gproji_reader *reader) {
     while (!gproji_next_word(reader)) {
         if (!gproji_next_line(reader)) return false;
     }
@@ -14303,7 +14304,7 @@ GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
 }
 
 /* Shows the arrays in the public struct and in the view. */
-GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
+GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     gproji_edit_store *s = &object->now;
     gproj_edit *edit = &object->edit;
     gproj_mesh *view = &object->view;
@@ -18367,7 +18368,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 
 /* -- what the builders share -- */
 
-GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
+GPROJI_NOINLINE int32_t gproji_new_group(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
                                          double weight, gproj_refresh refresh, void *user) {
     gproj_group group;
     memset(&group, 0, sizeof group);
@@ -18389,7 +18390,7 @@ GPROJI_INTERNAL int32_t gproji_new_global_group(gproj_form *form, const char *na
 }
 
 /* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
+GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
     part = (gproji_part *)gproji_take_zeroed(&form->own, 1, sizeof *part);
@@ -21740,7 +21741,7 @@ GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, 
 
 /* These pass a value, and set it when it is read. All return what has passed. */
 
-GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
+GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
     if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
@@ -21748,7 +21749,7 @@ GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *valu
     return (int32_t)passed;
 }
 
-GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
+GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
     if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
     if (stream->way == GPROJI_READ && !stream->wrong) *value = passed == 1;
@@ -21756,7 +21757,7 @@ GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
 }
 
 /* A number between `least` and `most`, which may be infinite. */
-GPROJI_INTERNAL double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
+GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
     uint64_t bits;
     double passed;
     memcpy(&bits, value, sizeof bits);
