@@ -2713,10 +2713,11 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         GPROJI_BACKWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_Z_SCALE, GPROJI_Z_BACKWARD)                        \
     }
 
-/* See `add`; pieces have no gaps. */
+/* To the next column: see `add`. */
 #define GPROJI_ADD_NEXT                                                                                                \
     if (--left == 0) left = GPROJI_STRIP, stride -= GPROJI_STRIP;                                                      \
     source += stride;
+/* See `add`; pieces have no gaps. */
 #define GPROJI_DEFINE_ADD(kind, L)                                                                                     \
     GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,  \
                                                const double *source, ptrdiff_t stride, int32_t left, double *target,   \
@@ -5890,8 +5891,9 @@ GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *m
 /* The pieces of front f on its way to its parent; returns their number. */
 GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, gproji_piece *piece) {
     const gproji_symbolic *sy = &c->symbolic;
-    const gproji_front *front = &sy->front[f], *parent = sy->front + front->parent;
+    const gproji_front *front = &sy->front[f], *parent;
     if (front->parent < 0) return 0;
+    parent = &sy->front[front->parent];
     return gproji_find_pieces(c->kernels, front->row_nodes, sy->row_at + front->rows,
                               front->width + gproji_panel_shift(front->width), front->below, sy->relative + front->rows,
                               parent->width + gproji_panel_shift(parent->width), piece);
@@ -10475,12 +10477,13 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
     return changed;
 }
 
-/* When a row of the guard acts that waits, it waits no more, and neither do those that are near to it, at x or where the
-   step began; each time these are more, so that steps are not analysed again and again. Returns whether there was one. */
+/* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it, at x
+   or where the step began; each time these are more, so that steps are not analysed again and again. Returns whether there
+   was one. */
 GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     bool woken = false;
     int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
+    for (i = 0; s->schur.on && i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         double near;
         if (!g->guard || !(g->weight > 0)) continue;
@@ -10497,8 +10500,8 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
-/* During a solve by multipliers a group may get its first weight, or the guard act: there is no place for them yet. x and
-   s->saved are where the step begins. Returns whether rows were compiled anew; there may be an error. */
+/* During a solve by multipliers a group may get its first weight, or the guard act: there is no place for them yet. x is
+   where the step begins, and s->saved then too. Returns whether rows were compiled anew; there may be an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool guard) {
     gproj_system *s = loop->system;
     if (!s->schur.on || !(gproji_wake_groups(s) || guard || s->schur.stale)) return false;
@@ -10520,7 +10523,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         loop->iteration.step = gproji_take_step(s, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
         if (round == GPROJI_BOUND_ROUNDS || !gproji_switch_bounds(loop, round++)) return true;
-        guard = s->schur.on && gproji_wake_guard(s);
+        guard = gproji_wake_guard(s);
         gproji_step_back(s);
         if (gproji_place_woken(loop, guard)) round = 0;
     }
@@ -10613,7 +10616,7 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-    gproji_place_woken(loop, s->schur.on && gproji_wake_guard(s));
+    gproji_place_woken(loop, gproji_wake_guard(s));
     if (s->error.code != GPROJ_OK) return;
     if (gproji_set_weights(s, n)) gproji_linearise(loop);
     s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
@@ -15933,9 +15936,8 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
     return sum;
 }
 
-/* The volume of one triangle of the mesh, with the vectorial area A: of a closed mesh, the tetrahedron with the origin,
-   a'A / 3; else the prism over the plane z = -height, A_z times its mean height. With `gradient` (of a, b, c) the
-   derivatives are added to it; those of a closed mesh, A / 3 each, are right for all triangles together. */
+/* The volume between one triangle with the vectorial area A and the plane z = -height: A_z times its mean height. With
+   `gradient` (of a, b, c) the derivatives are added to it. */
 GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], double height,
                                               double *const gradient[3]) {
     double mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
@@ -15949,8 +15951,8 @@ GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], con
     return area[2] * mean;
 }
 
-/* What a face adds to six times the volume of a closed mesh, by the triangles from its first corner, and to the derivatives
-   of that; `face`: twice its vectorial area. */
+/* What a face adds to six times the volume of a closed mesh, by tetrahedra of the origin and the triangles from its first
+   corner, and to the derivatives of that, which are right for all faces together; `face`: twice its vectorial area. */
 GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, int32_t f, double *gradient,
                                           double face[3]) {
     int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
