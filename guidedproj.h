@@ -2446,10 +2446,11 @@ GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s-
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
 
 /* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
-   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set. */
+   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many pieces
+   from this one on as `run` says have none and follow each other. */
 typedef struct gproji_piece {
     int32_t from, rows, to;
-    uint32_t mask;
+    uint16_t mask, run;
 } gproji_piece;
 
 typedef struct gproji_kernels {
@@ -2473,12 +2474,12 @@ typedef struct gproji_kernels {
        come from, the other rows up to `rows` (a multiple of block). */
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
-    /* Adds columns of which only the lower triangle counts: those that belong to the rows first..last-1 (counted from
-       0) of piece[0], all their rows from there on in piece[0..count). `source` points to row 0 of the first column;
-       `stride` leads to the next one, but after `left` columns it has become less by GPROJI_STRIP. `target` points to
-       row 0 of the column that belongs to row piece[0].to. */
-    void (*add)(const gproji_piece *piece, int32_t count, int32_t first, int32_t last, const double *source,
-                ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride);
+    /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows from
+       there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but
+       after `left` columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column that belongs to
+       row piece[0].to. */
+    void (*add)(const gproji_piece *piece, int32_t count, const double *source, ptrdiff_t stride, int32_t left,
+                double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
 /* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
@@ -2602,6 +2603,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
     a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
+#define GPROJI_TILE_AHEAD(r, j) GPROJI_PREFETCH(c + (r) * LANES + ((j) - skip) * ldc);
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
 #define GPROJI_TILE_ADD(r, j) tile_##r##_##j += GPROJI_LOAD(c + (r) * LANES + ((j) - skip) * ldc);
@@ -2609,7 +2611,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[(j) - skip];
 #define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + ((j) - skip) * ldc];
 
-/* A tile of T vectors by B columns: see `update` and `solve`. */
+/* A tile of T vectors by B columns: see `update` and `solve`. What a wide panel is taken off may not be in the cache any
+   more: it is fetched while the product is made. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
     GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
                                                         ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
@@ -2617,6 +2620,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
+        if (k >= 96) { GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_AHEAD) }                                        \
         for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
@@ -2719,14 +2723,14 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     source += stride;
 /* See `add`; pieces have no gaps. */
 #define GPROJI_DEFINE_ADD(kind, L)                                                                                     \
-    GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,  \
-                                               const double *source, ptrdiff_t stride, int32_t left, double *target,   \
+    GPROJI_KERNEL(kind) void gproji_add_##kind(const gproji_piece *piece, int32_t count, const double *source,         \
+                                               ptrdiff_t stride, int32_t left, double *target,                         \
                                                ptrdiff_t target_stride) {                                              \
         GPROJI_BEGIN(L)                                                                                                \
-        for (; first < last; ++first) {                                                                                \
-            double *column = target + first * target_stride;                                                           \
-            int32_t r = first, k;                                                                                      \
-            for (k = 0; k < count; ++k, r = 0) {                                                                       \
+        int32_t i, k, r;                                                                                               \
+        for (i = 0; i < piece->rows; ++i) {                                                                            \
+            double *column = target + i * target_stride;                                                               \
+            for (r = i, k = 0; k < count; ++k, r = 0) {                                                                \
                 const double *s = source + piece[k].from;                                                              \
                 double *d = column + piece[k].to;                                                                      \
                 for (; r + LANES <= piece[k].rows; r += LANES) {                                                       \
@@ -2770,16 +2774,26 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 /* See `add`; pieces with gaps: the rows of a piece are spread over a vector. */
 #define GPROJI_ADD_SPREAD(d, s, mask)                                                                                  \
     _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
-GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, int32_t first, int32_t last,
-                                             const double *source, ptrdiff_t stride, int32_t left, double *target,
-                                             ptrdiff_t target_stride) {
+GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, const double *source,
+                                             ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride) {
     uint32_t mask = piece->mask;
-    int32_t i, k;
-    for (i = 0; i < first; ++i) mask &= mask - 1;
-    for (; i < last; ++i, mask &= mask - 1) {
+    int32_t i, k, r;
+    for (i = 0; i < piece->rows; ++i, mask &= mask - 1) {
         double *column = target + __builtin_ctz(mask) * target_stride;
         GPROJI_ADD_SPREAD(column + piece->to, source + piece->from + i, mask);
-        for (k = 1; k < count; ++k) GPROJI_ADD_SPREAD(column + piece[k].to, source + piece[k].from, piece[k].mask);
+        for (k = 1; k < count;) {
+            const int32_t run = piece[k].run;
+            const double *s = source + piece[k].from;
+            double *d = column + piece[k].to;
+            if (run < 4) { /* what a loop costs */
+                GPROJI_ADD_SPREAD(d, s, piece[k].mask);
+                ++k;
+                continue;
+            }
+            for (r = 0; r < 8 * run; r += 8)
+                _mm512_storeu_pd(d + r, _mm512_add_pd(_mm512_loadu_pd(d + r), _mm512_loadu_pd(s + r)));
+            k += run;
+        }
         GPROJI_ADD_NEXT
     }
 }
@@ -2864,7 +2878,7 @@ enum {
     GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
     GPROJI_TASK_COLUMNS = 48, /* columns that one task takes the pivots' effect off; a multiple of GPROJI_STRIP */
     GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 480    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+    GPROJI_ROW_BLOCK = 240    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
 /* The number of pieces of `size` that cover `all`. */
@@ -2959,6 +2973,7 @@ typedef struct gproji_panel {
     const gproji_kernels *kernels;
     int32_t w, shift, top, rows;
     int32_t first, last;
+    int32_t task_columns; /* that a task takes the pivots' effect off */
     gproji_shape shape;
     int32_t update_rows; /* of the update matrix */
     double *values;
@@ -2975,6 +2990,7 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
     panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
+    panel.task_columns = GPROJI_TASK_COLUMNS;
     panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
@@ -3005,8 +3021,8 @@ GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
-/* Takes the effect of the pivot columns [first, last) off at most GPROJI_TASK_COLUMNS columns, of later pivots or of
-   the update matrix, from storage row `at` on. */
+/* Takes the effect of the pivot columns [first, last) off the columns of later pivots, or of the update matrix, that
+   belong to the storage rows [at, end). */
 GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
                                          int32_t last) {
     const gproji_kernels *kernels = panel->kernels;
@@ -3027,8 +3043,8 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
 /* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->w + panel->shift + index * GPROJI_TASK_COLUMNS;
-    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->rows);
+    int32_t at = panel->w + panel->shift + index * panel->task_columns;
+    int32_t end = gproji_min(at + panel->task_columns, panel->rows);
     int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
         last = gproji_next_chunk(panel, first);
@@ -3040,8 +3056,8 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
 /* Some of the pivot columns after a chunk: takes off the chunk's effect. A task. */
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->last + panel->shift + index * GPROJI_TASK_COLUMNS;
-    int32_t end = gproji_min(at + GPROJI_TASK_COLUMNS, panel->w + panel->shift);
+    int32_t at = panel->last + panel->shift + index * panel->task_columns;
+    int32_t end = gproji_min(at + panel->task_columns, panel->w + panel->shift);
     gproji_strip_update(panel, at, end, panel->first, panel->last);
 }
 
@@ -3094,11 +3110,16 @@ GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
     return -1;
 }
 
-/* Runs tasks on the host's threads where they are given and the work, in flops, is worth it. */
+/* Are the host's threads given, and is the work, in flops, worth sharing? */
+GPROJI_INLINE bool gproji_is_shared(const gproj_parallel *parallel, double flops) {
+    return parallel && parallel->run && flops > 4e6;
+}
+
+/* Runs tasks, on the host's threads where that is worth it. */
 GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
                                       void *data) {
     int32_t i;
-    if (parallel && flops > 4e6) {
+    if (gproji_is_shared(parallel, flops)) {
         gproji_for(parallel, count, task, data);
         return;
     }
@@ -3126,7 +3147,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
             int32_t target = to[k] + row - (at[k] - base);
             if (target >= end || (!kernels->spreads && target != now->to + now->rows)) {
                 now = piece + count++;
-                now->from = row, now->rows = 0, now->mask = 0;
+                now->from = row, now->rows = 0, now->mask = now->run = 0;
                 now->to = kernels->spreads ? target - target % 8 : target;
                 if (kernels->spreads)
                     end = now->to + 8;
@@ -3136,8 +3157,12 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
                     end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
             }
             now->rows++;
-            now->mask |= 1u << ((target - now->to) & 31);
+            now->mask = (uint16_t)(now->mask | 1u << ((target - now->to) & 15));
         }
+    }
+    for (k = count - 1; kernels->spreads && k >= 0; --k) {
+        bool goes_on = k + 1 < count && piece[k + 1].to == piece[k].to + 8 && piece[k + 1].run < UINT16_MAX;
+        if (piece[k].rows == 8) piece[k].run = (uint16_t)(goes_on ? piece[k + 1].run + 1 : 1);
     }
     return count;
 }
@@ -3151,26 +3176,27 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
-/* Adds the columns of the k-th piece's rows first..last-1, counted from its first one. */
-GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k, int32_t first, int32_t last) {
+/* Adds the columns of the k-th piece's rows. */
+GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k) {
     const gproji_panel *panel = add->panel;
     const gproji_piece *piece = add->piece + k;
-    int32_t column = piece->from + first;
-    panel->kernels->add(piece, add->pieces - k, first, last, add->update + gproji_update_offset(add->rows, column),
+    int32_t column = piece->from;
+    panel->kernels->add(piece, add->pieces - k, add->update + gproji_update_offset(add->rows, column),
                         gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
                         gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
 }
 
-/* Adds some columns of a child's update matrix to its parent's panel and update matrix. Different columns go to
-   different columns. A task. */
-GPROJI_INTERNAL void gproji_add_task(void *data, int32_t index) {
-    const gproji_addition *add = (const gproji_addition *)data;
-    int32_t begin = index * GPROJI_TASK_COLUMNS, end = begin + GPROJI_TASK_COLUMNS, k;
-    for (k = 0; k < add->pieces; ++k) {
-        int32_t from = add->piece[k].from;
-        int32_t first = gproji_max(0, begin - from), last = gproji_min(add->piece[k].rows, end - from);
-        if (first < last) gproji_add_piece(add, k, first, last);
+/* Adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
+GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from, int32_t to) {
+    int32_t first = 0, last = add->pieces;
+    while (first < last) { /* the first piece from there on */
+        int32_t middle = first + (last - first) / 2;
+        if (add->piece[middle].to < from)
+            first = middle + 1;
+        else
+            last = middle;
     }
+    for (; first < add->pieces && add->piece[first].to < to; ++first) gproji_add_piece(add, first);
 }
 
 /* Sets the columns that belong to the storage rows [from, to) to 0. */
@@ -3188,22 +3214,6 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
         ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
         memset(panel->update + begin, 0, (size_t)(next - begin) * sizeof(double));
     }
-}
-
-/* Sets a panel and its update matrix to 0. */
-GPROJI_INTERNAL void gproji_clear_panel(const gproji_panel *panel) {
-    gproji_clear_columns(panel, 0, panel->w + panel->shift + panel->update_rows);
-}
-
-/* The same, and adds a child's update matrix: each column is still in the cache when it is added to. */
-GPROJI_INTERNAL void gproji_clear_and_add(const gproji_addition *add) {
-    int32_t k, at = 0, end;
-    for (k = 0; k < add->pieces; ++k, at = end) {
-        end = gproji_max(at, gproji_round_up(add->piece[k].to + add->piece[k].rows, GPROJI_BLOCK));
-        gproji_clear_columns(add->panel, at, end);
-        gproji_add_piece(add, k, 0, add->piece[k].rows);
-    }
-    gproji_clear_columns(add->panel, at, add->panel->w + add->panel->shift + add->panel->update_rows);
 }
 
 #ifdef GPROJ_USE_CBLAS
@@ -3242,20 +3252,26 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     }
 }
 #else
+/* Runs the tasks that take the effect of pivots off so many columns. One thread alone does all of them in one: a strip of
+   rows, once in the cache, serves more columns. */
+GPROJI_INTERNAL void gproji_take_off(const gproj_parallel *parallel, double flops, int32_t columns, gproj_task task,
+                                     gproji_panel *panel) {
+    panel->task_columns = gproji_is_shared(parallel, flops) ? GPROJI_TASK_COLUMNS : gproji_max(columns, 1);
+    gproji_run_tasks(parallel, flops, gproji_pieces(columns, panel->task_columns), task, panel);
+}
+
 /* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
     gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_run_tasks(parallel, 2 * width * under * later, gproji_pieces(later, GPROJI_TASK_COLUMNS),
-                     gproji_trailing_task, panel);
+    gproji_take_off(parallel, 2 * width * under * later, later, gproji_trailing_task, panel);
 }
 
 /* The effect of a factored panel on its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->w - panel->shift;
-    gproji_run_tasks(parallel, (double)below * below * panel->w, gproji_pieces(below, GPROJI_TASK_COLUMNS),
-                     gproji_update_task, panel);
+    gproji_take_off(parallel, (double)below * below * panel->w, below, gproji_update_task, panel);
 }
 #endif
 
@@ -6286,27 +6302,52 @@ GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
     return true;
 }
 
-/* The children's update matrices in the front's pivot columns and in its own update matrix, and 0 elsewhere. */
-GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
-                                            const gproji_panel *panel, const gproj_parallel *parallel) {
+/* A front on its way to its panel. */
+typedef struct gproji_gathering {
+    const gproj_cholesky *c;
+    const gproji_front *front;
+    const gproji_panel *panel;
+} gproji_gathering;
+
+/* Clears the columns that belong to the storage rows [from, to), and adds the children's: as long as they are in the
+   cache. */
+GPROJI_INTERNAL void gproji_gather_columns(const gproji_gathering *gathering, int32_t from, int32_t to) {
+    const gproj_cholesky *c = gathering->c;
     const gproji_symbolic *sy = &c->symbolic;
-    int64_t entries = front->entries + gproji_update_entries(front->update_rows);
-    bool cleared = (parallel && parallel->run) || front->child < 0 || entries <= GPROJI_CACHED;
     int32_t i;
-    if (cleared) gproji_clear_panel(panel);
-    for (i = front->child; i >= 0; i = sy->front[i].sibling) {
+    gproji_clear_columns(gathering->panel, from, to);
+    for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
-        double rows = child->below;
-        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.panel = gathering->panel, add.update = c->values + child->update, add.rows = child->update_rows;
         add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        if (cleared)
-            gproji_run_tasks(parallel, 20 * rows * rows, gproji_pieces(child->below, GPROJI_TASK_COLUMNS),
-                             gproji_add_task, &add);
-        else
-            gproji_clear_and_add(&add);
-        cleared = true;
+        gproji_add_columns(&add, from, to);
     }
+}
+
+/* Some columns of the update matrix or, after those, of the panel, which is needed at once. A task. */
+GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
+    const gproji_gathering *gathering = (const gproji_gathering *)data;
+    const gproji_panel *panel = gathering->panel;
+    int32_t pivot_end = panel->w + panel->shift, below = gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS);
+    int32_t begin = index < below ? pivot_end : 0, end = index < below ? pivot_end + panel->update_rows : pivot_end;
+    begin += (index < below ? index : index - below) * GPROJI_TASK_COLUMNS;
+    gproji_gather_columns(gathering, begin, gproji_min(begin + GPROJI_TASK_COLUMNS, end));
+}
+
+/* A front's panel and update matrix with nothing but what its children add; parallel: NULL within a task. */
+GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
+                                            const gproji_panel *panel, const gproj_parallel *parallel) {
+    int32_t pivot_end = panel->w + panel->shift, rows = pivot_end + panel->update_rows;
+    gproji_gathering gathering;
+    gathering.c = c, gathering.front = front, gathering.panel = panel;
+    if (front->child < 0 || front->entries + gproji_update_entries(front->update_rows) <= GPROJI_CACHED)
+        gproji_gather_columns(&gathering, 0, rows);
+    else
+        gproji_run_tasks(parallel, 20.0 * rows * rows,
+                         gproji_pieces(pivot_end, GPROJI_TASK_COLUMNS) +
+                             gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS),
+                         gproji_gather_task, &gathering);
 }
 
 /* Adds A's values to a front, where A is in compressed columns. */

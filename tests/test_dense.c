@@ -249,7 +249,9 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
     add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
     GPROJT_CHECK(add.pieces <= gproji_pieces_most(groups, below));
-    for (i = 0; i < gproji_pieces(below, GPROJI_TASK_COLUMNS); ++i) gproji_add_task(&add, i);
+    for (i = 0; i < storage(w, w); i += GPROJI_BLOCK) gproji_add_columns(&add, i, i + GPROJI_BLOCK);
+    for (i = 0; i < u; i += GPROJI_STRIP)
+        gproji_add_columns(&add, storage(w, w) + i, gproji_min(storage(w, w) + i + GPROJI_STRIP, storage(w, n)));
     for (j = 0; j < below; ++j)
         for (i = j; i < below; ++i) {
             double *entry = entry_of(&panel, values, row_to[i], row_to[j]);
@@ -270,6 +272,7 @@ GPROJT_TEST(dense_add) {
                                                                          below += 1 + below / 4) {
         check_add(kernels, 1 + below % 29, below + 3 * most, below, most, &seed);
         check_add(kernels, 60, below, below, most, &seed);
+        check_add(kernels, 60, 3 * below, 3 * below, 100, &seed); /* long runs of pieces without gaps */
     }
 }
 
