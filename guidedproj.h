@@ -1499,13 +1499,15 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_RESTRICT restrict
 #endif
 
-/* Begins to bring the cache line of an address into the cache. gcc takes a function that does only this for one without
+/* Begins to bring the cache line of an address into the cache, or into that of the second level. gcc takes a function that does only this for one without
    effect, and drops calls of it: such a function is always inlined. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_PREFETCH(address) __builtin_prefetch(address)
+#define GPROJI_PREFETCH_L2(address) __builtin_prefetch(address, 0, 1)
 #define GPROJI_INLINED __attribute__((unused, always_inline)) static inline
 #else
 #define GPROJI_PREFETCH(address) ((void)(address))
+#define GPROJI_PREFETCH_L2(address) ((void)(address))
 #define GPROJI_INLINED GPROJI_INLINE
 #endif
 
@@ -2603,7 +2605,6 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
     a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
-#define GPROJI_TILE_AHEAD(r, j) GPROJI_PREFETCH(c + (r) * LANES + ((j) - skip) * ldc);
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
 #define GPROJI_TILE_ADD(r, j) tile_##r##_##j += GPROJI_LOAD(c + (r) * LANES + ((j) - skip) * ldc);
@@ -2611,8 +2612,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[(j) - skip];
 #define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + ((j) - skip) * ldc];
 
-/* A tile of T vectors by B columns: see `update` and `solve`. What a wide panel is taken off may not be in the cache any
-   more: it is fetched while the product is made. */
+/* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
     GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
                                                         ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
@@ -2620,7 +2620,6 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        if (k >= 96) { GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_AHEAD) }                                        \
         for (; k > 0; --k) {                                                                                           \
             GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
@@ -2743,12 +2742,21 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         }                                                                                                              \
     }
 
+/* What a wide panel is taken off may not be in the cache any more: it is fetched while the product is made. */
+GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const double *c, ptrdiff_t ldc) {
+    int32_t r, j;
+    for (j = 0; j < columns; ++j)
+        for (r = 0; r < rows; r += 8) GPROJI_PREFETCH(c + j * ldc + r);
+}
+
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
                                                   ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
-        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
+        for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L) {                                     \
+            if (k >= 96) gproji_prefetch_tile(TALL * L, B, c, ldc);                                                        \
             gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
+        }                                                                                                              \
         if (rows == MIDDLE * L)                                                                                        \
             gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc);                                                \
         else if (rows == SMALL * L)                                                                                    \
@@ -2878,6 +2886,7 @@ enum {
     GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
     GPROJI_TASK_COLUMNS = 48, /* columns that one task takes the pivots' effect off; a multiple of GPROJI_STRIP */
     GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_CACHE_LINE = 8,    /* values */
     GPROJI_ROW_BLOCK = 240    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
 };
 
@@ -3031,7 +3040,7 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
     int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
     int32_t begin, stop, column;
     for (begin = at; begin < panel->rows; begin = stop) {
-        stop = gproji_min(panel->rows, begin + GPROJI_ROW_BLOCK);
+        stop = panel->rows - begin < 2 * GPROJI_ROW_BLOCK ? panel->rows : begin + GPROJI_ROW_BLOCK;
         for (column = at; column < gproji_min(end, stop); column += kernels->block) {
             int32_t row = gproji_max(begin, column);
             kernels->update(stop - row, last - first, l + row, l + column, stride, left,
@@ -3300,14 +3309,22 @@ GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) 
     }
 }
 
-/* z = L^-T z on all storage rows of a panel, where the part below is known. */
-GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, double *z) {
+/* Begins to bring values into the cache. */
+GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
+    int64_t i;
+    for (i = 0; i < count; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH_L2(value + i);
+}
+
+/* z = L^-T z on all storage rows of a panel, where the part below is known. far: the panel is not in the cache, so each
+   column block is fetched ahead: processors do not foresee columns from right to left. */
+GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool far, double *z) {
     int32_t block = panel->kernels->block, at = panel->w + panel->shift - block;
     for (; at >= panel->top; at -= block) {
-        int32_t start = gproji_max(at - panel->shift, 0);
-        panel->kernels->backward(panel->rows - at, gproji_panel_at(panel, at, start),
-                                 gproji_shape_stride(panel->shape, at), panel->inverse + start,
-                                 start + panel->shift - at, z + at);
+        int32_t start = gproji_max(at - panel->shift, 0), next = gproji_max(start - block, 0);
+        const double *column = gproji_panel_at(panel, at, start), *ahead = gproji_panel_at(panel, at, next);
+        if (far) gproji_prefetch_values(ahead, column - ahead);
+        panel->kernels->backward(panel->rows - at, column, gproji_shape_stride(panel->shape, at),
+                                 panel->inverse + start, start + panel->shift - at, z + at);
     }
 }
 
@@ -5768,10 +5785,9 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
-    GPROJI_SOLVE_BATCH = 4,   /* right-hand sides solved together at most */
-    GPROJI_CACHED = 1 << 16,  /* a factor with no more values than that stays in the L2 cache */
-    GPROJI_PREFETCHED = 2048, /* values of a panel that are fetched ahead; the processor finds the rest by itself */
-    GPROJI_CACHE_LINE = 8     /* values */
+    GPROJI_SOLVE_BATCH = 4,  /* right-hand sides solved together at most */
+    GPROJI_CACHED = 1 << 16, /* a factor with no more values than that stays in the L2 cache */
+    GPROJI_PREFETCHED = 8192 /* values of the next panel that are fetched ahead */
 };
 
 /* Adds the matrix's values that belong to a front to its cleared panel and update matrix (see gproji_panel_column). Each
@@ -6363,14 +6379,15 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
                              c->inverse + front->first, c->values + front->update);
 }
 
+/* Is the factor too large for the cache? */
+GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_CACHED; }
+
 /* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = front->entries, i;
-    if (c->symbolic.values_size <= GPROJI_CACHED) return;
-    if (size > GPROJI_PREFETCHED) size = GPROJI_PREFETCHED;
-    for (i = 0; i < size; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c->values + front->panel + i);
+    int64_t size = front->entries < GPROJI_PREFETCHED ? front->entries : GPROJI_PREFETCHED;
+    if (gproji_is_far(c)) gproji_prefetch_values(c->values + front->panel, size);
 }
 
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
@@ -6448,7 +6465,7 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
     else
         for (k = 0; k < front->row_nodes; ++k)
             for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
-    gproji_panel_backward(&panel, z);
+    gproji_panel_backward(&panel, gproji_is_far(c), z);
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
     for (k = 0; k < front->width; ++k) found[permutation[k]] = pivots[k];
 }

@@ -91,7 +91,7 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
     }
     /* backward: L1' x = y - L2' x2 */
     for (i = w; i < n; ++i) z[storage(w, i)] = b[i];
-    gproji_panel_backward(&job, z);
+    gproji_panel_backward(&job, u % 2 == 0, z);
     for (j = w - 1; j >= 0; --j) {
         for (i = j + 1; i < n; ++i) b[j] -= a[at(i, j, n)] * b[i];
         b[j] /= a[at(j, j, n)];
