@@ -18211,6 +18211,7 @@ typedef struct gproji_statics {
     int32_t *first_row; /* of each vertex, in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
+    double *face_load; /* work: 4 numbers a face; NULL where areas have no weight */
     double *work;      /* 3 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     int32_t group;     /* of equilibrium */
@@ -18279,6 +18280,7 @@ GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_give(&form->own, s->point_load, 3 * vertices, sizeof *s->point_load);
     gproji_give(&form->own, s->load_vertex, s->load_start ? (size_t)s->load_start[vertices] : 0,
                 sizeof *s->load_vertex);
+    gproji_give(&form->own, s->face_load, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
     gproji_give(&form->own, s->axes, vertices, sizeof *s->axes);
     gproji_give(&form->own, s->force, edges, sizeof *s->force);
     gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
@@ -20151,6 +20153,9 @@ GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
     return loads->edge_density ? loads->edge_density[edge] : loads->density;
 }
 
+/* Do faces have a weight? */
+GPROJI_INLINE bool gproji_areas_weigh(const gproj_loads *loads) { return loads->area_load != 0 || loads->snow != 0; }
+
 /* The weight on a face is h'a, a its vectorial area and h a direction that depends on a only: area_load a / |a|, and
    snow (0, 0, 1) with the sign of a. Returns it. */
 GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
@@ -20180,7 +20185,7 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
         out[3 * (size_t)mesh->origin[2 * e] + 2] -= half;
         out[3 * (size_t)mesh->origin[2 * e + 1] + 2] -= half;
     }
-    if (loads->area_load == 0 && loads->snow == 0) return;
+    if (!gproji_areas_weigh(loads)) return;
     for (f = 0; f < mesh->face_count; ++f) {
         double h[3], part = units.per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
         int32_t corner = mesh->face_halfedge[f];
@@ -20231,45 +20236,59 @@ GPROJI_INLINE void gproji_add_weight_terms(const gproji_weight_row *weight, int3
 }
 
 /* The weight of an edge, w'(a - b) / 2 on each end with w along the edge: linear, without a constant. */
-GPROJI_INTERNAL void gproji_linearise_edge_load(const gproj_form *form, const double *x, double per_length,
-                                                int32_t edge) {
+GPROJI_INTERNAL void gproji_linearise_edge_load(const gproji_weight_row *weight, const double *x, double half,
+                                                int32_t vertex, int32_t other) {
     static const double none[3] = {0, 0, 0};
-    const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
-    double d[3], half = 0.5 * per_length * gproji_density(&form->statics->loads, edge);
-    int32_t k;
-    if (half == 0) return;
-    gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], d);
+    double d[3];
+    gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
     gproji_normalise3(d, none);
-    for (k = 0; k < 2; ++k) {
-        gproji_weight_row weight;
-        if (!gproji_has_weight(form->statics, end[k])) continue;
-        weight = gproji_weight_row_of(form, end[k]);
-        gproji_add_weight_terms(&weight, end[0], -half, d);
-        gproji_add_weight_terms(&weight, end[1], half, d);
+    gproji_add_weight_terms(weight, vertex, -half, d);
+    gproji_add_weight_terms(weight, other, half, d);
+}
+
+/* The weight on a face is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j, so linearised it is its
+   gradient times x minus its value. A corner's part of a face: load[0..3) is -h / 2, load[3] the value. */
+GPROJI_INTERNAL void gproji_find_face_loads(const gproj_form *form, const double *x, double per_area) {
+    const gproj_mesh *mesh = form->mesh;
+    int32_t f, k;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double h[3], scale = per_area / mesh->face_degree[f], *load = form->statics->face_load + 4 * (size_t)f;
+        load[3] = scale * gproji_face_load(mesh, &form->statics->loads, x, f, h);
+        for (k = 0; k < 3; ++k) load[k] = -0.5 * scale * h[k];
     }
 }
 
-/* The same for a face: its weight is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j, so
-   linearised it is its gradient times x minus its value. */
-GPROJI_INTERNAL void gproji_linearise_face_load(const gproj_form *form, const double *x, double per_area,
-                                                int32_t face) {
+/* The face's part of the weight on the vertex where a halfedge begins. */
+GPROJI_INTERNAL void gproji_linearise_face_load(const gproji_weight_row *weight, const gproj_mesh *mesh,
+                                                const double *x, const double *load, int32_t halfedge) {
+    int32_t h = halfedge;
+    *weight->constant += load[3];
+    do {
+        double across[3], gradient[3];
+        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
+        gproji_cross3(across, load, gradient);
+        gproji_add_weight_terms(weight, mesh->origin[h], 1, gradient);
+        h = mesh->next[h];
+    } while (h != halfedge);
+}
+
+/* The weight on one vertex. */
+GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
+                                             int32_t vertex) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t degree = mesh->face_degree[face], hi = mesh->face_halfedge[face], hj = hi, i, j;
-    double h[3], scale = per_area / degree;
-    double part = scale * gproji_face_load(mesh, &form->statics->loads, x, face, h);
-    for (i = 0; i < degree; ++i, hi = mesh->next[hi]) {
-        gproji_weight_row weight;
-        if (!gproji_has_weight(form->statics, mesh->origin[hi])) continue;
-        weight = gproji_weight_row_of(form, mesh->origin[hi]);
-        *weight.constant += part;
-        for (j = 0; j < degree; ++j, hj = mesh->next[hj]) {
-            double across[3], gradient[3];
-            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[hj]], x + 3 * (size_t)mesh->origin[mesh->prev[hj]],
-                        across);
-            gproji_cross3(across, h, gradient);
-            gproji_add_weight_terms(&weight, mesh->origin[hj], -0.5 * scale, gradient);
-        }
-    }
+    const gproji_statics *statics = form->statics;
+    gproji_weight_row weight = gproji_weight_row_of(form, vertex);
+    int64_t terms = 3 * (statics->load_start[vertex + 1] - statics->load_start[vertex]), t;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    for (t = 0; t < terms; ++t) weight.term[t].a = 0;
+    if (terms == 0) return;
+    do {
+        double half = 0.5 * per_length * gproji_density(&statics->loads, h / 2);
+        if (half != 0) gproji_linearise_edge_load(&weight, x, half, vertex, mesh->origin[mesh->twin[h]]);
+        if (statics->face_load && mesh->face[h] >= 0)
+            gproji_linearise_face_load(&weight, mesh, x, statics->face_load + 4 * (size_t)mesh->face[h], h);
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
 }
 
 /* The loads at the present x. */
@@ -20277,25 +20296,17 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     gproj_form *form = (gproj_form *)user;
     gproji_statics *statics = form->statics;
     const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system);
+    const double *x = gproj_system_values(system), *point = statics->loads.point_load;
     gproji_load_units units = gproji_internal_loads(form);
-    int32_t v, c, row = 0, e, f;
+    int32_t v, c, row = 0;
+    if (statics->face_load) gproji_find_face_loads(form, x, units.per_area);
     for (v = 0; v < mesh->vertex_count; ++v) {
-        for (c = 0; c < 3; ++c) {
-            int32_t count, t;
-            gproj_term *term;
-            if (!(statics->axes[v] >> c & 1)) continue;
-            term = gproji_row_terms(system, group, row, &count);
-            for (t = 0; c == 2 && t < 3 * (statics->load_start[v + 1] - statics->load_start[v]); ++t)
-                term[count - 1 - t].a = 0;
-            gproj_system_set_row(
-                system, group, row++, NULL,
-                statics->loads.point_load ? units.force * statics->loads.point_load[3 * (size_t)v + (size_t)c] : 0);
-        }
+        for (c = 0; c < 3; ++c)
+            if (statics->axes[v] >> c & 1)
+                gproj_system_set_row(system, group, row++, NULL,
+                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
+        if (gproji_has_weight(statics, v)) gproji_linearise_weight(form, x, units.per_length, v);
     }
-    for (e = 0; e < mesh->edge_count; ++e) gproji_linearise_edge_load(form, x, units.per_length, e);
-    if (statics->loads.area_load == 0 && statics->loads.snow == 0) return;
-    for (f = 0; f < mesh->face_count; ++f) gproji_linearise_face_load(form, x, units.per_area, f);
 }
 
 /* The rows of one vertex: y_e (x_i - x_j) summed over its edges with a force, and room for the weight's terms. */
@@ -20335,7 +20346,7 @@ GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex,
 GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) {
     const gproj_mesh *mesh = form->mesh;
     gproji_statics *statics = form->statics;
-    bool areas = statics->loads.area_load != 0 || statics->loads.snow != 0;
+    bool areas = gproji_areas_weigh(&statics->loads);
     bool lengths = statics->loads.density != 0 || statics->loads.edge_density;
     int64_t count = 0;
     int32_t v;
@@ -20406,8 +20417,10 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
     s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
     s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
+    if (gproji_areas_weigh(loads))
+        s->face_load = (double *)gproji_take(&form->own, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
     return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start && s->work;
+           s->first_row && s->load_start && s->work && (s->face_load || !gproji_areas_weigh(loads));
 }
 
 /* Which vertices are in equilibrium along which axes, which edges have a force. */
