@@ -6386,7 +6386,7 @@ GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.v
    first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = front->entries < GPROJI_PREFETCHED ? front->entries : GPROJI_PREFETCHED;
+    int64_t size = front->entries < GPROJI_PREFETCHED ? front->entries : (int64_t)GPROJI_PREFETCHED;
     if (gproji_is_far(c)) gproji_prefetch_values(c->values + front->panel, size);
 }
 
