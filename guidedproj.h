@@ -3817,7 +3817,8 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
      coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
                   c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
-                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
+                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in. Its two
+                  sides keep these coordinates while cuts by them cost about as little.
      cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
                   guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
                   cost is estimated from its weight and that of its halo, the separators next to it, which become rows
@@ -3850,6 +3851,7 @@ typedef struct gproji_nd_part {
     int32_t nodes;
     int32_t place; /* its first place in the order */
     int32_t copy;
+    double par; /* what its cut costs if its coordinates are good, over gproji_nd_rest; see gproji_nd_next_par */
 } gproji_nd_part;
 
 /* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
@@ -3857,6 +3859,7 @@ typedef struct gproji_nd_part {
 typedef struct gproji_nd_nodes {
     int32_t *name;     /* the node in the graph that is dissected */
     int32_t *weight;   /* its weight */
+    int32_t *x, *y;    /* its coordinates */
     int64_t *from;     /* its neighbours begin at adjacent[from]: */
     int32_t *inner;    /* so many in the same part, by their numbers in it, */
     int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
@@ -3882,6 +3885,7 @@ typedef struct gproji_band {
     int32_t *id;         /* nodes: number in the part */
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
     int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *ahead;      /* nodes: its arcs before that one lead upwards */
     int32_t *load;       /* nodes: and so many of these pass, the first ones */
     int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
@@ -3909,7 +3913,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
-    bool open;           /* see gproji_has_rim */
+    double rim_length;   /* see gproji_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -3925,7 +3929,8 @@ typedef struct gproji_nd {
     int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
     int32_t *number;                 /* in the band or in a side */
     int32_t *position, *best_position;
-    unsigned char *side; /* 0, 1; 2: separator */
+    unsigned char *side;       /* 0, 1; 2: separator */
+    unsigned char *other_side; /* those of another cut */
     /* by position; how much more there is than at the position before */
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
@@ -3945,10 +3950,11 @@ enum {
 /* Arrays with an entry for each node, or position, and one more for the end of the positions. */
 GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **all[26], i, k = 0;
+    int32_t **all[30], i, k = 0;
     for (i = 0; i < 2; ++i) {
         gproji_nd_nodes *c = &nd->copy[i];
         all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
+        all[k++] = &c->x, all[k++] = &c->y;
         c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
         c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
         if (!c->from || !c->adjacent) return false;
@@ -3968,7 +3974,8 @@ GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
     nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
     nd->near = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near;
+    nd->other_side = (unsigned char *)gproji_pool_take(pool, n, 1);
+    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near && nd->other_side;
 }
 
 /* -- nodes that are not dissected -- */
@@ -4036,8 +4043,9 @@ GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
 
 /* -- parts -- */
 
-/* Has the graph a rim, as open meshes have: many nodes with few neighbours? Light nodes do not count. */
-GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
+/* How long the graph's rim is, in nodes with few neighbours: its square over the number of nodes. Light nodes do not
+   count. Open meshes have 8 to 16, or more if they are narrow; closed ones none, or a little where they are irregular. */
+GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     double all = 0, count = 0, degrees = 0, few = 0;
     int32_t i;
     for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
@@ -4049,7 +4057,7 @@ GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
         if ((double)graph->weight[i] * graph->nodes < all) continue;
         few += (double)(graph->start[i + 1] - graph->start[i]) * count < 0.75 * degrees;
     }
-    return few * few > count;
+    return count > 0 ? few * few / count : 0;
 }
 
 /* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
@@ -4082,7 +4090,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
-    nd->open = gproji_has_rim(graph);
+    nd->rim_length = gproji_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -4096,6 +4104,7 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     int32_t i, k;
     here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
     here->inner = c->inner + part->first, here->outer = c->outer + part->first;
+    here->x = c->x + part->first, here->y = c->y + part->first;
     here->adjacent = c->adjacent;
     nd->nodes = part->nodes;
     nd->rims = nd->halos = 0;
@@ -4116,10 +4125,11 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     }
 }
 
-GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy) {
+GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
+                                    double par) {
     gproji_nd_part *part = &nd->stack[nd->parts++];
     GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
-    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy;
+    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
 }
 
 /* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
@@ -4135,6 +4145,7 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
         all = a->inner[i] + a->outer[i];
         in = b->adjacent + e, out = in + all;
         b->name[to] = a->name[i], b->weight[to] = a->weight[i];
+        b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
         for (; list < end; ++list) {
             if (nd->side[*list] == 2)
@@ -4151,8 +4162,8 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
     return e;
 }
 
-/* Divides the part by `side`: the separator gets its last places, the sides become parts. */
-GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part) {
+/* Divides the part by `side`: the separator gets its last places, the sides become parts. par: theirs. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, double par) {
     gproji_nd_nodes *other = &nd->copy[!part->copy];
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
@@ -4164,7 +4175,7 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part)
     small = count[1] < count[0];
     for (i = 0; i < 2; ++i) {
         int32_t side = i ? small : !small, skip = side ? count[0] : 0;
-        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy);
+        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy, par);
     }
 }
 
@@ -4223,11 +4234,13 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     if (reached < nd->nodes) return reached;
     if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
     gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
-    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i];
+    for (i = 0; i < nd->nodes; ++i) /* where many nodes are as far from both, one in the middle */
+        value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
-    for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
+    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
     for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
+    nd->here.x = d[0], nd->here.y = d[1];
     return reached;
 }
 
@@ -4280,7 +4293,7 @@ GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int
     int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
     int32_t least = INT32_MAX, most = INT32_MIN;
     for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[1][i];
+        int32_t p = fx * nd->here.x[i] + fy * nd->here.y[i];
         position[i] = p;
         if (p < least) least = p;
         if (p > most) most = p;
@@ -4293,7 +4306,7 @@ GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int
 /* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
    positions higher. */
 GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
-    const int32_t *x = nd->distance[0], *y = nd->distance[1];
+    const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
@@ -4473,7 +4486,7 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
 
 GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
                                       int64_t units) {
-    size_t ints = (size_t)nodes * 10 + 2 + (size_t)arcs + (size_t)units;
+    size_t ints = (size_t)nodes * 11 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
@@ -4481,6 +4494,7 @@ GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int6
     band->id = at, at += nodes;
     band->start = at, at += nodes + 1;
     band->unit = at, at += nodes + 1;
+    band->ahead = at, at += nodes;
     band->load = at, at += nodes;
     band->level = at, at += 2 * nodes;
     band->turn = at, at += 2 * nodes;
@@ -4492,24 +4506,28 @@ GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int6
     return true;
 }
 
-/* The arcs of band node i from number e on, those that lead upwards first: a search then goes ahead first. Returns where
-   they end. */
+/* The arcs of band node i from number e on, those that lead upwards first, the farthest before others: a search then goes
+   ahead first, and leaves nodes free for other paths. Returns where they end. */
 GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
     gproji_band *band = &nd->band;
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
-    int32_t back = e + nd->here.inner[v], stop = back;
+    int32_t back = e + nd->here.inner[v], stop = back, k;
     band->start[i] = e;
     band->ends[i] = 0;
     for (; list < end; ++list) {
         int32_t u = nd->number[*list];
-        if (u < 0)
+        if (u < 0) {
             band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
-        else if (position[*list] > position[v])
-            band->to[e++] = u;
-        else
+        } else if (position[*list] > position[v]) {
+            for (k = e++; k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
+                band->to[k] = band->to[k - 1];
+            band->to[k] = u;
+        } else {
             band->to[--back] = u;
+        }
     }
+    band->ahead[i] = e;
     while (back < stop) band->to[e++] = band->to[back++];
     return e;
 }
@@ -4569,6 +4587,39 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
 
 GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
+}
+
+/* Looks for a path from a node to the sink, upwards all the way and through nodes with room. Returns its last index in
+   the queue, which has its nodes, or -1. level: -1 where there is none. */
+GPROJI_INTERNAL int32_t gproji_band_find_ascent(gproji_band *band, int32_t source) {
+    int32_t *path = band->queue, depth = 0;
+    path[0] = source;
+    while (depth >= 0) {
+        int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
+        if (band->ends[v] & GPROJI_BAND_SINK) return depth;
+        while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
+        band->turn[v] = c;
+        if (c < end)
+            path[++depth] = band->to[c];
+        else
+            band->level[path[depth--]] = -1;
+    }
+    return -1;
+}
+
+/* A first flow, along ascents: in most bands there is not much more. level, turn: here by node. */
+GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
+    const int32_t *path = band->queue;
+    int32_t i, k, depth;
+    for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
+        while (gproji_band_has_room(band, i) && (depth = gproji_band_find_ascent(band, i)) >= 0)
+            for (k = 0; k <= depth; ++k) {
+                int32_t v = path[k];
+                band->origin[band->unit[v] + band->load[v]++] = k > 0 ? path[k - 1] : -1;
+            }
+    }
 }
 
 /* The next state, one step nearer to the sink, to which more can flow from state s, or -1: from an exit along an arc, then
@@ -4775,15 +4826,16 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     return gproji_nd_cost(nd, weight, halo);
 }
 
-/* Finds the separator of a cut: `side`. False where there is none, or no memory. */
-GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
+/* Finds the separator of a cut: `side`. Returns what the part then costs; HUGE_VAL where there is none, or no memory. */
+GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
     static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
     int32_t from[2], i, cuts, rounds = 0, use = 0;
     double best;
     gproji_nd_band_limits(nd, cut, from);
-    if (!gproji_nd_build_band(nd, cut, from)) return false;
+    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
+    gproji_band_ascend(&nd->band);
     while (gproji_band_round(&nd->band))
-        if (++rounds == GPROJI_ND_ROUNDS) return false;
+        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
     cuts = gproji_nd_mark_cuts(nd, cut);
     best = gproji_nd_measure(nd, cut, from, marks[0]);
     for (i = 1; i < cuts; ++i) {
@@ -4791,7 +4843,7 @@ GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut)
         if (cost < best) best = cost, use = i;
     }
     for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
-    return best < HUGE_VAL;
+    return best;
 }
 
 /* -- parts that are not cut any more -- */
@@ -4913,44 +4965,92 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
     gproji_pool_give_all(&pool);
 }
 
-/* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
-   other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
-   nodes are connected; when these are not all, there is no cut. */
+/* Tries all directions; a cut that beats `best` takes its place. */
+GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
+    int32_t axis;
+    gproji_nd_sample(nd);
+    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+}
+
+/* Finds the best cut of the part at work by coordinates of its own. Where that of the largest part, on which most depends,
+   is far from the middle, other coordinates are tried if it is closed: then some nodes are better starts than others.
+   Returns how many nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && !nd->open ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && nd->rim_length <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
         reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
         if (reached < nd->nodes) break;
-        gproji_nd_sample(nd);
-        for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+        gproji_nd_try_all(nd, best);
         if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
 
+/* The par of a part's sides. own, inherited: what it costs when cut by its own coordinates, and by those that it had, if
+   any. 0: they need coordinates of their own, as do the first parts of meshes that are closed, or may be, and those of
+   solids, whose separators are large: there two coordinates do not tell all nodes apart. -1: so does all that comes of
+   them, as its own coordinates were better. */
+GPROJI_INTERNAL double gproji_nd_next_par(const gproji_nd *nd, double par, double own, double inherited) {
+    double ratio = gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight);
+    if (par < 0 || (par > 0 && own < inherited)) return -1;
+    if (nd->rim_length < 12 && nd->nodes >= nd->kept / 8) return 0;
+    return ratio < 2 ? ratio : 0;
+}
+
+/* Finds a cut of the part at work by the coordinates that it has: `side`. Returns what it costs. */
+GPROJI_INTERNAL double gproji_nd_cut_again(gproji_nd *nd) {
+    gproji_nd_cut cut;
+    memset(&cut, 0, sizeof cut);
+    cut.cost = HUGE_VAL;
+    gproji_nd_try_all(nd, &cut);
+    return cut.cost < HUGE_VAL ? gproji_nd_separate(nd, &cut) : HUGE_VAL;
+}
+
+GPROJI_INTERNAL void gproji_nd_swap_sides(gproji_nd *nd) {
+    unsigned char *side = nd->side;
+    nd->side = nd->other_side, nd->other_side = side;
+}
+
+/* Cuts the part at work, or orders it where it has no good cut. */
+GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *part) {
+    int32_t *x = nd->here.x, *y = nd->here.y, reached;
+    double own = HUGE_VAL, inherited = HUGE_VAL, par = part->par;
+    gproji_nd_cut cut;
+    if (par > 0) {
+        inherited = gproji_nd_cut_again(nd);
+        if (inherited < 1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight)) {
+            gproji_nd_divide(nd, part, par);
+            return;
+        }
+        gproji_nd_swap_sides(nd);
+    }
+    reached = gproji_nd_find_cut(nd, &cut);
+    if (reached < nd->nodes) {
+        gproji_nd_split_components(nd, reached);
+        gproji_nd_divide(nd, part, gproji_fmin(par, 0));
+        return;
+    }
+    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut);
+    if (inherited <= own && inherited < HUGE_VAL) {
+        gproji_nd_swap_sides(nd);
+        nd->here.x = x, nd->here.y = y;
+    }
+    if (own < HUGE_VAL || inherited < HUGE_VAL)
+        gproji_nd_divide(nd, part, gproji_nd_next_par(nd, par, own, inherited));
+    else
+        gproji_nd_order_whole(nd, part->place);
+}
+
 /* Orders the part on top of the stack or cuts it. */
 GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
     gproji_nd_part part = nd->stack[--nd->parts];
-    gproji_nd_cut best;
-    int32_t reached;
     gproji_nd_enter(nd, &part);
-    if (part.nodes <= GPROJI_ND_LEAF) {
+    if (part.nodes <= GPROJI_ND_LEAF)
         gproji_nd_order_leaf(nd, part.place);
-        return;
-    }
-    reached = gproji_nd_find_cut(nd, &best);
-    if (reached < part.nodes) {
-        gproji_nd_split_components(nd, reached);
-        gproji_nd_divide(nd, &part);
-        return;
-    }
-    if (best.cost < HUGE_VAL && gproji_nd_separate(nd, &best)) {
-        gproji_nd_divide(nd, &part);
-    } else {
-        gproji_nd_order_whole(nd, part.place);
-    }
+    else
+        gproji_nd_cut_part(nd, &part);
 }
 
 /* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
@@ -5625,7 +5725,7 @@ GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
         all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
     square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
-    return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
+    return (gproji_rim(graph) > 1 ? 1 : 2) * square * sqrt(square);
 }
 
 /* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes
