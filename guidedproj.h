@@ -3642,10 +3642,22 @@ GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t n
    make every degree and distance meaningless and the search slow. */
 GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
 
+GPROJI_INTERNAL int32_t gproji_graph_heaviest(const gproji_graph *graph) {
+    int32_t i, most = 0;
+    for (i = 0; i < graph->nodes; ++i) most = gproji_max(most, graph->weight[i]);
+    return most;
+}
+
+/* Is a node dense? dense: see gproji_dense_degree. heaviest: of all nodes; most need no look at their neighbours. */
+GPROJI_INTERNAL bool gproji_graph_is_dense(const gproji_graph *graph, int32_t node, double dense, int32_t heaviest) {
+    if ((double)(graph->start[node + 1] - graph->start[node]) * heaviest <= dense) return false;
+    return (double)gproji_graph_degree(graph, node) > dense;
+}
+
 /* Fills the lists with all nodes that are not dense. */
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
     double dense = gproji_dense_degree(amd->buckets - 1);
-    int32_t i;
+    int32_t i, heaviest = gproji_graph_heaviest(graph);
     int64_t k;
     amd->stamp = 1;
     amd->lowest = 0;
@@ -3655,7 +3667,7 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->tail[i] = i;
         amd->chain[i] = -1;
         amd->weight[i] = graph->weight[i];
-        if ((double)gproji_graph_degree(graph, i) > dense) amd->kind[i] = GPROJI_AMD_DENSE;
+        if (gproji_graph_is_dense(graph, i, dense, heaviest)) amd->kind[i] = GPROJI_AMD_DENSE;
     }
     for (i = 0; i < amd->nodes; ++i) {
         int32_t degree = 0;
@@ -3784,16 +3796,16 @@ GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x
    where normals have gone, and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room = 0, e;
+    int64_t *start, room;
     memset(x, 0, sizeof *x);
     gproji_pool_start(&x->pool, heap);
     if (!gproji_choose_condensed(x, graph)) return false;
     left = graph->nodes - x->count;
-    for (k = x->count; k < graph->nodes; ++k)
-        for (e = graph->start[x->first[k]]; e < graph->start[x->first[k] + 1]; ++e) {
-            int32_t j = graph->adjacent[e];
-            room += x->number[j] < x->count ? graph->start[j + 1] - graph->start[j] : 1;
-        }
+    room = graph->start[graph->nodes];
+    for (k = 0; k < x->count; ++k) { /* its neighbours lose it, and gain at most all of its neighbours */
+        int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
+        room += degree * (degree - 2);
+    }
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
     adjacent = (int32_t *)gproji_pool_take(&x->pool, room, sizeof(int32_t));
     weight = (int32_t *)gproji_pool_take(&x->pool, left, sizeof(int32_t));
@@ -3999,11 +4011,11 @@ GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_
 GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     double dense = gproji_dense_degree(total);
-    int32_t a, b, *mark = nd->number;
+    int32_t a, b, heaviest = gproji_graph_heaviest(graph), *mark = nd->number;
     int64_t e;
     for (a = 0; a < graph->nodes; ++a) {
         mark[a] = -1;
-        if ((double)gproji_graph_degree(graph, a) > dense) nd->kind[a] = GPROJI_ND_DENSE;
+        if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
     }
     for (b = 0; b < graph->nodes; ++b) {
         if (nd->kind[b] == GPROJI_ND_DENSE) continue;
