@@ -3675,10 +3675,22 @@ GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t n
    make every degree and distance meaningless and the search slow. */
 GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
 
+GPROJI_INTERNAL int32_t gproji_graph_heaviest(const gproji_graph *graph) {
+    int32_t i, most = 0;
+    for (i = 0; i < graph->nodes; ++i) most = gproji_max(most, graph->weight[i]);
+    return most;
+}
+
+/* Is a node dense? dense: see gproji_dense_degree. heaviest: of all nodes; most need no look at their neighbours. */
+GPROJI_INTERNAL bool gproji_graph_is_dense(const gproji_graph *graph, int32_t node, double dense, int32_t heaviest) {
+    if ((double)(graph->start[node + 1] - graph->start[node]) * heaviest <= dense) return false;
+    return (double)gproji_graph_degree(graph, node) > dense;
+}
+
 /* Fills the lists with all nodes that are not dense. */
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
     double dense = gproji_dense_degree(amd->buckets - 1);
-    int32_t i;
+    int32_t i, heaviest = gproji_graph_heaviest(graph);
     int64_t k;
     amd->stamp = 1;
     amd->lowest = 0;
@@ -3688,7 +3700,7 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->tail[i] = i;
         amd->chain[i] = -1;
         amd->weight[i] = graph->weight[i];
-        if ((double)gproji_graph_degree(graph, i) > dense) amd->kind[i] = GPROJI_AMD_DENSE;
+        if (gproji_graph_is_dense(graph, i, dense, heaviest)) amd->kind[i] = GPROJI_AMD_DENSE;
     }
     for (i = 0; i < amd->nodes; ++i) {
         int32_t degree = 0;
@@ -3817,16 +3829,16 @@ GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x
    where normals have gone, and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room = 0, e;
+    int64_t *start, room;
     memset(x, 0, sizeof *x);
     gproji_pool_start(&x->pool, heap);
     if (!gproji_choose_condensed(x, graph)) return false;
     left = graph->nodes - x->count;
-    for (k = x->count; k < graph->nodes; ++k)
-        for (e = graph->start[x->first[k]]; e < graph->start[x->first[k] + 1]; ++e) {
-            int32_t j = graph->adjacent[e];
-            room += x->number[j] < x->count ? graph->start[j + 1] - graph->start[j] : 1;
-        }
+    room = graph->start[graph->nodes];
+    for (k = 0; k < x->count; ++k) { /* its neighbours lose it, and gain at most all of its neighbours */
+        int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
+        room += degree * (degree - 2);
+    }
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
     adjacent = (int32_t *)gproji_pool_take(&x->pool, room, sizeof(int32_t));
     weight = (int32_t *)gproji_pool_take(&x->pool, left, sizeof(int32_t));
@@ -3850,7 +3862,8 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
    after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
      coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
                   c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
-                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in.
+                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in. Its two
+                  sides keep these coordinates while cuts by them cost about as little.
      cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
                   guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
                   cost is estimated from its weight and that of its halo, the separators next to it, which become rows
@@ -3883,6 +3896,7 @@ typedef struct gproji_nd_part {
     int32_t nodes;
     int32_t place; /* its first place in the order */
     int32_t copy;
+    double par; /* what its cut costs if its coordinates are good, over gproji_nd_rest; see gproji_nd_next_par */
 } gproji_nd_part;
 
 /* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
@@ -3890,6 +3904,7 @@ typedef struct gproji_nd_part {
 typedef struct gproji_nd_nodes {
     int32_t *name;     /* the node in the graph that is dissected */
     int32_t *weight;   /* its weight */
+    int32_t *x, *y;    /* its coordinates */
     int64_t *from;     /* its neighbours begin at adjacent[from]: */
     int32_t *inner;    /* so many in the same part, by their numbers in it, */
     int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
@@ -3915,6 +3930,7 @@ typedef struct gproji_band {
     int32_t *id;         /* nodes: number in the part */
     int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
     int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *ahead;      /* nodes: its arcs before that one lead upwards */
     int32_t *load;       /* nodes: and so many of these pass, the first ones */
     int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
@@ -3942,7 +3958,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
-    bool open;           /* see gproji_has_rim */
+    double rim_length;   /* see gproji_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -3958,7 +3974,8 @@ typedef struct gproji_nd {
     int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
     int32_t *number;                 /* in the band or in a side */
     int32_t *position, *best_position;
-    unsigned char *side; /* 0, 1; 2: separator */
+    unsigned char *side;       /* 0, 1; 2: separator */
+    unsigned char *other_side; /* those of another cut */
     /* by position; how much more there is than at the position before */
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
@@ -3978,10 +3995,11 @@ enum {
 /* Arrays with an entry for each node, or position, and one more for the end of the positions. */
 GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **all[26], i, k = 0;
+    int32_t **all[30], i, k = 0;
     for (i = 0; i < 2; ++i) {
         gproji_nd_nodes *c = &nd->copy[i];
         all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
+        all[k++] = &c->x, all[k++] = &c->y;
         c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
         c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
         if (!c->from || !c->adjacent) return false;
@@ -4001,7 +4019,8 @@ GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
     nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
     nd->near = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near;
+    nd->other_side = (unsigned char *)gproji_pool_take(pool, n, 1);
+    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near && nd->other_side;
 }
 
 /* -- nodes that are not dissected -- */
@@ -4025,11 +4044,11 @@ GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_
 GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     double dense = gproji_dense_degree(total);
-    int32_t a, b, *mark = nd->number;
+    int32_t a, b, heaviest = gproji_graph_heaviest(graph), *mark = nd->number;
     int64_t e;
     for (a = 0; a < graph->nodes; ++a) {
         mark[a] = -1;
-        if ((double)gproji_graph_degree(graph, a) > dense) nd->kind[a] = GPROJI_ND_DENSE;
+        if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
     }
     for (b = 0; b < graph->nodes; ++b) {
         if (nd->kind[b] == GPROJI_ND_DENSE) continue;
@@ -4069,8 +4088,9 @@ GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
 
 /* -- parts -- */
 
-/* Has the graph a rim, as open meshes have: many nodes with few neighbours? Light nodes do not count. */
-GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
+/* How long the graph's rim is, in nodes with few neighbours: its square over the number of nodes. Light nodes do not
+   count. Open meshes have 8 to 16, or more if they are narrow; closed ones none, or a little where they are irregular. */
+GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     double all = 0, count = 0, degrees = 0, few = 0;
     int32_t i;
     for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
@@ -4082,7 +4102,7 @@ GPROJI_INTERNAL bool gproji_has_rim(const gproji_graph *graph) {
         if ((double)graph->weight[i] * graph->nodes < all) continue;
         few += (double)(graph->start[i + 1] - graph->start[i]) * count < 0.75 * degrees;
     }
-    return few * few > count;
+    return count > 0 ? few * few / count : 0;
 }
 
 /* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
@@ -4115,7 +4135,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
-    nd->open = gproji_has_rim(graph);
+    nd->rim_length = gproji_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -4129,6 +4149,7 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     int32_t i, k;
     here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
     here->inner = c->inner + part->first, here->outer = c->outer + part->first;
+    here->x = c->x + part->first, here->y = c->y + part->first;
     here->adjacent = c->adjacent;
     nd->nodes = part->nodes;
     nd->rims = nd->halos = 0;
@@ -4149,10 +4170,11 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     }
 }
 
-GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy) {
+GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
+                                    double par) {
     gproji_nd_part *part = &nd->stack[nd->parts++];
     GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
-    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy;
+    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
 }
 
 /* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
@@ -4168,6 +4190,7 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
         all = a->inner[i] + a->outer[i];
         in = b->adjacent + e, out = in + all;
         b->name[to] = a->name[i], b->weight[to] = a->weight[i];
+        b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
         for (; list < end; ++list) {
             if (nd->side[*list] == 2)
@@ -4184,8 +4207,8 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
     return e;
 }
 
-/* Divides the part by `side`: the separator gets its last places, the sides become parts. */
-GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part) {
+/* Divides the part by `side`: the separator gets its last places, the sides become parts. par: theirs. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, double par) {
     gproji_nd_nodes *other = &nd->copy[!part->copy];
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
@@ -4197,7 +4220,7 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part)
     small = count[1] < count[0];
     for (i = 0; i < 2; ++i) {
         int32_t side = i ? small : !small, skip = side ? count[0] : 0;
-        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy);
+        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy, par);
     }
 }
 
@@ -4256,11 +4279,13 @@ GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
     if (reached < nd->nodes) return reached;
     if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
     gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
-    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i];
+    for (i = 0; i < nd->nodes; ++i) /* where many nodes are as far from both, one in the middle */
+        value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
-    for (i = 0; i < nd->nodes; ++i) value[i] += 2 * d[2][i];
+    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
     gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
     for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
+    nd->here.x = d[0], nd->here.y = d[1];
     return reached;
 }
 
@@ -4313,7 +4338,7 @@ GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int
     int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
     int32_t least = INT32_MAX, most = INT32_MIN;
     for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->distance[0][i] + fy * nd->distance[1][i];
+        int32_t p = fx * nd->here.x[i] + fy * nd->here.y[i];
         position[i] = p;
         if (p < least) least = p;
         if (p > most) most = p;
@@ -4326,7 +4351,7 @@ GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int
 /* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
    positions higher. */
 GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
-    const int32_t *x = nd->distance[0], *y = nd->distance[1];
+    const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
@@ -4506,7 +4531,7 @@ GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut 
 
 GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
                                       int64_t units) {
-    size_t ints = (size_t)nodes * 10 + 2 + (size_t)arcs + (size_t)units;
+    size_t ints = (size_t)nodes * 11 + 2 + (size_t)arcs + (size_t)units;
     int32_t *at;
     if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
         return false;
@@ -4514,6 +4539,7 @@ GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int6
     band->id = at, at += nodes;
     band->start = at, at += nodes + 1;
     band->unit = at, at += nodes + 1;
+    band->ahead = at, at += nodes;
     band->load = at, at += nodes;
     band->level = at, at += 2 * nodes;
     band->turn = at, at += 2 * nodes;
@@ -4525,24 +4551,28 @@ GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int6
     return true;
 }
 
-/* The arcs of band node i from number e on, those that lead upwards first: a search then goes ahead first. Returns where
-   they end. */
+/* The arcs of band node i from number e on, those that lead upwards first, the farthest before others: a search then goes
+   ahead first, and leaves nodes free for other paths. Returns where they end. */
 GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
     gproji_band *band = &nd->band;
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
-    int32_t back = e + nd->here.inner[v], stop = back;
+    int32_t back = e + nd->here.inner[v], stop = back, k;
     band->start[i] = e;
     band->ends[i] = 0;
     for (; list < end; ++list) {
         int32_t u = nd->number[*list];
-        if (u < 0)
+        if (u < 0) {
             band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
-        else if (position[*list] > position[v])
-            band->to[e++] = u;
-        else
+        } else if (position[*list] > position[v]) {
+            for (k = e++; k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
+                band->to[k] = band->to[k - 1];
+            band->to[k] = u;
+        } else {
             band->to[--back] = u;
+        }
     }
+    band->ahead[i] = e;
     while (back < stop) band->to[e++] = band->to[back++];
     return e;
 }
@@ -4602,6 +4632,39 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
 
 GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
+}
+
+/* Looks for a path from a node to the sink, upwards all the way and through nodes with room. Returns its last index in
+   the queue, which has its nodes, or -1. level: -1 where there is none. */
+GPROJI_INTERNAL int32_t gproji_band_find_ascent(gproji_band *band, int32_t source) {
+    int32_t *path = band->queue, depth = 0;
+    path[0] = source;
+    while (depth >= 0) {
+        int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
+        if (band->ends[v] & GPROJI_BAND_SINK) return depth;
+        while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
+        band->turn[v] = c;
+        if (c < end)
+            path[++depth] = band->to[c];
+        else
+            band->level[path[depth--]] = -1;
+    }
+    return -1;
+}
+
+/* A first flow, along ascents: in most bands there is not much more. level, turn: here by node. */
+GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
+    const int32_t *path = band->queue;
+    int32_t i, k, depth;
+    for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
+    for (i = 0; i < band->nodes; ++i) {
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
+        while (gproji_band_has_room(band, i) && (depth = gproji_band_find_ascent(band, i)) >= 0)
+            for (k = 0; k <= depth; ++k) {
+                int32_t v = path[k];
+                band->origin[band->unit[v] + band->load[v]++] = k > 0 ? path[k - 1] : -1;
+            }
+    }
 }
 
 /* The next state, one step nearer to the sink, to which more can flow from state s, or -1: from an exit along an arc, then
@@ -4808,15 +4871,16 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     return gproji_nd_cost(nd, weight, halo);
 }
 
-/* Finds the separator of a cut: `side`. False where there is none, or no memory. */
-GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
+/* Finds the separator of a cut: `side`. Returns what the part then costs; HUGE_VAL where there is none, or no memory. */
+GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
     static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
     int32_t from[2], i, cuts, rounds = 0, use = 0;
     double best;
     gproji_nd_band_limits(nd, cut, from);
-    if (!gproji_nd_build_band(nd, cut, from)) return false;
+    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
+    gproji_band_ascend(&nd->band);
     while (gproji_band_round(&nd->band))
-        if (++rounds == GPROJI_ND_ROUNDS) return false;
+        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
     cuts = gproji_nd_mark_cuts(nd, cut);
     best = gproji_nd_measure(nd, cut, from, marks[0]);
     for (i = 1; i < cuts; ++i) {
@@ -4824,7 +4888,7 @@ GPROJI_INTERNAL bool gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut)
         if (cost < best) best = cost, use = i;
     }
     for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
-    return best < HUGE_VAL;
+    return best;
 }
 
 /* -- parts that are not cut any more -- */
@@ -4946,44 +5010,92 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
     gproji_pool_give_all(&pool);
 }
 
-/* Finds the best cut of the part at work. Where that of the largest part, on which most depends, is far from the middle,
-   other coordinates are tried if it is closed: then some nodes are better starts than others. Returns how many
-   nodes are connected; when these are not all, there is no cut. */
+/* Tries all directions; a cut that beats `best` takes its place. */
+GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
+    int32_t axis;
+    gproji_nd_sample(nd);
+    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+}
+
+/* Finds the best cut of the part at work by coordinates of its own. Where that of the largest part, on which most depends,
+   is far from the middle, other coordinates are tried if it is closed: then some nodes are better starts than others.
+   Returns how many nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && !nd->open ? GPROJI_ND_STARTS : 1, k, axis, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && nd->rim_length <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
         reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
         if (reached < nd->nodes) break;
-        gproji_nd_sample(nd);
-        for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
+        gproji_nd_try_all(nd, best);
         if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
 
+/* The par of a part's sides. own, inherited: what it costs when cut by its own coordinates, and by those that it had, if
+   any. 0: they need coordinates of their own, as do the first parts of meshes that are closed, or may be, and those of
+   solids, whose separators are large: there two coordinates do not tell all nodes apart. -1: so does all that comes of
+   them, as its own coordinates were better. */
+GPROJI_INTERNAL double gproji_nd_next_par(const gproji_nd *nd, double par, double own, double inherited) {
+    double ratio = gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight);
+    if (par < 0 || (par > 0 && own < inherited)) return -1;
+    if (nd->rim_length < 12 && nd->nodes >= nd->kept / 8) return 0;
+    return ratio < 2 ? ratio : 0;
+}
+
+/* Finds a cut of the part at work by the coordinates that it has: `side`. Returns what it costs. */
+GPROJI_INTERNAL double gproji_nd_cut_again(gproji_nd *nd) {
+    gproji_nd_cut cut;
+    memset(&cut, 0, sizeof cut);
+    cut.cost = HUGE_VAL;
+    gproji_nd_try_all(nd, &cut);
+    return cut.cost < HUGE_VAL ? gproji_nd_separate(nd, &cut) : HUGE_VAL;
+}
+
+GPROJI_INTERNAL void gproji_nd_swap_sides(gproji_nd *nd) {
+    unsigned char *side = nd->side;
+    nd->side = nd->other_side, nd->other_side = side;
+}
+
+/* Cuts the part at work, or orders it where it has no good cut. */
+GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *part) {
+    int32_t *x = nd->here.x, *y = nd->here.y, reached;
+    double own = HUGE_VAL, inherited = HUGE_VAL, par = part->par;
+    gproji_nd_cut cut;
+    if (par > 0) {
+        inherited = gproji_nd_cut_again(nd);
+        if (inherited < 1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight)) {
+            gproji_nd_divide(nd, part, par);
+            return;
+        }
+        gproji_nd_swap_sides(nd);
+    }
+    reached = gproji_nd_find_cut(nd, &cut);
+    if (reached < nd->nodes) {
+        gproji_nd_split_components(nd, reached);
+        gproji_nd_divide(nd, part, gproji_fmin(par, 0));
+        return;
+    }
+    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut);
+    if (inherited <= own && inherited < HUGE_VAL) {
+        gproji_nd_swap_sides(nd);
+        nd->here.x = x, nd->here.y = y;
+    }
+    if (own < HUGE_VAL || inherited < HUGE_VAL)
+        gproji_nd_divide(nd, part, gproji_nd_next_par(nd, par, own, inherited));
+    else
+        gproji_nd_order_whole(nd, part->place);
+}
+
 /* Orders the part on top of the stack or cuts it. */
 GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
     gproji_nd_part part = nd->stack[--nd->parts];
-    gproji_nd_cut best;
-    int32_t reached;
     gproji_nd_enter(nd, &part);
-    if (part.nodes <= GPROJI_ND_LEAF) {
+    if (part.nodes <= GPROJI_ND_LEAF)
         gproji_nd_order_leaf(nd, part.place);
-        return;
-    }
-    reached = gproji_nd_find_cut(nd, &best);
-    if (reached < part.nodes) {
-        gproji_nd_split_components(nd, reached);
-        gproji_nd_divide(nd, &part);
-        return;
-    }
-    if (best.cost < HUGE_VAL && gproji_nd_separate(nd, &best)) {
-        gproji_nd_divide(nd, &part);
-    } else {
-        gproji_nd_order_whole(nd, part.place);
-    }
+    else
+        gproji_nd_cut_part(nd, &part);
 }
 
 /* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
@@ -5658,7 +5770,7 @@ GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
         all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
     }
     square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
-    return (gproji_has_rim(graph) ? 1 : 2) * square * sqrt(square);
+    return (gproji_rim(graph) > 1 ? 1 : 2) * square * sqrt(square);
 }
 
 /* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes
