@@ -7368,14 +7368,17 @@ enum {
     GPROJI_BLOCK_MAX = 8,        /* variables of a block */
     GPROJI_WIDE_ROW = 512,       /* a row with more variables than this is treated as a global one */
     GPROJI_ROWS_PER_TASK = 2048, /* of the evaluation */
-    GPROJI_ROWS_AHEAD = 16       /* see gproji_expect_rows */
+    GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
+    GPROJI_COPIES = 64,          /* see gproji_copy */
+    GPROJI_COPY_LOCALS = 13
 };
 
-/* Row r of a group has the terms term[row[r].term .. row[r + 1].term - 1], and likewise for the other starts; the array
-   has one more entry than there are rows. */
+/* A row has the terms term[term .. term + terms - 1] of its group, maybe in common with other rows, and the locals from
+   `local` on, up to those of the next row: the array has one more entry than there are rows. */
 typedef struct gproji_row {
-    int64_t term;
-    int64_t local; /* its variables; compiled: and its gradient */
+    uint32_t term, terms;
+    uint32_t source; /* `term` before compilation: terms that rows have in common are copied then where locals move */
+    uint32_t local;  /* its variables; compiled: and its gradient */
     double constant;
     double weight; /* times the group's; 0: the row is left out of everything */
     double phi;    /* the value at the last evaluation */
@@ -7423,17 +7426,21 @@ typedef struct gproji_group {
 
     int32_t row_count;
     gproji_row *row;
-    gproj_term *term;        /* i and j are not variables but places among the locals of their row */
-    gproji_share *share;     /* of each row; NULL: all factors are 1 */
-    int32_t *local_variable; /* of every row, one row after the other, each once: in the order in which terms name them, */
-    bool sorted;             /* but compiled those of narrow rows may have the order of `local_at` */
+    gproj_term *term;  /* i and j are not variables but places among the locals of their row */
+    bool common;       /* several rows have the same terms: they are not to be written (gproji_own_terms) */
+    size_t term_count; /* of all terms; compiled, with the copies that follow the first `sources` */
+    size_t sources;
+    gproji_share *share; /* of each row; NULL: all factors are 1 */
+    int32_t
+        *local_variable; /* of every row, one row after the other, each once: in the order in which terms name them, */
+    bool sorted;         /* but compiled those of narrow rows may have the order of `local_at` */
     size_t row_capacity, term_capacity, share_capacity, local_capacity;
 
-    int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
-    double *local_gradient;  /* at the last evaluation */
-    gproji_tally *tally;     /* of each task of the evaluation */
-    double tallied;          /* the weight for which that was made */
-    int32_t first_task;      /* of the evaluation that is under way */
+    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
+    double *local_gradient;        /* at the last evaluation */
+    gproji_tally *tally;           /* of each task of the evaluation */
+    double tallied;                /* the weight for which that was made */
+    int32_t first_task;            /* of the evaluation that is under way */
     gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
 
@@ -7571,18 +7578,22 @@ GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int
 /* The order of the locals before compilation, which thus does not depend on earlier ones. */
 GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
-    int64_t t;
     for (r = 0; r < g->row_count; ++r) {
-        const gproji_row *row = &g->row[r];
+        gproji_row *row = &g->row[r];
+        gproj_term *term = g->term + row->term, *end = term + row->terms;
         int32_t *local = g->local_variable + row->local;
         if (row->wide) continue;
         count = (int32_t)(row[1].local - row->local);
         for (i = 0; i < count; ++i) number[i] = -1, variable[i] = local[i];
-        for (t = row->term, named = 0; t < row[1].term; ++t) {
-            named = gproji_name_again(variable, &g->term[t].i, number, named, local);
-            if (g->term[t].j >= 0) named = gproji_name_again(variable, &g->term[t].j, number, named, local);
+        for (named = 0; term < end; ++term) {
+            gproj_term now = *term;
+            named = gproji_name_again(variable, &now.i, number, named, local);
+            if (now.j >= 0) named = gproji_name_again(variable, &now.j, number, named, local);
+            if (!g->common) *term = now;
         }
+        row->term = row->source;
     }
+    g->term_count = g->sources;
     g->sorted = false;
 }
 
@@ -7905,8 +7916,7 @@ GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
     void *row = g->row, *term = g->term, *share = g->share, *local = g->local_variable;
     bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
     g->row = (gproji_row *)row;
-    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, (size_t)g->row[g->row_count].term + terms,
-                                      sizeof *g->term);
+    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, g->term_count + terms, sizeof *g->term);
     g->term = (gproj_term *)term;
     enough = enough && gproji_reserve(&s->own, &local, &g->local_capacity, gproji_local_count(g) + locals,
                                       sizeof *g->local_variable);
@@ -7934,23 +7944,27 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + 2;
     return wanted <= g->row_capacity && (!g->share || wanted <= g->share_capacity) &&
-           (size_t)g->row[g->row_count].term + terms <= g->term_capacity &&
-           gproji_local_count(g) + locals <= g->local_capacity;
+           g->term_count + terms <= g->term_capacity && g->term_count + terms < UINT32_MAX &&
+           gproji_local_count(g) + locals <= g->local_capacity && gproji_local_count(g) + locals < UINT32_MAX;
 }
 
 /* Makes this room. */
 GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t terms, size_t locals) {
-    if (g->row_count == INT32_MAX - 1)
+    if (g->row_count == INT32_MAX - 1 || terms >= UINT32_MAX - g->term_count ||
+        locals >= UINT32_MAX - gproji_local_count(g))
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
-                    "group '%s' has too many rows", g->name);
+                    "group '%s' has too many rows or terms", g->name);
     else if (!gproji_reserve_rows(s, g, 1, terms, locals))
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
 
-/* A new row without terms, for which there is room. */
-GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, double constant, int32_t element) {
+/* A new row whose terms will be those from `term` on, and for which there is room. */
+GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32_t terms, double constant,
+                                           int32_t element) {
     gproji_row *row = &g->row[g->row_count];
+    row->term = row->source = term;
+    row->terms = (uint32_t)terms;
     row->constant = constant;
     row->weight = 1;
     row->element = element;
@@ -7961,12 +7975,12 @@ GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, double constant, int
 }
 
 /* The row has got its terms and locals. Returns its number. */
-GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t terms, int32_t locals) {
+GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals) {
     row->wide = g->global || locals > GPROJI_WIDE_ROW;
     g->has_wide = g->has_wide || row->wide;
     s->wide_count += row->wide;
-    row[1].term = row->term + terms;
-    row[1].local = row->local + locals;
+    if (row->term == g->term_count) g->sources = g->term_count += row->terms;
+    row[1].local = row->local + (uint32_t)locals;
     return g->row_count++;
 }
 
@@ -8024,10 +8038,10 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     if (!gproji_has_room(g, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
-    row = gproji_start_row(g, constant, element);
+    row = gproji_start_row(g, (uint32_t)g->term_count, count, constant, element);
     local = g->local_variable + row->local;
     named = gproji_name_locals(s, count, terms, g->term + row->term, local);
-    r = gproji_end_row(s, g, row, count, named);
+    r = gproji_end_row(s, g, row, named);
     if (row->wide)
         row->run = gproji_is_run(count, terms);
     else
@@ -8038,21 +8052,45 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
 
 /* The same for builders that know what is right: the terms name places among the locals, which are different variables of
    this system, and in the order in which the terms name them; if some of them have a block in common it is coupled
-   already. The group is not global. */
-GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
-                                           int32_t locals, const int32_t *local, double constant, int32_t element) {
+   already. The group is not global. like: an earlier row of the group with the same terms; -1: none. */
+GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
+                                           const gproj_term *terms, int32_t locals, const int32_t *local,
+                                           double constant, int32_t element) {
+    size_t own = like < 0 ? (size_t)count : 0;
     gproji_group *g;
     gproji_row *row;
     if (!gproji_system_is_open(s)) return;
     g = &s->group[group];
     if (s->compiled) gproji_system_forget(s);
-    if (!gproji_has_room(g, (size_t)count, (size_t)locals) &&
-        !gproji_make_room(s, g, (size_t)count, (size_t)locals))
-        return;
-    row = gproji_start_row(g, constant, element);
-    memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
+    if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return;
+    row = gproji_start_row(g, like < 0 ? (uint32_t)g->term_count : g->row[like].term, count, constant, element);
+    if (like < 0)
+        memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
+    else
+        g->common = true;
     memcpy(g->local_variable + row->local, local, (size_t)locals * sizeof *local);
-    gproji_end_row(s, g, row, count, locals);
+    gproji_end_row(s, g, row, locals);
+}
+
+/* Gives each row its own terms. */
+GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
+    gproj_term *own;
+    size_t count = 0;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
+    own = count < UINT32_MAX ? (gproj_term *)gproji_take(&s->own, count, sizeof *own) : NULL;
+    if (!own) return false;
+    for (r = 0, count = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        if (row->terms > 0) memcpy(own + count, g->term + row->term, row->terms * sizeof *own);
+        row->term = row->source = (uint32_t)count;
+        count += row->terms;
+    }
+    gproji_give(&s->own, g->term, g->term_capacity, sizeof *g->term);
+    g->term = own;
+    g->term_count = g->sources = g->term_capacity = count;
+    g->common = false;
+    return true;
 }
 
 GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group, int32_t row) {
@@ -8068,7 +8106,8 @@ GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
-    int64_t t, count;
+    gproj_term *term;
+    uint32_t t, count;
     bool finite;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
@@ -8076,14 +8115,16 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, row, "there is no row %d in group %d", row,
                            group);
     g = &s->group[group];
-    count = g->row[row + 1].term - g->row[row].term;
+    count = g->row[row].terms;
     finite = gproji_is_finite(constant);
     for (t = 0; coefficients && t < count; ++t) finite = finite && gproji_is_finite(coefficients[t]);
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
+    if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
     if (coefficients && row < g->closing) gproji_open_rows(s, g);
-    for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
+    term = g->term + g->row[row].term;
+    for (t = 0; coefficients && t < count; ++t) term[t].a = coefficients[t];
     g->row[row].constant = constant;
     s->changed = true;
     return GPROJ_OK;
@@ -8131,7 +8172,7 @@ GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row
 /* phi at x, whether compiled or not. */
 GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
     const gproji_row *row = &g->row[r];
-    const gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
     const int32_t *variable = g->local_variable + row->local;
     double phi = row->constant;
     for (; term < end; ++term) {
@@ -8144,10 +8185,10 @@ GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const 
 /* gradient += grad phi at x, whether compiled or not. */
 GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
     const gproji_row *row = &g->row[r];
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        double a = g->term[t].a;
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    for (; term < end; ++term) {
+        double a = term->a;
+        int32_t i = gproji_variable_of(g, row, term->i), j = gproji_variable_of(g, row, term->j);
         gradient[i] += j < 0 ? a : a * x[j];
         if (j >= 0) gradient[j] += a * x[i];
     }
@@ -8391,27 +8432,91 @@ GPROJI_INLINE bool gproji_sort_locals(const int32_t *column, int32_t count, int3
     return moved;
 }
 
+/* Copies of terms that rows have in common, for locals that have moved: those met last, by `gproji_copy_slot`. */
+typedef struct gproji_copy {
+    uint32_t source, term;
+    int32_t locals; /* 0: none */
+    int32_t rank[GPROJI_COPY_LOCALS];
+} gproji_copy;
+
+GPROJI_INLINE uint32_t gproji_copy_slot(int32_t locals, const int32_t *rank) {
+    uint32_t hash = (uint32_t)rank[locals - 1], i;
+    for (i = 0; i < 3 && i < (uint32_t)locals; ++i) hash = hash * 5 + (uint32_t)rank[i];
+    return hash % GPROJI_COPIES;
+}
+
+/* Lets terms name the places where the locals have gone. */
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const int32_t *rank) {
+    gproj_term *end = term + count;
+    for (; term < end; ++term) {
+        term->i = rank[term->i];
+        if (term->j >= 0) term->j = rank[term->j];
+    }
+}
+
+/* Gives the row a copy of its terms for the moved locals. False: no memory. */
+GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, const int32_t *rank) {
+    void *term = g->term;
+    size_t wanted = g->term_count + row->terms;
+    bool enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->term_capacity, wanted, sizeof *g->term);
+    g->term = (gproj_term *)term;
+    if (!enough) return false;
+    memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
+    gproji_rename_terms(g->term + g->term_count, row->terms, rank);
+    row->term = (uint32_t)g->term_count;
+    g->term_count = wanted;
+    return true;
+}
+
+/* The same, with the copy that another row has got, if there is one. */
+GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+                                    const int32_t *rank, gproji_copy *copy) {
+    size_t size = (size_t)locals * sizeof *rank;
+    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, rank);
+    copy += gproji_copy_slot(locals, rank);
+    if (copy->locals == locals && copy->source == row->source && memcmp(copy->rank, rank, size) == 0) {
+        row->term = copy->term;
+        return true;
+    }
+    if (!gproji_copy_terms(s, g, row, rank)) return false;
+    copy->source = row->source, copy->term = row->term, copy->locals = locals;
+    memcpy(copy->rank, rank, size);
+    return true;
+}
+
+/* Undoes gproji_sort_locals. */
+GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32_t *rank) {
+    int32_t variable[GPROJI_WIDE_ROW], i;
+    for (i = 0; i < count; ++i) variable[i] = local[rank[i]];
+    memcpy(local, variable, (size_t)count * sizeof *local);
+}
+
 /* Gives the locals of a group's rows their order, and local_at their columns. front: of each row, the front of the
-   variable that is eliminated first; -1 where there is none. Counts the rows of each front. */
-GPROJI_INTERNAL void gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
+   variable that is eliminated first; -1 where there is none. Counts the rows of each front. False: no memory. */
+GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
+    gproji_copy copy[GPROJI_COPIES];
     int32_t rank[GPROJI_WIDE_ROW], r;
+    memset(copy, 0, sizeof copy);
+    g->sorted = true;
     for (r = 0; r < g->row_count; ++r) {
-        const gproji_row *row = &g->row[r];
+        gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
         int32_t count = (int32_t)(row[1].local - row->local);
-        gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        if (gproji_sort_locals(column, count, local, g->local_at + row->local, rank))
-            for (; term < end; ++term) {
-                term->i = rank[term->i];
-                if (term->j >= 0) term->j = rank[term->j];
+        if (gproji_sort_locals(column, count, local, g->local_at + row->local, rank)) {
+            if (!g->common) {
+                gproji_rename_terms(g->term + row->term, row->terms, rank);
+            } else if (!gproji_find_copy(s, g, row, count, rank, copy)) {
+                gproji_move_back(count, local, rank);
+                return false;
             }
+        }
         front[r] = sy->front_of[sy->place[s->node[local[0]]]];
         s->front_start[front[r] + 2]++;
     }
-    g->sorted = true;
+    return true;
 }
 
 /* Sorts the narrow rows by their fronts: front_start[f + 2] has the number of those of front f. */
@@ -8478,7 +8583,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
     done = gproji_take_placing(s, &placing);
     for (i = 0; done && i < s->group_count; ++i) {
-        gproji_place_group(s, &s->group[i], placing.column, placing.front + row);
+        done = gproji_place_group(s, &s->group[i], placing.column, placing.front + row);
         row += (size_t)s->group[i].row_count;
     }
     if (done) {
@@ -8540,7 +8645,7 @@ GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capaci
 }
 
 GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
-    size_t rows = (size_t)g->row_count + 1, terms = (size_t)g->row[g->row_count].term, locals = gproji_local_count(g);
+    size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
     void *row = g->row, *term = g->term, *local = g->local_variable;
     bool done = gproji_trim(&s->own, &row, &g->row_capacity, rows, sizeof *g->row);
     g->row = (gproji_row *)row;
@@ -8577,11 +8682,10 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
     const int32_t *variable = g->local_variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
     gproji_sum sum = {0, 0};
-    int64_t t;
     sum.high = row->constant;
-    for (t = row->term; t < row[1].term; ++t) {
-        const gproj_term *term = &g->term[t];
+    for (; term < end; ++term) {
         gproji_sum product = {0, 0};
         gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
         if (term->j < 0) {
@@ -8599,10 +8703,9 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
 GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
                                           double *gradient, double *size) {
     const int32_t *variable = g->local_variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
     double phi = row->constant, sum = fabs(row->constant);
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        const gproj_term *term = &g->term[t];
+    for (; term < end; ++term) {
         double value = term->a * x[variable[term->i]], other;
         if (term->j < 0) {
             gradient[term->i] += term->a;
@@ -8757,11 +8860,11 @@ GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row 
 GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
     const int32_t *at = g->local_at + row->local;
     double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        int32_t i = g->term[t].i, j = g->term[t].j;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    for (; term < end; ++term) {
+        int32_t i = term->i, j = term->j;
         if (j < 0) continue;
-        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
+        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
     }
 }
 
@@ -10180,10 +10283,12 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, to change their coefficients in place; for what they name see gproji_variable_of. */
+/* The terms of a row, which has no other's, to change their coefficients in place; for what they name see
+   gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
-    *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
+    GPROJ_ASSERT(!g->common);
+    *count = (int32_t)g->row[row].terms;
     return g->term + g->row[row].term;
 }
 
@@ -10286,7 +10391,7 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     const int32_t *variable = g->local_variable + g->row[row].local;
     double sum = 0;
     int64_t t;
-    for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
+    for (t = g->row[row].term; t < (int64_t)g->row[row].term + g->row[row].terms; ++t)
         if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[variable[g->term[t].i]]);
     return 16 * DBL_EPSILON * sum;
 }
@@ -11400,7 +11505,7 @@ GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, in
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
    `gradient`: work, one number a variable, zeros on entry and on exit. */
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
-    int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
+    int64_t first = 2 * (int64_t)g->row[r].term, end = first + 2 * (int64_t)g->row[r].terms, k;
     double size = 1, worst = 0;
     gproji_row_gradient(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
@@ -18715,14 +18820,15 @@ GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, do
     }
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. The places are those
-   among n or, by pairs, n and v_i, and behind them v_j. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. All rows of the group
+   are such ones, and have their terms in common: places among n, or among n and v_i by pairs and behind them v_j. */
 GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], local[9], n, c, k;
+    bool first = s->group[group].row_count == 0;
     double normal[3];
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
@@ -18731,7 +18837,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     form->normal[face] = n;
     s->coupled[n] = 1;
     for (k = 0; k < 3; ++k) local[k] = n + k;
-    gproji_add_placed_row(s, group, 3, unit, 3, local, -1, face);
+    gproji_add_placed_row(s, group, first ? -1 : 0, 3, unit, 3, local, -1, face);
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
         s->coupled[i] = 1;
@@ -18740,7 +18846,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
             local[2 * k + 1] = i + k;
             local[6 + k] = j + k;
         }
-        gproji_add_placed_row(s, group, 6, edge, 9, local, 0, face);
+        gproji_add_placed_row(s, group, first && c == 0 ? -1 : 1, 6, edge, 9, local, 0, face);
     }
 }
 
@@ -18751,7 +18857,7 @@ GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
     for (f = 0; f < form->mesh->face_count; ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
             ++faces, corners += (size_t)form->mesh->face_degree[f];
-    gproji_expect_group(form, group, 3 * faces, faces + corners, 3 * faces + 6 * corners, 3 * faces + 9 * corners);
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
 }
 
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
@@ -19007,16 +19113,20 @@ typedef struct gproji_difference {
     const int32_t *neighbour;
 } gproji_difference;
 
-/* The three rows of a difference, one a coordinate. Its points are different ones. `term`: room for count + 1 terms and
-   as many integers. */
+/* The three rows of a difference, one a coordinate. Its points are different ones. Their number makes the terms: rows with
+   as many have them in common, where they follow each other. `term`: room for count + 1 terms and as many integers. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
                                            gproj_term *term) {
-    int32_t k, i, *local = (int32_t *)(void *)(term + d->count + 1);
+    int32_t k, i, last, *local = (int32_t *)(void *)(term + d->count + 1);
+    if (!gproji_system_has_group(form->system, group)) return;
     for (i = 0; i <= d->count; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     for (k = 0; k < 3; ++k) {
+        const gproji_group *g = &form->system->group[group];
+        last = g->row_count - 1;
+        if (last >= 0 && g->row[last].terms != (uint32_t)d->count + 1) last = -1;
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
-        gproji_add_placed_row(form->system, group, d->count + 1, term, d->count + 1, local, 0, element);
+        gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, local, 0, element);
     }
 }
 
@@ -19106,12 +19216,11 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     gproj_term *term;
     int32_t group, v;
-    size_t vertices, terms;
+    size_t vertices;
     if (!gproji_form_ready(form)) return -1;
     vertices = (size_t)form->mesh->vertex_count;
     group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
-    terms = 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices);
-    gproji_expect_group(form, group, 0, 6 * vertices, terms, terms);
+    gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -21564,7 +21673,7 @@ GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group
     int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
     int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
+    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
         int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
         if (i >= vertices) continue;
         if (j >= 0 && j < vertices) return true;
@@ -21945,13 +22054,23 @@ GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form
     }
 }
 
-/* The constants and coefficients of a group's rows. */
-GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproji_group *g) {
-    int64_t t;
+/* The constants and coefficients of a group's rows. Terms that rows have in common stay so if nothing else comes in. */
+GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+    uint32_t t;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
-    for (t = 0; t < g->row[g->row_count].term && !stream->wrong; ++t)
-        gproji_pass_number(stream, &g->term[t].a, -DBL_MAX, DBL_MAX);
+    for (r = 0; r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
+            double *a = &g->term[g->row[r].term + t].a, now = *a;
+            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
+            if (memcmp(&now, a, sizeof now) == 0) continue;
+            if (g->common && !gproji_own_terms(form->system, g)) {
+                gproji_fail_memory(&form->error);
+                gproji_spoil(stream, "out of memory");
+                return;
+            }
+            g->term[g->row[r].term + t].a = now;
+        }
 }
 
 /* What of a solve in frames is passed. */
@@ -21994,7 +22113,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_number(stream, &g->weight, 0, 1e50);
     gproji_pass_choice(stream, form, g);
     if (own && !passing) return;
-    if (passing || !g->refresh) gproji_pass_numbers(stream, g);
+    if (passing || !g->refresh) gproji_pass_numbers(stream, form, g);
     gproji_pass_weights(stream, form, g);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
@@ -22180,17 +22299,21 @@ GPROJI_INTERNAL uint64_t gproji_hash_mesh(uint64_t hash, const gproj_form *form)
 
 /* A group's rows without their numbers. */
 GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
-    int64_t t;
+    uint64_t terms = 0;
+    uint32_t t;
     int32_t r;
     hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
     hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
     hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+    for (r = 0; r < g->row_count; ++r) {
+        terms += g->row[r].terms;
+        hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
+    }
     for (r = 0; r < g->row_count; ++r)
-        hash = gproji_hash_step(hash, (uint64_t)g->row[r + 1].term << 32 ^ (uint32_t)g->row[r].element);
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].i);
-            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].j);
+        for (t = 0; t < g->row[r].terms; ++t) {
+            const gproj_term *term = g->term + g->row[r].term + t;
+            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
+            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
             hash = gproji_hash_step(hash, (uint64_t)i << 32 | j);
         }
     return gproji_hash_step(hash, (uint64_t)g->row_count);
