@@ -5338,12 +5338,14 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an, bool keep_order) {
 GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
-    int32_t f, i, *filled = an->a, *mark = an->b;
-    int64_t total = 0, e, r;
+    int32_t f, i, *mark = an->a, *parent = an->b;
+    int64_t total = 0, e, r, *end; /* of what each front has got */
+    end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
+    if (!end) return false;
     for (f = 0; f < out->fronts; ++f) {
-        out->front[f].rows = total;
+        out->front[f].rows = end[f] = total;
         total += out->front[f].row_nodes;
-        filled[f] = 0, mark[f] = -1;
+        mark[f] = -1, parent[f] = out->front[f].parent;
     }
     out->row_node = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
     out->row_at = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
@@ -5354,18 +5356,17 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
         for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
             int32_t k = out->place[graph->adjacent[e]];
             if (k >= i) continue;
-            for (f = out->front_of[k]; f != own && mark[f] != i; f = out->front[f].parent) {
-                gproji_front *front = &out->front[f];
+            for (f = out->front_of[k]; f != own && mark[f] != i; f = parent[f]) {
                 mark[f] = i;
-                GPROJ_ASSERT(filled[f] < front->row_nodes);
-                out->row_node[front->rows + filled[f]++] = i;
+                GPROJ_ASSERT(end[f] < out->front[f].rows + out->front[f].row_nodes);
+                out->row_node[end[f]++] = i;
             }
         }
     }
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *front = &out->front[f];
         int32_t at = front->width + gproji_panel_shift(front->width);
-        GPROJ_ASSERT(filled[f] == front->row_nodes);
+        GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
             out->row_at[r] = at;
             at += graph->weight[out->order[out->row_node[r]]];
@@ -5776,6 +5777,7 @@ struct gproj_cholesky {
     int32_t *permutation; /* columns: the column of A at each column of L */
     gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
     int64_t *piece_start; /* fronts + 1 */
+    size_t piece_room;
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
     int64_t entries;
     int64_t *entry;       /* entries: the number of each in the caller's arrays */
@@ -5804,6 +5806,7 @@ struct gproj_cholesky {
 GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     gproji_pool_give_all(&c->numeric);
     gproji_pool_give_all(&c->kept);
+    gproji_give(&c->own, c->piece, c->piece_room, sizeof *c->piece);
     memset(&c->symbolic, 0, sizeof c->symbolic);
     c->analysed = c->factored = false;
     c->failed_column = -1;
@@ -5899,22 +5902,27 @@ GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, 
                               parent->width + gproji_panel_shift(parent->width), piece);
 }
 
-/* The pieces of all fronts: counted, then kept. */
+/* The pieces of all fronts. */
 GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t most = 0, f;
-    gproji_piece *work;
+    size_t room = 0, count;
+    int32_t f;
+    void *trimmed;
+    for (f = 0; f < sy->fronts; ++f) room += (size_t)gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+    c->piece_start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
+    if (!c->piece_start) return false;
+    c->piece = (gproji_piece *)gproji_take(&c->own, room, sizeof(gproji_piece));
+    c->piece_room = room;
+    if (!c->piece) return false;
+    c->piece_start[0] = 0;
     for (f = 0; f < sy->fronts; ++f)
-        most = gproji_max(most, gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below));
-    c->piece_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
-    work = (gproji_piece *)gproji_take(&c->own, (size_t)most, sizeof(gproji_piece));
-    if (c->piece_start && work) {
-        for (f = 0; f < sy->fronts; ++f) c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, work);
-        c->piece = (gproji_piece *)gproji_pool_take(&c->kept, c->piece_start[sy->fronts], sizeof(gproji_piece));
-    }
-    gproji_give(&c->own, work, (size_t)most, sizeof(gproji_piece));
-    for (f = 0; c->piece && f < sy->fronts; ++f) gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
-    return c->piece != NULL;
+        c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
+    count = (size_t)c->piece_start[sy->fronts];
+    trimmed = gproji_retake(&c->own, c->piece, room, count, sizeof(gproji_piece));
+    if (!trimmed) return false;
+    c->piece = (gproji_piece *)trimmed;
+    c->piece_room = count;
+    return true;
 }
 
 /* The storage rows of a front in its panel: at[variable] for the variables that have one. */
@@ -7369,8 +7377,8 @@ enum {
     GPROJI_WIDE_ROW = 512,       /* a row with more variables than this is treated as a global one */
     GPROJI_ROWS_PER_TASK = 2048, /* of the evaluation */
     GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
-    GPROJI_COPIES = 64,          /* see gproji_copy */
-    GPROJI_COPY_LOCALS = 13
+    GPROJI_COPY_LOCALS = 16,     /* rows with more locals have no copies in common */
+    GPROJI_COPY_BITS = 6         /* of the number of copies that are remembered */
 };
 
 /* A row has the terms term[term .. term + terms - 1] of its group, maybe in common with other rows, and the locals from
@@ -8408,10 +8416,11 @@ typedef struct gproji_placing {
 } gproji_placing;
 
 /* Sorts a narrow row's variables by their columns, which become `at`. rank: where each has gone. By insertion: rows are
-   short, and their terms name the variables of a node in order. False: they were sorted already. */
-GPROJI_INLINE bool gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local, int32_t *at,
-                                      int32_t *rank) {
-    uint64_t key[GPROJI_WIDE_ROW]; /* a column, and behind it which of the variables that is */
+   short, and their terms name the variables of a node in order. Returns which have come to the places, 4 bits each; 0:
+   all were there already. */
+GPROJI_INLINE uint64_t gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local, int32_t *at,
+                                          int32_t *rank) {
+    uint64_t key[GPROJI_WIDE_ROW], order = 0; /* key: a column, and behind it which of the variables that is */
     int32_t variable[GPROJI_WIDE_ROW], i, k;
     bool moved = false;
     for (i = 0; i < count; ++i) {
@@ -8423,27 +8432,23 @@ GPROJI_INLINE bool gproji_sort_locals(const int32_t *column, int32_t count, int3
         moved |= k != i;
         key[k] = own;
     }
-    for (i = 0; moved && i < count; ++i) {
+    if (!moved) return 0;
+    for (i = 0; i < count; ++i) {
         uint32_t from = (uint32_t)key[i];
         at[i] = (int32_t)(key[i] >> 32);
         local[i] = variable[from];
         rank[from] = i;
+        order = order << 4 | (from & 15);
     }
-    return moved;
+    return count > GPROJI_COPY_LOCALS ? 1 : order;
 }
 
-/* Copies of terms that rows have in common, for locals that have moved: those met last, by `gproji_copy_slot`. */
+/* Copies of terms that rows have in common, for locals that have moved: those met last. */
 typedef struct gproji_copy {
+    uint64_t order; /* see gproji_sort_locals */
     uint32_t source, term;
     int32_t locals; /* 0: none */
-    int32_t rank[GPROJI_COPY_LOCALS];
 } gproji_copy;
-
-GPROJI_INLINE uint32_t gproji_copy_slot(int32_t locals, const int32_t *rank) {
-    uint32_t hash = (uint32_t)rank[locals - 1], i;
-    for (i = 0; i < 3 && i < (uint32_t)locals; ++i) hash = hash * 5 + (uint32_t)rank[i];
-    return hash % GPROJI_COPIES;
-}
 
 /* Lets terms name the places where the locals have gone. */
 GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const int32_t *rank) {
@@ -8469,18 +8474,16 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
 }
 
 /* The same, with the copy that another row has got, if there is one. */
-GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals, uint64_t order,
                                     const int32_t *rank, gproji_copy *copy) {
-    size_t size = (size_t)locals * sizeof *rank;
     if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, rank);
-    copy += gproji_copy_slot(locals, rank);
-    if (copy->locals == locals && copy->source == row->source && memcmp(copy->rank, rank, size) == 0) {
-        row->term = copy->term;
-        return true;
+    copy += order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS);
+    if (copy->order != order || copy->source != row->source || copy->locals != locals) {
+        if (!gproji_copy_terms(s, g, row, rank)) return false;
+        copy->order = order, copy->source = row->source, copy->locals = locals;
+        copy->term = row->term;
     }
-    if (!gproji_copy_terms(s, g, row, rank)) return false;
-    copy->source = row->source, copy->term = row->term, copy->locals = locals;
-    memcpy(copy->rank, rank, size);
+    row->term = copy->term;
     return true;
 }
 
@@ -8495,7 +8498,7 @@ GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32
    variable that is eliminated first; -1 where there is none. Counts the rows of each front. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
-    gproji_copy copy[GPROJI_COPIES];
+    gproji_copy copy[1 << GPROJI_COPY_BITS];
     int32_t rank[GPROJI_WIDE_ROW], r;
     memset(copy, 0, sizeof copy);
     g->sorted = true;
@@ -8503,15 +8506,15 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
         gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
         int32_t count = (int32_t)(row[1].local - row->local);
+        uint64_t order;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        if (gproji_sort_locals(column, count, local, g->local_at + row->local, rank)) {
-            if (!g->common) {
-                gproji_rename_terms(g->term + row->term, row->terms, rank);
-            } else if (!gproji_find_copy(s, g, row, count, rank, copy)) {
-                gproji_move_back(count, local, rank);
-                return false;
-            }
+        order = gproji_sort_locals(column, count, local, g->local_at + row->local, rank);
+        if (order && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, rank);
+        } else if (order && !gproji_find_copy(s, g, row, count, order, rank, copy)) {
+            gproji_move_back(count, local, rank);
+            return false;
         }
         front[r] = sy->front_of[sy->place[s->node[local[0]]]];
         s->front_start[front[r] + 2]++;
@@ -9158,25 +9161,34 @@ GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
     return gproji_schur_most * kept;
 }
 
-/* Does the row join nodes, none of them auxiliary? */
-GPROJI_INLINE bool gproji_schur_joins(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    int64_t l;
+/* Is the row certainly an element of its own, or the first of one? With auxiliary variables it is if their node comes
+   after `*highest`, which becomes that; else if it joins nodes and is no row of a face. */
+GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                       int32_t *highest) {
+    const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
     bool many = false;
-    for (l = row->local; l < row[1].local; ++l) {
-        if (s->auxiliary[g->local_variable[l]]) return false;
-        many = many || s->node[g->local_variable[l]] != s->node[g->local_variable[row->local]];
+    int32_t first = local < end ? s->node[*local] : -1;
+    for (; local < end; ++local) {
+        int32_t node = s->node[*local];
+        if (s->auxiliary[*local]) {
+            many = node > *highest;
+            *highest = gproji_max(*highest, node);
+            return many;
+        }
+        many = many || node != first;
     }
-    return many;
+    return many && g->place != GPROJ_PLACE_FACE;
 }
 
-/* Are the rows that are elements by themselves too many already? To see this costs less than to classify all rows. */
+/* Are there certainly more elements than `limit`? To see this costs less than to classify all rows. */
 GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
-    int32_t i, r, count = 0;
+    int32_t i, r, count = 0, highest = -1;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; !g->idle && !g->global && g->place != GPROJ_PLACE_FACE && r < g->row_count; ++r) {
-            if (g->row[r].waits || g->row[r].wide || !gproji_schur_joins(s, g, &g->row[r])) continue;
-            if (++count > limit) return true;
+        for (r = 0; !g->idle && r < g->row_count; ++r) {
+            if (g->row[r].waits || g->row[r].wide) continue;
+            count += gproji_schur_begins(s, g, &g->row[r], &highest);
+            if (count > limit) return true;
         }
     }
     return false;
