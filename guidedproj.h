@@ -8257,29 +8257,39 @@ GPROJI_INLINE uint32_t gproji_row_nodes(const gproj_system *s, const gproji_grou
     return count;
 }
 
-/* The nodes of each row, without rows that join nothing: those of one node, or with the nodes of the row before. Counts
-   the rows of each node. mark: node_count entries. */
+/* Are the nodes of a row, in their order, the first of the next one's? */
+GPROJI_INLINE bool gproji_begins_like(uint32_t count, const int32_t *node, uint32_t next_count, const int32_t *next) {
+    return next_count >= count && next[1] == node[1] && memcmp(next, node, (size_t)count * sizeof *node) == 0;
+}
+
+/* The nodes of each row, without rows that join nothing more: those of one node, or with the first nodes of the row after
+   them. Counts the rows of each node. mark: node_count entries. */
 GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, uint32_t *mark) {
-    uint32_t begin = 0, before = 0, stamp = 0, e; /* before: where the nodes of the row before begin */
+    uint32_t end = 0, before = 0, stamp = 0, known, e; /* before: where the nodes of the row before begin */
     int32_t i, r;
     memset(mark, 0, (size_t)s->node_count * sizeof *mark);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
-            int32_t *node = in->row_node + begin;
+            int32_t *node = in->row_node + end;
             uint32_t count;
             if (g->row[r].wide) continue;
             count = gproji_row_nodes(s, g, &g->row[r], mark, ++stamp, node);
             if (count < 2) continue;
-            if (count == begin - before && node[1] == in->row_node[before + 1] &&
-                memcmp(node, in->row_node + before, (size_t)count * sizeof *node) == 0)
-                continue;
-            for (e = 0; e < count; ++e) in->node_start[node[e]]++;
-            in->row_start[in->row_count++] = before = begin;
-            begin += count;
+            known = 0;
+            if (end > before && gproji_begins_like(end - before, in->row_node + before, count, node)) {
+                known = end - before; /* the row before becomes this one */
+            } else {
+                in->row_start[in->row_count++] = before = end;
+            }
+            for (e = known; e < count; ++e) {
+                in->row_node[before + e] = node[e];
+                in->node_start[node[e]]++;
+            }
+            end = before + count;
         }
     }
-    in->row_start[in->row_count] = begin;
+    in->row_start[in->row_count] = end;
 }
 
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
