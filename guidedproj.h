@@ -7362,10 +7362,12 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
 
-   Rows come in any order and are kept as they were given, group by group. Before a solve they are compiled once:
+   Rows come in any order and are kept as they were given, group by group; each knows its variables ("locals"), and its
+   terms name places among these. So rows that differ in nothing else can have their terms in common. Before a solve they
+   are compiled once:
    - variables are joined to nodes: a block whose variables meet in some row is one node, else each is its own;
-   - every row gets its variables ("locals"), belongs to the front of the node that is eliminated first, and knows the
-     storage rows of its locals in that front; they are in ascending order of these;
+   - every row belongs to the front of the node that is eliminated first, and knows the storage rows of its locals in that
+     front; they are in ascending order of these;
    so that an iteration evaluates rows into local gradients, and each front takes the outer products of its rows when the
    factorisation comes to it, without a search and without an allocation.
 
@@ -7513,10 +7515,11 @@ struct gproj_system {
     void *refuse_user;
     double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
     double *x;
-    int32_t *block;     /* of each variable, the first variable of its block */
-    int32_t *place;     /* of each variable, its place among the locals of the row that is being added; else -1 */
-    uint8_t *coupled;   /* of the first variable of each block: has a narrow row more than one of its variables? */
+    int32_t *block;   /* of each variable, the first variable of its block */
+    int32_t *place;   /* of the first `places` variables, their places among the locals of a row being added; else -1 */
+    uint8_t *coupled; /* of the first variable of each block: has a narrow row more than one of its variables? */
     uint8_t *auxiliary; /* of each variable: is it what the others make of it, and may move as far as suits them? */
+    int32_t places;
     size_t x_capacity, block_capacity, place_capacity, coupled_capacity, auxiliary_capacity;
 
     gproji_group *group;
@@ -7747,7 +7750,6 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
         s->block[first + i] = first + i - i % block;
-        s->place[first + i] = -1;
         s->coupled[first + i] = s->auxiliary[first + i] = 0;
     }
     s->variable_count += count;
@@ -8043,6 +8045,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
+    for (; s->places < s->variable_count; ++s->places) s->place[s->places] = -1;
     if (!gproji_has_room(g, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
