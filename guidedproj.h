@@ -7440,10 +7440,9 @@ typedef struct gproji_group {
     bool common;       /* several rows have the same terms: they are not to be written (gproji_own_terms) */
     size_t term_count; /* of all terms; compiled, with the copies that follow the first `sources` */
     size_t sources;
-    gproji_share *share; /* of each row; NULL: all factors are 1 */
-    int32_t
-        *local_variable; /* of every row, one row after the other, each once: in the order in which terms name them, */
-    bool sorted;         /* but compiled those of narrow rows may have the order of `local_at` */
+    gproji_share *share;     /* of each row; NULL: all factors are 1 */
+    int32_t *local_variable; /* of every row, each once: in the order in which its terms name them, */
+    bool sorted;             /* but compiled those of narrow rows may have the order of `local_at` */
     size_t row_capacity, term_capacity, share_capacity, local_capacity;
 
     int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
@@ -7953,7 +7952,7 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for one more row of so many terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + 2;
-    return wanted <= g->row_capacity && (!g->share || wanted <= g->share_capacity) &&
+    return g->row_count < INT32_MAX - 1 && wanted <= g->row_capacity && (!g->share || wanted <= g->share_capacity) &&
            g->term_count + terms <= g->term_capacity && g->term_count + terms < UINT32_MAX &&
            gproji_local_count(g) + locals <= g->local_capacity && gproji_local_count(g) + locals < UINT32_MAX;
 }
