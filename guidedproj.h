@@ -8176,7 +8176,7 @@ GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
 
 /* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
 GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
-    return i >= 0 ? g->local_variable[row->local + i] : i;
+    return i >= 0 ? (g->local_variable + row->local)[i] : i;
 }
 
 /* phi at x, whether compiled or not. */
