@@ -18852,8 +18852,9 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], local[9], n, c, k;
-    bool first = s->group[group].row_count == 0;
+    bool first = group >= 0 && s->group[group].row_count == 0;
     double normal[3];
+    if (group < 0) return;
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
