@@ -3151,9 +3151,8 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     gproji_piece *now = piece;
     int32_t k, row, count = 0, end = INT32_MIN; /* end: of the parent's rows that fit into the piece at hand */
     for (k = 0; k < groups; ++k) {
-        int32_t next = k + 1 < groups ? at[k + 1] - base : below;
-        for (row = at[k] - base; row < next; ++row) {
-            int32_t target = to[k] + row - (at[k] - base);
+        int32_t next = k + 1 < groups ? at[k + 1] - base : below, target = to[k], fit;
+        for (row = at[k] - base; row < next; row += fit, target += fit) {
             if (target >= end || (!kernels->spreads && target != now->to + now->rows)) {
                 now = piece + count++;
                 now->from = row, now->rows = 0, now->mask = now->run = 0;
@@ -3165,8 +3164,9 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
                 else
                     end = target + GPROJI_STRIP - (target - pivot_end) % GPROJI_STRIP;
             }
-            now->rows++;
-            now->mask = (uint16_t)(now->mask | 1u << ((target - now->to) & 15));
+            fit = gproji_min(next - row, end - target);
+            now->rows += fit;
+            if (kernels->spreads) now->mask = (uint16_t)(now->mask | ((1u << fit) - 1) << (target - now->to));
         }
     }
     for (k = count - 1; kernels->spreads && k >= 0; --k) {
@@ -5483,12 +5483,14 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an, bool keep_order) {
 GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
-    int32_t f, i, *filled = an->a, *mark = an->b;
-    int64_t total = 0, e, r;
+    int32_t f, i, *mark = an->a, *parent = an->b;
+    int64_t total = 0, e, r, *end; /* of what each front has got */
+    end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
+    if (!end) return false;
     for (f = 0; f < out->fronts; ++f) {
-        out->front[f].rows = total;
+        out->front[f].rows = end[f] = total;
         total += out->front[f].row_nodes;
-        filled[f] = 0, mark[f] = -1;
+        mark[f] = -1, parent[f] = out->front[f].parent;
     }
     out->row_node = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
     out->row_at = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
@@ -5499,18 +5501,17 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
         for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
             int32_t k = out->place[graph->adjacent[e]];
             if (k >= i) continue;
-            for (f = out->front_of[k]; f != own && mark[f] != i; f = out->front[f].parent) {
-                gproji_front *front = &out->front[f];
+            for (f = out->front_of[k]; f != own && mark[f] != i; f = parent[f]) {
                 mark[f] = i;
-                GPROJ_ASSERT(filled[f] < front->row_nodes);
-                out->row_node[front->rows + filled[f]++] = i;
+                GPROJ_ASSERT(end[f] < out->front[f].rows + out->front[f].row_nodes);
+                out->row_node[end[f]++] = i;
             }
         }
     }
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *front = &out->front[f];
         int32_t at = front->width + gproji_panel_shift(front->width);
-        GPROJ_ASSERT(filled[f] == front->row_nodes);
+        GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
         for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
             out->row_at[r] = at;
             at += graph->weight[out->order[out->row_node[r]]];
@@ -5920,6 +5921,7 @@ struct gproj_cholesky {
     int32_t *permutation; /* columns: the column of A at each column of L */
     gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
     int64_t *piece_start; /* fronts + 1 */
+    size_t piece_room;
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
     int64_t entries;
     int64_t *entry;       /* entries: the number of each in the caller's arrays */
@@ -5948,6 +5950,7 @@ struct gproj_cholesky {
 GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     gproji_pool_give_all(&c->numeric);
     gproji_pool_give_all(&c->kept);
+    gproji_give(&c->own, c->piece, c->piece_room, sizeof *c->piece);
     memset(&c->symbolic, 0, sizeof c->symbolic);
     c->analysed = c->factored = false;
     c->failed_column = -1;
@@ -6043,22 +6046,27 @@ GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, 
                               parent->width + gproji_panel_shift(parent->width), piece);
 }
 
-/* The pieces of all fronts: counted, then kept. */
+/* The pieces of all fronts. */
 GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t most = 0, f;
-    gproji_piece *work;
+    size_t room = 0, count;
+    int32_t f;
+    void *trimmed;
+    for (f = 0; f < sy->fronts; ++f) room += (size_t)gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+    c->piece_start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
+    if (!c->piece_start) return false;
+    c->piece = (gproji_piece *)gproji_take(&c->own, room, sizeof(gproji_piece));
+    c->piece_room = room;
+    if (!c->piece) return false;
+    c->piece_start[0] = 0;
     for (f = 0; f < sy->fronts; ++f)
-        most = gproji_max(most, gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below));
-    c->piece_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
-    work = (gproji_piece *)gproji_take(&c->own, (size_t)most, sizeof(gproji_piece));
-    if (c->piece_start && work) {
-        for (f = 0; f < sy->fronts; ++f) c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, work);
-        c->piece = (gproji_piece *)gproji_pool_take(&c->kept, c->piece_start[sy->fronts], sizeof(gproji_piece));
-    }
-    gproji_give(&c->own, work, (size_t)most, sizeof(gproji_piece));
-    for (f = 0; c->piece && f < sy->fronts; ++f) gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
-    return c->piece != NULL;
+        c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
+    count = (size_t)c->piece_start[sy->fronts];
+    trimmed = gproji_retake(&c->own, c->piece, room, count, sizeof(gproji_piece));
+    if (!trimmed) return false;
+    c->piece = (gproji_piece *)trimmed;
+    c->piece_room = count;
+    return true;
 }
 
 /* The storage rows of a front in its panel: at[variable] for the variables that have one. */
@@ -6071,6 +6079,19 @@ GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, in
     for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
         const int32_t *column = sy->column + sy->row_node[r];
         for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
+    }
+}
+
+/* The same by columns of L. */
+GPROJI_INTERNAL void gproji_map_columns(const gproj_cholesky *c, int32_t f, int32_t *at) {
+    const gproji_symbolic *sy = &c->symbolic;
+    const gproji_front *front = &sy->front[f];
+    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
+    int64_t r;
+    for (k = front->first; k < front->first + front->width; ++k) at[k] = k + shift;
+    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
+        const int32_t *column = sy->column + sy->row_node[r];
+        for (k = column[0]; k < column[1]; ++k) at[k] = sy->row_at[r] + k - column[0];
     }
 }
 
@@ -7511,10 +7532,12 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
 
-   Rows come in any order and are kept as they were given, group by group. Before a solve they are compiled once:
+   Rows come in any order and are kept as they were given, group by group; each knows its variables ("locals"), and its
+   terms name places among these. So rows that differ in nothing else can have their terms in common. Before a solve they
+   are compiled once:
    - variables are joined to nodes: a block whose variables meet in some row is one node, else each is its own;
-   - every row gets its variables ("locals"), belongs to the front of the node that is eliminated first, and knows the
-     storage rows of its locals in that front; they are in ascending order of these;
+   - every row belongs to the front of the node that is eliminated first, and knows the storage rows of its locals in that
+     front; they are in ascending order of these;
    so that an iteration evaluates rows into local gradients, and each front takes the outer products of its rows when the
    factorisation comes to it, without a search and without an allocation.
 
@@ -7525,20 +7548,23 @@ enum {
     GPROJI_BLOCK_MAX = 8,        /* variables of a block */
     GPROJI_WIDE_ROW = 512,       /* a row with more variables than this is treated as a global one */
     GPROJI_ROWS_PER_TASK = 2048, /* of the evaluation */
-    GPROJI_ROWS_AHEAD = 16       /* see gproji_expect_rows */
+    GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
+    GPROJI_COPY_LOCALS = 16,     /* rows with more locals have no copies in common */
+    GPROJI_COPY_BITS = 6         /* of the number of copies that are remembered */
 };
 
-/* Row r of a group has the terms term[row[r].term .. row[r + 1].term - 1], and likewise for the other starts; the array
-   has one more entry than there are rows. */
+/* A row has the terms term[term .. term + terms - 1] of its group, maybe in common with other rows, and the locals from
+   `local` on, up to those of the next row: the array has one more entry than there are rows. */
 typedef struct gproji_row {
-    int64_t term;
-    int64_t local; /* compiled: its variables and its gradient */
+    uint32_t term, terms;
+    uint32_t source; /* `term` before compilation: terms that rows have in common are copied then where locals move */
+    uint32_t local;  /* its variables; compiled: and its gradient */
     double constant;
     double weight; /* times the group's; 0: the row is left out of everything */
     double phi;    /* the value at the last evaluation */
     int32_t element;
-    bool wide;   /* compiled: kept out of the matrix */
-    bool run;    /* compiled, of a wide row: its terms are linear, and their variables follow each other */
+    bool wide;   /* kept out of the matrix */
+    bool run;    /* of a wide row: its terms are linear, and their variables follow each other */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
     bool waits;  /* a guard's that has not come near to acting: it has no multiplier */
 } gproji_row;
@@ -7573,25 +7599,27 @@ typedef struct gproji_group {
     bool idle;       /* whenever the rows were compiled, its schedule was without weight */
     int32_t closing; /* the first so many rows close: those of an auxiliary node add up to nothing at the nodes that
                         they join, as n'(v_i - v_j) does around a face */
-    bool has_wide;   /* compiled: some rows are kept out of the matrix */
+    bool has_wide;   /* some rows are kept out of the matrix */
     bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;    /* of the guard: a step may violate its rows by so much */
     int32_t wakings; /* of the guard: how often rows ceased to wait */
 
     int32_t row_count;
     gproji_row *row;
-    gproj_term *term;
-    gproji_share *share; /* of each row; NULL: all factors are 1 */
-    size_t row_capacity, term_capacity, share_capacity;
+    gproj_term *term;  /* i and j are not variables but places among the locals of their row */
+    bool common;       /* several rows have the same terms: they are not to be written (gproji_own_terms) */
+    size_t term_count; /* of all terms; compiled, with the copies that follow the first `sources` */
+    size_t sources;
+    gproji_share *share;     /* of each row; NULL: all factors are 1 */
+    int32_t *local_variable; /* of every row, each once: in the order in which its terms name them, */
+    bool sorted;             /* but compiled those of narrow rows may have the order of `local_at` */
+    size_t row_capacity, term_capacity, share_capacity, local_capacity;
 
-    bool placed;             /* i and j of its terms are not variables but places among the locals of their row */
-    int32_t *local_variable; /* of every row, one row after the other */
-    int32_t *local_at;       /* the storage rows of a narrow row's locals in its front, ascending */
-    double *local_gradient;  /* at the last evaluation */
-    gproji_tally *tally;     /* of each task of the evaluation */
-    double tallied;          /* the weight for which that was made */
-    int32_t first_task;      /* of the evaluation that is under way */
-    size_t local_count;
+    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
+    double *local_gradient;        /* at the last evaluation */
+    gproji_tally *tally;           /* of each task of the evaluation */
+    double tallied;                /* the weight for which that was made */
+    int32_t first_task;            /* of the evaluation that is under way */
     gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
 } gproji_group;
 
@@ -7656,9 +7684,12 @@ struct gproj_system {
     void *refuse_user;
     double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
     double *x;
-    int32_t *block;     /* of each variable, the first variable of its block */
+    int32_t *block;   /* of each variable, the first variable of its block */
+    int32_t *place;   /* of the first `places` variables, their places among the locals of a row being added; else -1 */
+    uint8_t *coupled; /* of the first variable of each block: has a narrow row more than one of its variables? */
     uint8_t *auxiliary; /* of each variable: is it what the others make of it, and may move as far as suits them? */
-    size_t x_capacity, block_capacity, auxiliary_capacity;
+    int32_t places;
+    size_t x_capacity, block_capacity, place_capacity, coupled_capacity, auxiliary_capacity;
 
     gproji_group *group;
     int32_t group_count;
@@ -7709,28 +7740,50 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
 /* Into how many tasks the evaluation of a group is cut. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
 
-/* Lets a group's terms name variables again. */
-GPROJI_INTERNAL void gproji_unplace_terms(gproji_group *g) {
-    int32_t r;
-    int64_t t;
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            const int32_t *variable = g->local_variable + g->row[r].local;
-            g->term[t].i = variable[g->term[t].i];
-            if (g->term[t].j >= 0) g->term[t].j = variable[g->term[t].j];
+/* How many locals all rows of a group have. */
+GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
+
+/* Lets i or j of a term name a local by the order in which the terms name them. number: of each local; -1: not named
+   yet. Returns how many have been. */
+GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
+                                        int32_t *local) {
+    if (number[*i] < 0) {
+        local[named] = variable[*i];
+        number[*i] = named++;
+    }
+    *i = number[*i];
+    return named;
+}
+
+/* The order of the locals before compilation, which thus does not depend on earlier ones. */
+GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
+    int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
+    for (r = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        gproj_term *term = g->term + row->term, *end = term + row->terms;
+        int32_t *local = g->local_variable + row->local;
+        if (row->wide) continue;
+        count = (int32_t)(row[1].local - row->local);
+        for (i = 0; i < count; ++i) number[i] = -1, variable[i] = local[i];
+        for (named = 0; term < end; ++term) {
+            gproj_term now = *term;
+            named = gproji_name_again(variable, &now.i, number, named, local);
+            if (now.j >= 0) named = gproji_name_again(variable, &now.j, number, named, local);
+            if (!g->common) *term = now;
         }
-    g->placed = false;
+        row->term = row->source;
+    }
+    g->term_count = g->sources;
+    g->sorted = false;
 }
 
 /* Gives back what compilation made of a group. */
 GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
-    if (g->placed) gproji_unplace_terms(g);
-    gproji_give(heap, g->local_variable, g->local_count, sizeof *g->local_variable);
-    gproji_give(heap, g->local_gradient, g->local_count, sizeof *g->local_gradient);
-    gproji_give(heap, g->local_at, g->local_count, sizeof *g->local_at);
+    if (g->sorted) gproji_unsort_locals(g);
+    gproji_give(heap, g->local_gradient, gproji_local_count(g), sizeof *g->local_gradient);
+    gproji_give(heap, g->local_at, gproji_local_count(g), sizeof *g->local_at);
     gproji_give(heap, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
     gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
-    g->local_variable = NULL;
     g->local_gradient = NULL;
     g->local_at = NULL;
     g->tally = NULL;
@@ -7774,16 +7827,19 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
     int32_t i;
     if (!s) return;
-    for (i = 0; i < s->group_count; ++i) s->group[i].placed = false; /* nobody reads its terms any more */
+    for (i = 0; i < s->group_count; ++i) s->group[i].sorted = false; /* nobody adds rows any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
         gproji_give(&s->own, s->group[i].share, s->group[i].share_capacity, sizeof *s->group[i].share);
         gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
+        gproji_give(&s->own, s->group[i].local_variable, s->group[i].local_capacity, sizeof(int32_t));
     }
     gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
     gproji_give(&s->own, s->x, s->x_capacity, sizeof *s->x);
     gproji_give(&s->own, s->block, s->block_capacity, sizeof *s->block);
+    gproji_give(&s->own, s->place, s->place_capacity, sizeof *s->place);
+    gproji_give(&s->own, s->coupled, s->coupled_capacity, sizeof *s->coupled);
     gproji_give(&s->own, s->auxiliary, s->auxiliary_capacity, sizeof *s->auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
@@ -7819,13 +7875,17 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 }
 
 /* Makes room for so many more variables. */
-GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
+GPROJI_NOINLINE bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->block, *auxiliary = s->auxiliary;
+    void *x = s->x, *block = s->block, *place = s->place, *coupled = s->coupled, *auxiliary = s->auxiliary;
     bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
     s->x = (double *)x;
     enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
     s->block = (int32_t *)block;
+    enough = enough && gproji_reserve(&s->own, &place, &s->place_capacity, wanted, sizeof *s->place);
+    s->place = (int32_t *)place;
+    enough = enough && gproji_reserve(&s->own, &coupled, &s->coupled_capacity, wanted, sizeof *s->coupled);
+    s->coupled = (uint8_t *)coupled;
     enough = enough && gproji_reserve(&s->own, &auxiliary, &s->auxiliary_capacity, wanted, sizeof *s->auxiliary);
     s->auxiliary = (uint8_t *)auxiliary;
     return enough;
@@ -7851,16 +7911,16 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    if (!gproji_reserve_variables(s, (size_t)count)) {
+    if ((size_t)first + (size_t)count > s->auxiliary_capacity && !gproji_reserve_variables(s, (size_t)count)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
+    if (s->compiled) gproji_system_forget(s);
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
         s->block[first + i] = first + i - i % block;
-        s->auxiliary[first + i] = 0;
+        s->coupled[first + i] = s->auxiliary[first + i] = 0;
     }
-    gproji_system_forget(s);
     s->variable_count += count;
     return first;
 }
@@ -8002,44 +8062,146 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
     return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
-/* Refuses terms that are no terms of this system. */
-GPROJI_INTERNAL bool gproji_terms_are_valid(gproj_system *s, const gproji_group *g, int32_t count,
-                                            const gproj_term *terms, double constant) {
+/* Says what is wrong with terms that are no terms of this system. */
+GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
+                                         const gproj_term *terms) {
     int32_t t;
-    bool finite = gproji_is_finite(constant);
     for (t = 0; t < count; ++t) {
-        if (terms[t].i < 0 || terms[t].i >= s->variable_count || terms[t].j < -1 || terms[t].j >= s->variable_count) {
-            gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
-                        "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
-                        terms[t].i, terms[t].j);
-            return false;
-        }
-        finite = finite && gproji_is_finite(terms[t].a);
+        if (terms[t].i >= 0 && terms[t].i < s->variable_count && terms[t].j >= -1 && terms[t].j < s->variable_count)
+            continue;
+        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
+                    "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
+                    terms[t].i, terms[t].j);
+        return;
     }
-    if (!finite)
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
-    return finite;
+    gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
 }
 
-/* Makes room for so many more rows and terms. */
-GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms) {
+/* Are these terms of this system? A j of -1 becomes 0 here, and other negative numbers become large. */
+GPROJI_INLINE bool gproji_terms_are_valid(const gproj_system *s, int32_t count, const gproj_term *terms,
+                                          double constant) {
+    const uint32_t end = (uint32_t)s->variable_count;
+    bool valid = gproji_is_finite(constant);
+    int32_t t;
+    for (t = 0; t < count; ++t)
+        valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
+    return valid;
+}
+
+/* Makes room for so many more rows, terms and locals. */
+GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
-    void *row = g->row, *term = g->term, *share = g->share;
+    void *row = g->row, *term = g->term, *share = g->share, *local = g->local_variable;
     bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
     g->row = (gproji_row *)row;
-    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, (size_t)g->row[g->row_count].term + terms,
-                                      sizeof *g->term);
+    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, g->term_count + terms, sizeof *g->term);
     g->term = (gproj_term *)term;
+    enough = enough && gproji_reserve(&s->own, &local, &g->local_capacity, gproji_local_count(g) + locals,
+                                      sizeof *g->local_variable);
+    g->local_variable = (int32_t *)local;
     enough = enough && (!share || gproji_reserve(&s->own, &share, &g->share_capacity, wanted, sizeof *g->share));
     g->share = (gproji_share *)share;
     return enough;
+}
+
+/* How many variables the terms name. */
+GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
+    int32_t t, named = 0;
+    for (t = 0; t < count; ++t) {
+        if (s->place[terms[t].i] < 0) s->place[terms[t].i] = named++;
+        if (terms[t].j >= 0 && s->place[terms[t].j] < 0) s->place[terms[t].j] = named++;
+    }
+    for (t = 0; t < count; ++t) {
+        s->place[terms[t].i] = -1;
+        if (terms[t].j >= 0) s->place[terms[t].j] = -1;
+    }
+    return named;
+}
+
+/* Has the group room for one more row of so many terms and locals? */
+GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t terms, size_t locals) {
+    size_t wanted = (size_t)g->row_count + 2;
+    return g->row_count < INT32_MAX - 1 && wanted <= g->row_capacity && (!g->share || wanted <= g->share_capacity) &&
+           g->term_count + terms <= g->term_capacity && g->term_count + terms < UINT32_MAX &&
+           gproji_local_count(g) + locals <= g->local_capacity && gproji_local_count(g) + locals < UINT32_MAX;
+}
+
+/* Makes this room. */
+GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t terms, size_t locals) {
+    if (g->row_count == INT32_MAX - 1 || terms >= UINT32_MAX - g->term_count ||
+        locals >= UINT32_MAX - gproji_local_count(g))
+        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
+                    "group '%s' has too many rows or terms", g->name);
+    else if (!gproji_reserve_rows(s, g, 1, terms, locals))
+        gproji_fail_memory(&s->error);
+    return s->error.code == GPROJ_OK;
+}
+
+/* A new row whose terms will be those from `term` on, and for which there is room. */
+GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32_t terms, double constant,
+                                           int32_t element) {
+    gproji_row *row = &g->row[g->row_count];
+    row->term = row->source = term;
+    row->terms = (uint32_t)terms;
+    row->constant = constant;
+    row->weight = 1;
+    row->element = element;
+    row->waits = g->guard;
+    if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
+    memset(row + 1, 0, sizeof row[1]);
+    return row;
+}
+
+/* The row has got its terms and locals. Returns its number. */
+GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals) {
+    row->wide = g->global || locals > GPROJI_WIDE_ROW;
+    g->has_wide = g->has_wide || row->wide;
+    s->wide_count += row->wide;
+    if (row->term == g->term_count) g->sources = g->term_count += row->terms;
+    row[1].local = row->local + (uint32_t)locals;
+    return g->row_count++;
+}
+
+/* The variables that terms name, in this order, become the locals, and the terms `to` name places among them. Returns
+   how many they are. s->place has the places then. */
+GPROJI_INLINE int32_t gproji_name_locals(gproj_system *s, int32_t count, const gproj_term *terms, gproj_term *to,
+                                         int32_t *local) {
+    int32_t *place = s->place, t, named = 0;
+    for (t = 0; t < count; ++t) {
+        int32_t i = terms[t].i, j = terms[t].j;
+        if (place[i] < 0) local[named] = i, place[i] = named++;
+        if (j >= 0 && place[j] < 0) local[named] = j, place[j] = named++;
+        to[t].i = place[i];
+        to[t].j = j < 0 ? -1 : place[j];
+        to[t].a = terms[t].a;
+    }
+    return named;
+}
+
+/* Notes the blocks of which a row has more than one variable. */
+GPROJI_INLINE void gproji_couple_blocks(gproj_system *s, int32_t count, const int32_t *local) {
+    int32_t i, v;
+    for (i = 0; i < count; ++i) {
+        int32_t block = s->block[local[i]];
+        if (s->coupled[block]) continue;
+        for (v = block; v < s->variable_count && s->block[v] == block; ++v)
+            if (v != local[i] && s->place[v] >= 0) s->coupled[block] = 1;
+    }
+}
+
+/* Are these terms linear, and do their variables follow each other? */
+GPROJI_INTERNAL bool gproji_is_run(int32_t count, const gproj_term *terms) {
+    int32_t t;
+    for (t = 0; t < count && terms[t].j < 0 && terms[t].i == terms[0].i + t;) ++t;
+    return t == count && count > 0;
 }
 
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     gproji_group *g;
     gproji_row *row;
+    int32_t *local, named, i, r;
     if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -8047,26 +8209,68 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     g = &s->group[group];
-    if (!gproji_terms_are_valid(s, g, count, terms, constant)) return -1;
-    if (g->row_count == INT32_MAX - 1) {
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, group, "group '%s' has too many rows", g->name);
+    if (!gproji_terms_are_valid(s, count, terms, constant)) {
+        gproji_refuse_terms(s, g, count, terms);
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
-    if (!gproji_reserve_rows(s, g, 1, (size_t)count)) {
-        gproji_fail_memory(&s->error);
+    for (; s->places < s->variable_count; ++s->places) s->place[s->places] = -1;
+    if (!gproji_has_room(g, (size_t)count, 2 * (size_t)count) &&
+        !gproji_make_room(s, g, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
+    row = gproji_start_row(g, (uint32_t)g->term_count, count, constant, element);
+    local = g->local_variable + row->local;
+    named = gproji_name_locals(s, count, terms, g->term + row->term, local);
+    r = gproji_end_row(s, g, row, named);
+    if (row->wide)
+        row->run = gproji_is_run(count, terms);
+    else
+        gproji_couple_blocks(s, named, local);
+    for (i = 0; i < named; ++i) s->place[local[i]] = -1;
+    return r;
+}
+
+/* The same for builders that know what is right: the terms name places among the locals, which are different variables of
+   this system, and in the order in which the terms name them; if some of them have a block in common it is coupled
+   already. The group is not global. like: an earlier row of the group with the same terms; -1: none. */
+GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
+                                           const gproj_term *terms, int32_t locals, const int32_t *local,
+                                           double constant, int32_t element) {
+    size_t own = like < 0 ? (size_t)count : 0;
+    gproji_group *g;
+    gproji_row *row;
+    if (!gproji_system_is_open(s)) return;
+    g = &s->group[group];
+    if (s->compiled) gproji_system_forget(s);
+    if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return;
+    row = gproji_start_row(g, like < 0 ? (uint32_t)g->term_count : g->row[like].term, count, constant, element);
+    if (like < 0)
+        memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
+    else
+        g->common = true;
+    memcpy(g->local_variable + row->local, local, (size_t)locals * sizeof *local);
+    gproji_end_row(s, g, row, locals);
+}
+
+/* Gives each row its own terms. */
+GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
+    gproj_term *own;
+    size_t count = 0;
+    int32_t r;
+    for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
+    own = count < UINT32_MAX ? (gproj_term *)gproji_take(&s->own, count, sizeof *own) : NULL;
+    if (!own) return false;
+    for (r = 0, count = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        if (row->terms > 0) memcpy(own + count, g->term + row->term, row->terms * sizeof *own);
+        row->term = row->source = (uint32_t)count;
+        count += row->terms;
     }
-    row = &g->row[g->row_count];
-    row->constant = constant;
-    row->weight = 1;
-    row->element = element;
-    row->waits = g->guard;
-    if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
-    if (count) memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
-    memset(row + 1, 0, sizeof row[1]);
-    row[1].term = row->term + count;
-    return g->row_count++;
+    gproji_give(&s->own, g->term, g->term_capacity, sizeof *g->term);
+    g->term = own;
+    g->term_count = g->sources = g->term_capacity = count;
+    g->common = false;
+    return true;
 }
 
 GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group, int32_t row) {
@@ -8082,7 +8286,8 @@ GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
-    int64_t t, count;
+    gproj_term *term;
+    uint32_t t, count;
     bool finite;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
@@ -8090,14 +8295,16 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, row, "there is no row %d in group %d", row,
                            group);
     g = &s->group[group];
-    count = g->row[row + 1].term - g->row[row].term;
+    count = g->row[row].terms;
     finite = gproji_is_finite(constant);
     for (t = 0; coefficients && t < count; ++t) finite = finite && gproji_is_finite(coefficients[t]);
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
+    if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
     if (coefficients && row < g->closing) gproji_open_rows(s, g);
-    for (t = 0; coefficients && t < count; ++t) g->term[g->row[row].term + t].a = coefficients[t];
+    term = g->term + g->row[row].term;
+    for (t = 0; coefficients && t < count; ++t) term[t].a = coefficients[t];
     g->row[row].constant = constant;
     s->changed = true;
     return GPROJ_OK;
@@ -8139,35 +8346,29 @@ GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
 
 /* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
 GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
-    return g->placed && i >= 0 ? g->local_variable[row->local + i] : i;
-}
-
-/* phi at x. variable: the variables that the terms' i and j stand for; NULL: i and j themselves. */
-GPROJI_INLINED double gproji_terms_value(const gproji_group *g, const gproji_row *row, const double *x,
-                                         const int32_t *variable) {
-    const gproj_term *term = g->term + row->term, *end = g->term + row[1].term;
-    double phi = row->constant;
-    for (; term < end; ++term) {
-        double value = term->a * x[variable ? variable[term->i] : term->i];
-        phi += term->j < 0 ? value : value * x[variable ? variable[term->j] : term->j];
-    }
-    return phi;
+    return i >= 0 ? (g->local_variable + row->local)[i] : i;
 }
 
 /* phi at x, whether compiled or not. */
 GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
     const gproji_row *row = &g->row[r];
-    return g->placed ? gproji_terms_value(g, row, x, g->local_variable + row->local)
-                     : gproji_terms_value(g, row, x, NULL);
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    const int32_t *variable = g->local_variable + row->local;
+    double phi = row->constant;
+    for (; term < end; ++term) {
+        double value = term->a * x[variable[term->i]];
+        phi += term->j < 0 ? value : value * x[variable[term->j]];
+    }
+    return phi;
 }
 
 /* gradient += grad phi at x, whether compiled or not. */
 GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
     const gproji_row *row = &g->row[r];
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        double a = g->term[t].a;
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    for (; term < end; ++term) {
+        double a = term->a;
+        int32_t i = gproji_variable_of(g, row, term->i), j = gproji_variable_of(g, row, term->j);
         gradient[i] += j < 0 ? a : a * x[j];
         if (j >= 0) gradient[j] += a * x[i];
     }
@@ -8184,101 +8385,27 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* Marks on a variable: the row that named it last; and, on the first of a block, the row that met the block last. */
-typedef struct gproji_named {
-    int32_t row, block;
-} gproji_named;
-
-/* Appends a variable to the `count` locals of row r, unless the row has named it already. */
-GPROJI_INLINE int32_t gproji_name_local(gproji_named *named, int32_t r, int32_t variable, int32_t *local,
-                                        int32_t count) {
-    if (named[variable].row == r) return count;
-    named[variable].row = r;
-    local[count] = variable;
-    return count + 1;
-}
-
-/* The variables of a row, in the order in which its terms name them; returns how many they are. */
-GPROJI_INTERNAL int32_t gproji_name_locals(const gproji_group *g, int32_t r, gproji_named *named, int32_t *local) {
-    int32_t count = 0;
-    int64_t t;
-    for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-        count = gproji_name_local(named, r, g->term[t].i, local, count);
-        if (g->term[t].j >= 0) count = gproji_name_local(named, r, g->term[t].j, local, count);
-    }
-    return count;
-}
-
-/* Notes the blocks of which a narrow row has more than one variable: coupled[first of block]. */
-GPROJI_INTERNAL void gproji_couple_blocks(const gproj_system *s, int32_t r, gproji_named *named, int32_t count,
-                                          const int32_t *local, int32_t *coupled) {
-    int32_t i;
-    for (i = 0; i < count; ++i) {
-        int32_t block = s->block[local[i]];
-        if (named[block].block == r) coupled[block] = 1;
-        named[block].block = r;
-    }
-}
-
-/* Are its terms linear, and do their variables follow each other? */
-GPROJI_INTERNAL bool gproji_is_run(const gproji_group *g, const gproji_row *row) {
-    const gproj_term *term = g->term + row->term;
-    int64_t count = row[1].term - row->term, t;
-    for (t = 0; t < count && term[t].j < 0 && term[t].i == term[0].i + t;) ++t;
-    return t == count && count > 0;
-}
-
-/* Step 1: the variables of all rows; which rows are wide; which blocks are coupled, for which `node` serves as marks. */
-GPROJI_INTERNAL bool gproji_compile_locals(gproj_system *s, gproji_group *g, gproji_named *named) {
-    size_t most = 2 * (size_t)g->row[g->row_count].term;
-    int64_t filled = 0;
-    int32_t r, v, count;
-    void *trimmed;
-    g->local_variable = (int32_t *)gproji_take(&s->own, most, sizeof *g->local_variable);
-    g->local_count = most;
-    if (!g->local_variable) return false;
-    for (v = 0; v < s->variable_count; ++v) named[v].row = named[v].block = -1;
-    g->has_wide = false;
-    for (r = 0; r < g->row_count; ++r) {
-        gproji_row *row = &g->row[r];
-        row->local = filled;
-        count = gproji_name_locals(g, r, named, g->local_variable + filled);
-        row->wide = g->global || count > GPROJI_WIDE_ROW;
-        row->run = row->wide && gproji_is_run(g, row);
-        g->has_wide = g->has_wide || row->wide;
-        s->wide_count += row->wide;
-        if (!row->wide) gproji_couple_blocks(s, r, named, count, g->local_variable + filled, s->node);
-        filled += count;
-    }
-    g->row[g->row_count].local = filled;
-    trimmed = gproji_retake(&s->own, g->local_variable, most, (size_t)filled, sizeof *g->local_variable);
-    if (!trimmed) return false;
-    g->local_variable = (int32_t *)trimmed;
-    g->local_count = (size_t)filled;
-    return true;
-}
-
-/* Step 2: joins the variables of coupled blocks to nodes. `node` has the marks of step 1. */
+/* Step 1: joins the variables of coupled blocks to nodes. */
 GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
-    const int32_t *coupled = s->node;
     int32_t i, v;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
-        if (v == s->block[v] || !coupled[s->block[v]]) s->node_first[s->node_count++] = v;
+        if (v == s->block[v] || !s->coupled[s->block[v]]) s->node_first[s->node_count++] = v;
     s->node_first[s->node_count] = s->variable_count;
     for (i = 0; i < s->node_count; ++i)
         for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
 }
 
-/* The nodes that meet in narrow rows, and the rows of each node: the incidence that gives the graph. */
+/* The nodes that meet in narrow rows, and the rows of each node: the incidence that gives the graph. It has fewer than
+   2^32 entries. */
 typedef struct gproji_incidence {
     int32_t node_count;
-    int64_t row_count;
+    uint32_t row_count;
     size_t row_room, entry_room, node_entry_room;
-    int64_t *row_start;  /* row_count + 1 */
-    int32_t *row_node;   /* nodes of each row */
-    int64_t *node_start; /* node_count + 1 */
-    int64_t *node_row;   /* rows of each node */
+    uint32_t *row_start;  /* row_count + 1 */
+    int32_t *row_node;    /* nodes of each row */
+    uint32_t *node_start; /* node_count + 1 */
+    uint32_t *node_row;   /* rows of each node */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
@@ -8288,58 +8415,76 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
 }
 
-/* The nodes of each row, without rows that join nothing: those of one node, or with the nodes of the row before.
-   mark: node_count entries. */
-GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, int64_t *mark) {
-    int32_t i, r, v;
-    int64_t l, entries = 0, before = 0; /* where the nodes of the row before begin */
-    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
+/* The different nodes of a row's locals. mark: of each node; `stamp` is not among the marks. Returns how many they are. */
+GPROJI_INLINE uint32_t gproji_row_nodes(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                        uint32_t *mark, uint32_t stamp, int32_t *node) {
+    const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
+    uint32_t count = 0;
+    for (; local < end; ++local) {
+        int32_t own = s->node[*local];
+        if (mark[own] == stamp) continue;
+        mark[own] = stamp;
+        node[count++] = own;
+    }
+    return count;
+}
+
+/* Are the nodes of a row, in their order, the first of the next one's? */
+GPROJI_INLINE bool gproji_begins_like(uint32_t count, const int32_t *node, uint32_t next_count, const int32_t *next) {
+    return next_count >= count && next[1] == node[1] && memcmp(next, node, (size_t)count * sizeof *node) == 0;
+}
+
+/* The nodes of each row, without rows that join nothing more: those of one node, or with the first nodes of the row after
+   them. Counts the rows of each node. mark: node_count entries. */
+GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, uint32_t *mark) {
+    uint32_t end = 0, before = 0, stamp = 0, known, e; /* before: where the nodes of the row before begin */
+    int32_t i, r;
+    memset(mark, 0, (size_t)s->node_count * sizeof *mark);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
-            int64_t begin = entries;
+            int32_t *node = in->row_node + end;
+            uint32_t count;
             if (g->row[r].wide) continue;
-            for (l = g->row[r].local; l < g->row[r + 1].local; ++l) {
-                int32_t node = s->node[g->local_variable[l]];
-                if (mark[node] == begin) continue;
-                mark[node] = begin;
-                in->row_node[entries++] = node;
+            count = gproji_row_nodes(s, g, &g->row[r], mark, ++stamp, node);
+            if (count < 2) continue;
+            known = 0;
+            if (end > before && gproji_begins_like(end - before, in->row_node + before, count, node)) {
+                known = end - before; /* the row before becomes this one */
+            } else {
+                in->row_start[in->row_count++] = before = end;
             }
-            if (entries - begin < 2 ||
-                (entries - begin == begin - before && in->row_node[begin + 1] == in->row_node[before + 1] &&
-                 memcmp(in->row_node + begin, in->row_node + before, (size_t)(entries - begin) * sizeof(int32_t)) ==
-                     0)) {
-                for (l = begin; l < entries; ++l) mark[in->row_node[l]] = -1;
-                entries = begin;
-                continue;
+            for (e = known; e < count; ++e) {
+                in->row_node[before + e] = node[e];
+                in->node_start[node[e]]++;
             }
-            in->row_start[in->row_count++] = before = begin;
+            end = before + count;
         }
     }
-    in->row_start[in->row_count] = entries;
+    in->row_start[in->row_count] = end;
 }
 
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, int64_t *mark) {
-    int64_t r, e;
+GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
+    uint32_t r, e;
     int32_t v, i;
     in->node_count = s->node_count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
         in->row_room += (size_t)s->group[i].row_count;
-        in->entry_room += s->group[i].local_count;
+        in->entry_room += gproji_local_count(&s->group[i]);
     }
-    in->row_start = (int64_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
+    if (in->row_room > UINT32_MAX || in->entry_room > UINT32_MAX) return false;
+    in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_start = (int64_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
+    in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
     if (!in->row_start || !in->row_node || !in->node_start) return false;
     gproji_incidence_scan(s, in, mark);
-    in->node_entry_room = (size_t)in->row_start[in->row_count];
-    in->node_row = (int64_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
+    in->node_entry_room = in->row_start[in->row_count];
+    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
     if (!in->node_row) return false;
-    /* transpose: count, sum up, fill backwards */
-    for (e = 0; e < in->row_start[in->row_count]; ++e) in->node_start[in->row_node[e]]++;
+    /* transpose: sum up, fill backwards */
     for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
-    for (r = in->row_count - 1; r >= 0; --r)
+    for (r = in->row_count; r-- > 0;)
         for (e = in->row_start[r]; e < in->row_start[r + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = r;
     return true;
 }
@@ -8369,39 +8514,42 @@ GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *gr
 }
 
 /* The graph from the incidence, but for the nodes' sizes. mark: node_count entries. */
-GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, int64_t *mark,
+GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, uint32_t *mark,
                                           gproji_meetings *graph) {
-    int64_t filled = 0, e, f;
+    size_t filled = 0;
+    uint32_t e, f;
     int32_t v;
-    for (v = 0; v < in->node_count; ++v) mark[v] = -1;
+    memset(mark, 0, (size_t)in->node_count * sizeof *mark);
     for (v = 0; v < in->node_count; ++v) {
-        size_t most = (size_t)filled; /* with all of the node's rows, as if they had nothing in common */
-        void *room = graph->adjacent;
-        bool enough;
+        const uint32_t own = (uint32_t)v + 1;
+        size_t most = filled; /* with all of the node's rows, as if they had nothing in common */
         for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
-            most += (size_t)(in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]]);
-        enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
-        graph->adjacent = (int32_t *)room;
-        if (!enough) return false;
-        graph->start[v] = filled;
-        mark[v] = v;
+            most += in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]];
+        if (most > graph->room) {
+            void *room = graph->adjacent;
+            bool enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
+            graph->adjacent = (int32_t *)room;
+            if (!enough) return false;
+        }
+        graph->start[v] = (int64_t)filled;
+        mark[v] = own;
         for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
             for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
                 int32_t other = in->row_node[f];
-                if (mark[other] == v) continue;
-                mark[other] = v;
+                if (mark[other] == own) continue;
+                mark[other] = own;
                 graph->adjacent[filled++] = other;
             }
     }
-    graph->start[in->node_count] = filled;
+    graph->start[in->node_count] = (int64_t)filled;
     return true;
 }
 
-/* Step 4: the graph of the nodes. */
+/* Step 3: the graph of the nodes. */
 GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
     gproji_incidence in;
     size_t nodes = (size_t)s->node_count;
-    int64_t *mark = (int64_t *)gproji_take(&s->own, nodes, sizeof *mark);
+    uint32_t *mark = (uint32_t *)gproji_take(&s->own, nodes, sizeof *mark);
     bool done;
     int32_t v;
     memset(&in, 0, sizeof in);
@@ -8424,9 +8572,8 @@ GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
     return code;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th, with their variables or with their
-   gradients. */
-GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool placing) {
+/* A front's rows come from all over the memory: asks for those that follow the k-th, with or without their gradients. */
+GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gradient) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
         gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
         gproji_row_name near_one = s->front_row[k + GPROJI_ROWS_AHEAD / 2];
@@ -8435,91 +8582,153 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool pl
         GPROJI_PREFETCH(row);
         GPROJI_PREFETCH(row + 1);
         GPROJI_PREFETCH(g->local_at + next->local);
-        GPROJI_PREFETCH(placing ? (const void *)(g->local_variable + next->local) : g->local_gradient + next->local);
-        if (!placing) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
+        if (gradient) GPROJI_PREFETCH(g->local_gradient + next->local);
+        if (gradient) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
     }
 }
 
-/* Step 5: all that the fronts need. */
+/* Step 4: all that the fronts need. */
 
 /* What the places of all rows are found with. */
 typedef struct gproji_placing {
     int32_t *column; /* of each variable, its column of L */
-    int32_t
-        *where; /* of each variable of a row, its place among the locals; of each node, its storage row in a front */
-    int32_t *front; /* of all rows, group by group, the front; -1: none */
+    int32_t *at;     /* of each column of L, its storage row in a front */
+    int32_t *front;  /* of all rows, group by group, the front; -1: none */
     size_t rows;
 } gproji_placing;
 
-/* Sorts a narrow row's variables by their columns. By insertion: rows are short, and their terms name the variables of a
-   node in order. */
-GPROJI_INTERNAL void gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local) {
-    int32_t key[GPROJI_WIDE_ROW], i, j;
+/* Sorts a narrow row's variables by their columns, which become `at`. rank: where each has gone. By insertion: rows are
+   short, and their terms name the variables of a node in order. Returns which have come to the places, 4 bits each; 0:
+   all were there already. */
+GPROJI_INLINE uint64_t gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local, int32_t *at,
+                                          int32_t *rank) {
+    uint64_t key[GPROJI_WIDE_ROW], order = 0; /* key: a column, and behind it which of the variables that is */
+    int32_t variable[GPROJI_WIDE_ROW], i, k;
+    bool moved = false;
     for (i = 0; i < count; ++i) {
-        int32_t variable = local[i], own = column[variable];
-        for (j = i; j > 0 && key[j - 1] > own; --j) key[j] = key[j - 1], local[j] = local[j - 1];
-        key[j] = own;
-        local[j] = variable;
+        uint64_t own;
+        variable[i] = local[i];
+        at[i] = column[local[i]];
+        own = (uint64_t)at[i] << 32 | (uint32_t)i;
+        for (k = i; k > 0 && key[k - 1] > own; --k) key[k] = key[k - 1];
+        moved |= k != i;
+        key[k] = own;
+    }
+    if (!moved) return 0;
+    for (i = 0; i < count; ++i) {
+        uint32_t from = (uint32_t)key[i];
+        at[i] = (int32_t)(key[i] >> 32);
+        local[i] = variable[from];
+        rank[from] = i;
+        order = order << 4 | (from & 15);
+    }
+    return count > GPROJI_COPY_LOCALS ? 1 : order;
+}
+
+/* Copies of terms that rows have in common, for locals that have moved: those met last. */
+typedef struct gproji_copy {
+    uint64_t order; /* see gproji_sort_locals */
+    uint32_t source, term;
+    int32_t locals; /* 0: none */
+} gproji_copy;
+
+/* Lets terms name the places where the locals have gone. */
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const int32_t *rank) {
+    gproj_term *end = term + count;
+    for (; term < end; ++term) {
+        term->i = rank[term->i];
+        if (term->j >= 0) term->j = rank[term->j];
     }
 }
 
-/* Lets the terms of a row name places among its locals. */
-GPROJI_INTERNAL void gproji_place_terms(gproji_group *g, const gproji_row *row, int32_t *where) {
-    const int32_t *local = g->local_variable + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), i;
-    int64_t t;
-    for (i = 0; i < count; ++i) where[local[i]] = i;
-    for (t = row->term; t < row[1].term; ++t) {
-        g->term[t].i = where[g->term[t].i];
-        if (g->term[t].j >= 0) g->term[t].j = where[g->term[t].j];
-    }
+/* Gives the row a copy of its terms for the moved locals. False: no memory. */
+GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, const int32_t *rank) {
+    void *term = g->term;
+    size_t wanted = g->term_count + row->terms;
+    bool enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->term_capacity, wanted, sizeof *g->term);
+    g->term = (gproj_term *)term;
+    if (!enough) return false;
+    memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
+    gproji_rename_terms(g->term + g->term_count, row->terms, rank);
+    row->term = (uint32_t)g->term_count;
+    g->term_count = wanted;
+    return true;
 }
 
-/* Gives the locals of a group's rows their order. front: of each row, the front of the variable that is eliminated
-   first; -1 where there is none. */
-GPROJI_INTERNAL void gproji_place_group(gproj_system *s, gproji_group *g, const gproji_placing *placing,
-                                        int32_t *front) {
+/* The same, with the copy that another row has got, if there is one. */
+GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals, uint64_t order,
+                                    const int32_t *rank, gproji_copy *copy) {
+    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, rank);
+    copy += order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS);
+    if (copy->order != order || copy->source != row->source || copy->locals != locals) {
+        if (!gproji_copy_terms(s, g, row, rank)) return false;
+        copy->order = order, copy->source = row->source, copy->locals = locals;
+        copy->term = row->term;
+    }
+    row->term = copy->term;
+    return true;
+}
+
+/* Undoes gproji_sort_locals. */
+GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32_t *rank) {
+    int32_t variable[GPROJI_WIDE_ROW], i;
+    for (i = 0; i < count; ++i) variable[i] = local[rank[i]];
+    memcpy(local, variable, (size_t)count * sizeof *local);
+}
+
+/* Gives the locals of a group's rows their order, and local_at their columns. front: of each row, the front of the
+   variable that is eliminated first; -1 where there is none. Counts the rows of each front. False: no memory. */
+GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t r;
+    gproji_copy copy[1 << GPROJI_COPY_BITS];
+    int32_t rank[GPROJI_WIDE_ROW], r;
+    memset(copy, 0, sizeof copy);
+    g->sorted = true;
     for (r = 0; r < g->row_count; ++r) {
-        const gproji_row *row = &g->row[r];
+        gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
         int32_t count = (int32_t)(row[1].local - row->local);
-        if (!row->wide) gproji_sort_locals(placing->column, count, local);
-        front[r] = row->wide || count == 0 ? -1 : sy->front_of[sy->place[s->node[local[0]]]];
-        gproji_place_terms(g, row, placing->where);
+        uint64_t order;
+        front[r] = -1;
+        if (row->wide || count == 0) continue;
+        order = gproji_sort_locals(column, count, local, g->local_at + row->local, rank);
+        if (order && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, rank);
+        } else if (order && !gproji_find_copy(s, g, row, count, order, rank, copy)) {
+            gproji_move_back(count, local, rank);
+            return false;
+        }
+        front[r] = sy->front_of[sy->place[s->node[local[0]]]];
+        s->front_start[front[r] + 2]++;
     }
-    g->placed = true;
+    return true;
 }
 
-/* Sorts the narrow rows by their fronts: front_start has been cleared. */
+/* Sorts the narrow rows by their fronts: front_start[f + 2] has the number of those of front f. */
 GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
-    int64_t *start = s->front_start, row = 0;
+    int64_t *start = s->front_start;
     int32_t i, r, f;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r, ++row)
-            if (front[row] >= 0) start[front[row] + 2]++;
     for (f = 0; f < (int32_t)s->front_count; ++f) start[f + 2] += start[f + 1];
-    for (row = 0, i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r, ++row) {
-            if (front[row] < 0) continue;
-            s->front_row[start[front[row] + 1]].group = i;
-            s->front_row[start[front[row] + 1]++].row = r;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++front) {
+            if (*front < 0) continue;
+            s->front_row[start[*front + 1]].group = i;
+            s->front_row[start[*front + 1]++].row = r;
         }
     s->front_row_count = (size_t)start[s->front_count];
 }
 
-/* The storage rows of all narrow rows' locals, front by front. at: work, of each variable. */
+/* The storage rows of all narrow rows' locals, front by front, from their columns. at: work, of each column. */
 GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     int32_t f;
     int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
-        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
+        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_columns(s->cholesky, f, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
             const gproji_row *row = &g->row[s->front_row[k].row];
-            gproji_expect_rows(s, k, true);
-            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_variable[l]];
+            gproji_expect_rows(s, k, false);
+            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_at[l]];
         }
     }
 }
@@ -8528,7 +8737,7 @@ GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local_at = (int32_t *)gproji_take(&s->own, g->local_count, sizeof *g->local_at);
+        g->local_at = (int32_t *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_at);
         if (!g->local_at) return false;
     }
     return true;
@@ -8538,9 +8747,9 @@ GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placin
     const int32_t *permutation = s->cholesky->permutation;
     size_t n = (size_t)s->variable_count;
     placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
-    placing->where = (int32_t *)gproji_take(&s->own, n, sizeof *placing->where);
+    placing->at = (int32_t *)gproji_take(&s->own, n, sizeof *placing->at);
     placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
-    if (!placing->column || !placing->where || !placing->front || !gproji_take_local_places(s)) return false;
+    if (!placing->column || !placing->at || !placing->front || !gproji_take_local_places(s)) return false;
     gproji_invert(s->variable_count, permutation, placing->column);
     s->front_count = (size_t)s->cholesky->symbolic.fronts;
     s->front_row_room = placing->rows;
@@ -8559,26 +8768,26 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
     done = gproji_take_placing(s, &placing);
     for (i = 0; done && i < s->group_count; ++i) {
-        gproji_place_group(s, &s->group[i], &placing, placing.front + row);
+        done = gproji_place_group(s, &s->group[i], placing.column, placing.front + row);
         row += (size_t)s->group[i].row_count;
     }
     if (done) {
         gproji_sort_rows(s, placing.front);
-        gproji_place_locals(s, placing.where);
+        gproji_place_locals(s, placing.at);
     }
     gproji_give(&s->own, placing.column, n, sizeof *placing.column);
-    gproji_give(&s->own, placing.where, n, sizeof *placing.where);
+    gproji_give(&s->own, placing.at, n, sizeof *placing.at);
     gproji_give(&s->own, placing.front, placing.rows, sizeof *placing.front);
     return done;
 }
 
-/* Step 6: what iterations need. */
+/* Step 5: what iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local_gradient = (double *)gproji_take(&s->own, g->local_count, sizeof *g->local_gradient);
+        g->local_gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_gradient);
         g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
         if (!g->local_gradient || !g->tally) return false;
     }
@@ -8609,39 +8818,44 @@ GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
     return s->hinge != NULL;
 }
 
-/* Gives back the room that has been kept for further rows. */
-GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
-    size_t rows = (size_t)g->row_count + 1, terms = (size_t)g->row[g->row_count].term;
-    void *row = gproji_retake(&s->own, g->row, g->row_capacity, rows, sizeof *g->row), *term;
-    if (!row) return false;
-    g->row = (gproji_row *)row;
-    g->row_capacity = rows;
-    term = gproji_retake(&s->own, g->term, g->term_capacity, terms, sizeof *g->term);
-    if (!term) return false;
-    g->term = (gproj_term *)term;
-    g->term_capacity = terms;
+/* Gives back the room that has been kept for further ones in a growing array. */
+GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capacity, size_t count, size_t size) {
+    void *moved;
+    if (*capacity == count || !*block) return true;
+    moved = gproji_retake(heap, *block, *capacity, count, size);
+    if (!moved) return false;
+    *block = moved;
+    *capacity = count;
     return true;
 }
 
-/* Steps 1 and 2. */
-GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
-    size_t n = (size_t)s->variable_count;
-    gproji_named *named = (gproji_named *)gproji_take(&s->own, n, sizeof *named);
-    bool done;
-    int32_t i;
-    s->compiled_variables = s->variable_count;
-    s->wide_count = 0;
-    s->node = (int32_t *)gproji_take_zeroed(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
-    done = named && s->node && s->node_first;
-    for (i = 0; done && i < s->group_count; ++i)
-        done = gproji_trim_rows(s, &s->group[i]) && gproji_compile_locals(s, &s->group[i], named);
-    if (done) gproji_compile_nodes(s);
-    gproji_give(&s->own, named, n, sizeof *named);
+GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
+    size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
+    void *row = g->row, *term = g->term, *local = g->local_variable;
+    bool done = gproji_trim(&s->own, &row, &g->row_capacity, rows, sizeof *g->row);
+    g->row = (gproji_row *)row;
+    done = done && gproji_trim(&s->own, &term, &g->term_capacity, terms, sizeof *g->term);
+    g->term = (gproj_term *)term;
+    done = done && gproji_trim(&s->own, &local, &g->local_capacity, locals, sizeof *g->local_variable);
+    g->local_variable = (int32_t *)local;
     return done;
 }
 
-/* Steps 4 and 5, for the matrix of all variables. */
+/* Step 1, with the room for it. */
+GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
+    bool done;
+    int32_t i;
+    s->compiled_variables = s->variable_count;
+    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    done = s->node && s->node_first;
+    for (i = 0; done && i < s->group_count; ++i) done = gproji_trim_rows(s, &s->group[i]);
+    if (done) gproji_compile_nodes(s);
+    return done;
+}
+
+/* Steps 3 and 4, for the matrix of all variables. */
 GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     gproj_code code = gproji_compile_analysis(s);
     return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
@@ -8653,11 +8867,10 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
    where large terms cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
     const int32_t *variable = g->local_variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
     gproji_sum sum = {0, 0};
-    int64_t t;
     sum.high = row->constant;
-    for (t = row->term; t < row[1].term; ++t) {
-        const gproj_term *term = &g->term[t];
+    for (; term < end; ++term) {
         gproji_sum product = {0, 0};
         gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
         if (term->j < 0) {
@@ -8675,10 +8888,9 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
 GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
                                           double *gradient, double *size) {
     const int32_t *variable = g->local_variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
     double phi = row->constant, sum = fabs(row->constant);
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        const gproj_term *term = &g->term[t];
+    for (; term < end; ++term) {
         double value = term->a * x[variable[term->i]], other;
         if (term->j < 0) {
             gradient[term->i] += term->a;
@@ -8833,11 +9045,11 @@ GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row 
 GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
     const int32_t *at = g->local_at + row->local;
     double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
-    int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
-        int32_t i = g->term[t].i, j = g->term[t].j;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    for (; term < end; ++term) {
+        int32_t i = term->i, j = term->j;
         if (j < 0) continue;
-        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * g->term[t].a;
+        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
     }
 }
 
@@ -8851,7 +9063,7 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
     for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
         const gproji_group *g = &s->group[s->front_row[k].group];
         const gproji_row *row = &g->row[s->front_row[k].row];
-        gproji_expect_rows(s, k, false);
+        gproji_expect_rows(s, k, true);
         if (!(g->weight > 0) || !row->active) continue;
         gproji_load_square(g, row, panel);
         if (loading->curved) gproji_load_curvature(g, row, panel);
@@ -9131,9 +9343,42 @@ GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
     return gproji_schur_most * kept;
 }
 
+/* Is the row certainly an element of its own, or the first of one? With auxiliary variables it is if their node comes
+   after `*highest`, which becomes that; else if it joins nodes and is no row of a face. */
+GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                       int32_t *highest) {
+    const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
+    bool many = false;
+    int32_t first = local < end ? s->node[*local] : -1;
+    for (; local < end; ++local) {
+        int32_t node = s->node[*local];
+        if (s->auxiliary[*local]) {
+            many = node > *highest;
+            *highest = gproji_max(*highest, node);
+            return many;
+        }
+        many = many || node != first;
+    }
+    return many && g->place != GPROJ_PLACE_FACE;
+}
+
+/* Are there certainly more elements than `limit`? To see this costs less than to classify all rows. */
+GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
+    int32_t i, r, count = 0, highest = -1;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; !g->idle && r < g->row_count; ++r) {
+            if (g->row[r].waits || g->row[r].wide) continue;
+            count += gproji_schur_begins(s, g, &g->row[r], &highest);
+            if (count > limit) return true;
+        }
+    }
+    return false;
+}
+
 /* The element or node of all rows, group by group. Groups that are without weight have none. False: nothing is gained. */
-GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, int32_t *element_of, int32_t *of_face, int32_t *belongs) {
-    const double limit = gproji_schur_limit(s);
+GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, double limit, int32_t *element_of, int32_t *of_face,
+                                           int32_t *belongs) {
     int32_t i, r, v;
     for (v = 0; v < s->node_count; ++v) element_of[v] = of_face[v] = -1;
     s->schur.elements = 0;
@@ -9255,13 +9500,17 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     return true;
 }
 
-/* Step 3 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
+/* Step 2 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
+    const double limit = gproji_schur_limit(s);
     size_t nodes = (size_t)s->node_count, rows = (size_t)gproji_structure_of(s).rows;
-    int32_t *mark = (int32_t *)gproji_take(&s->own, 2 * nodes, sizeof *mark);
-    int32_t *belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
-    bool enough = mark && belongs;
-    if (enough && gproji_schur_classify(s, mark, mark + nodes, belongs))
+    int32_t *mark, *belongs;
+    bool enough;
+    if (gproji_schur_is_outnumbered(s, limit)) return true;
+    mark = (int32_t *)gproji_take(&s->own, 2 * nodes, sizeof *mark);
+    belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
+    enough = mark && belongs;
+    if (enough && gproji_schur_classify(s, limit, mark, mark + nodes, belongs))
         enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
     gproji_give(&s->own, mark, 2 * nodes, sizeof *mark);
     gproji_give(&s->own, belongs, rows, sizeof *belongs);
@@ -9272,25 +9521,27 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
 /* The elements at each node: the rows of an incidence whose nodes are the elements. */
 GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *in) {
     const gproji_schur *d = &s->schur;
-    int64_t links = d->link_start[d->elements], k;
+    int64_t links = d->link_start[d->elements];
+    uint32_t k;
     int32_t v, e;
+    if (links >= UINT32_MAX) return false;
     in->node_count = d->elements;
-    in->row_count = s->node_count;
+    in->row_count = (uint32_t)s->node_count;
     in->row_room = (size_t)s->node_count + 2;
     in->entry_room = in->node_entry_room = (size_t)links;
-    in->row_start = (int64_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
+    in->row_start = (uint32_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_row = (int64_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
-    in->node_start = (int64_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
+    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
+    in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
     if (!in->row_start || !in->row_node || !in->node_row || !in->node_start) return false;
     for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
     for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
-        for (k = in->node_start[e] = d->link_start[e]; k < d->link_start[e + 1]; ++k) {
-            in->node_row[k] = d->link_node[k];
+        for (k = in->node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
+            in->node_row[k] = (uint32_t)d->link_node[k];
             in->row_node[in->row_start[d->link_node[k] + 1]++] = e;
         }
-    in->node_start[d->elements] = links;
+    in->node_start[d->elements] = (uint32_t)links;
     return true;
 }
 
@@ -9385,15 +9636,6 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     }
 }
 
-/* Lets the terms of all rows name their locals. where: work, of each variable. */
-GPROJI_INTERNAL void gproji_schur_place_terms(gproj_system *s, int32_t *where) {
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        for (r = 0; r < s->group[i].row_count; ++r) gproji_place_terms(&s->group[i], &s->group[i].row[r], where);
-        s->group[i].placed = true;
-    }
-}
-
 /* Consecutive elements that are alike: `left` multipliers, m rows and `count` columns, the first `closes` of which are no
    auxiliary variables. What is done to all of them is done in lanes, number k of lane l being at [k GPROJI_LANES + l]: one
    element alone is a chain of square roots and quotients, each of which waits for the one before. Lanes without an
@@ -9475,7 +9717,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
 }
 
 /* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier. */
-GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, int64_t *mark, int32_t *at) {
+GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, uint32_t *mark, int32_t *at) {
     const gproji_schur *d = &s->schur;
     gproji_meetings graph;
     gproj_code code = GPROJ_ERROR_MEMORY;
@@ -9491,16 +9733,15 @@ GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidenc
     gproji_schur_place_links(s, in);
     gproji_schur_place_entries(s, at);
     gproji_schur_place_locals(s, at);
-    gproji_schur_place_terms(s, at);
     return GPROJ_OK;
 }
 
-/* Steps 4 and 5, for multipliers. */
+/* Steps 3 and 4, for multipliers. */
 GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     gproji_incidence in;
     size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
-    int64_t *mark = (int64_t *)gproji_take(&s->own, most, sizeof *mark);
+    uint32_t *mark = (uint32_t *)gproji_take(&s->own, most, sizeof *mark);
     int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
     memset(&in, 0, sizeof in);
     if (mark && at && gproji_take_local_places(s)) code = gproji_schur_arrange(s, &in, mark, at);
@@ -10236,10 +10477,12 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, to change their coefficients in place; for what they name see gproji_variable_of. */
+/* The terms of a row, which has no other's, to change their coefficients in place; for what they name see
+   gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
-    *count = (int32_t)(g->row[row + 1].term - g->row[row].term);
+    GPROJ_ASSERT(!g->common);
+    *count = (int32_t)g->row[row].terms;
     return g->term + g->row[row].term;
 }
 
@@ -10342,7 +10585,7 @@ GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, c
     const int32_t *variable = g->local_variable + g->row[row].local;
     double sum = 0;
     int64_t t;
-    for (t = g->row[row].term; t < g->row[row + 1].term; ++t)
+    for (t = g->row[row].term; t < (int64_t)g->row[row].term + g->row[row].terms; ++t)
         if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[variable[g->term[t].i]]);
     return 16 * DBL_EPSILON * sum;
 }
@@ -11456,7 +11699,7 @@ GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, in
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
    `gradient`: work, one number a variable, zeros on entry and on exit. */
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
-    int64_t first = 2 * g->row[r].term, end = 2 * g->row[r + 1].term, k;
+    int64_t first = 2 * (int64_t)g->row[r].term, end = first + 2 * (int64_t)g->row[r].terms, k;
     double size = 1, worst = 0;
     gproji_row_gradient(g, r, s->x, gradient);
     for (k = first; k < end; ++k) {
@@ -18588,10 +18831,11 @@ GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, dou
 }
 
 /* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
-GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms) {
+GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
+                                         size_t locals) {
     gproj_system *s = form->system;
     if (group >= 0 &&
-        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms)))
+        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms, locals)))
         gproji_fail_memory(&s->error);
 }
 
@@ -18678,7 +18922,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, c
     int32_t i, k, group;
     if (!part) return -1;
     group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
-    gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count);
+    gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
@@ -18772,26 +19016,34 @@ GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, do
     }
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. All rows of the group
+   are such ones, and have their terms in common: places among n, or among n and v_i by pairs and behind them v_j. */
 GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
+    static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
+    static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
     const gproj_mesh *mesh = form->mesh;
-    int32_t h = mesh->face_halfedge[face], n, c, k;
+    gproj_system *s = form->system;
+    int32_t h = mesh->face_halfedge[face], local[9], n, c, k;
+    bool first = group >= 0 && s->group[group].row_count == 0;
     double normal[3];
-    gproj_term term[6];
+    if (group < 0) return;
     gproji_face_normal(form, face, normal);
-    n = gproj_system_add_variables(form->system, 3, 3, normal);
+    n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
-    gproji_set_auxiliary(form->system, n, 3);
+    gproji_set_auxiliary(s, n, 3);
     form->normal[face] = n;
-    for (k = 0; k < 3; ++k) gproji_set_term(&term[k], n + k, n + k, 1);
-    gproj_system_add_row(form->system, group, 3, term, -1, face);
+    s->coupled[n] = 1;
+    for (k = 0; k < 3; ++k) local[k] = n + k;
+    gproji_add_placed_row(s, group, first ? -1 : 0, 3, unit, 3, local, -1, face);
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
+        s->coupled[i] = 1;
         for (k = 0; k < 3; ++k) {
-            gproji_set_term(&term[k], n + k, i + k, 1);
-            gproji_set_term(&term[3 + k], n + k, j + k, -1);
+            local[2 * k] = n + k;
+            local[2 * k + 1] = i + k;
+            local[6 + k] = j + k;
         }
-        gproj_system_add_row(form->system, group, 6, term, 0, face);
+        gproji_add_placed_row(s, group, first && c == 0 ? -1 : 1, 6, edge, 9, local, 0, face);
     }
 }
 
@@ -18802,7 +19054,7 @@ GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
     for (f = 0; f < form->mesh->face_count; ++f)
         if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
             ++faces, corners += (size_t)form->mesh->face_degree[f];
-    gproji_expect_group(form, group, 3 * faces, faces + corners, 3 * faces + 6 * corners);
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
 }
 
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
@@ -19058,14 +19310,20 @@ typedef struct gproji_difference {
     const int32_t *neighbour;
 } gproji_difference;
 
-/* The three rows of a difference, one a coordinate. `term`: room for count + 1 terms. */
+/* The three rows of a difference, one a coordinate. Its points are different ones. Their number makes the terms: rows with
+   as many have them in common, where they follow each other. `term`: room for count + 1 terms and as many integers. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
                                            gproj_term *term) {
-    int32_t k, i;
+    int32_t k, i, last, *local = (int32_t *)(void *)(term + d->count + 1);
+    if (!gproji_system_has_group(form->system, group)) return;
+    for (i = 0; i <= d->count; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[0], d->centre + k, -1, 1);
-        for (i = 0; i < d->count; ++i) gproji_set_term(&term[i + 1], d->neighbour[i] + k, -1, -1.0 / d->count);
-        gproj_system_add_row(form->system, group, d->count + 1, term, 0, element);
+        const gproji_group *g = &form->system->group[group];
+        last = g->row_count - 1;
+        if (last >= 0 && g->row[last].terms != (uint32_t)d->count + 1) last = -1;
+        local[0] = d->centre + k;
+        for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
+        gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, local, 0, element);
     }
 }
 
@@ -19159,7 +19417,7 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     if (!gproji_form_ready(form)) return -1;
     vertices = (size_t)form->mesh->vertex_count;
     group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
-    gproji_expect_group(form, group, 0, 6 * vertices, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
+    gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -20574,7 +20832,8 @@ GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
     gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
-                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v]);
+                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v],
+                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)(v + s->load_start[v]));
     count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
     if (!term) {
@@ -21622,7 +21881,7 @@ GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group
     int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
     int64_t t;
-    for (t = row->term; t < row[1].term; ++t) {
+    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
         int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
         if (i >= vertices) continue;
         if (j >= 0 && j < vertices) return true;
@@ -22003,13 +22262,23 @@ GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form
     }
 }
 
-/* The constants and coefficients of a group's rows. */
-GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproji_group *g) {
-    int64_t t;
+/* The constants and coefficients of a group's rows. Terms that rows have in common stay so if nothing else comes in. */
+GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+    uint32_t t;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
-    for (t = 0; t < g->row[g->row_count].term && !stream->wrong; ++t)
-        gproji_pass_number(stream, &g->term[t].a, -DBL_MAX, DBL_MAX);
+    for (r = 0; r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
+            double *a = &g->term[g->row[r].term + t].a, now = *a;
+            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
+            if (memcmp(&now, a, sizeof now) == 0) continue;
+            if (g->common && !gproji_own_terms(form->system, g)) {
+                gproji_fail_memory(&form->error);
+                gproji_spoil(stream, "out of memory");
+                return;
+            }
+            g->term[g->row[r].term + t].a = now;
+        }
 }
 
 /* What of a solve in frames is passed. */
@@ -22052,7 +22321,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_number(stream, &g->weight, 0, 1e50);
     gproji_pass_choice(stream, form, g);
     if (own && !passing) return;
-    if (passing || !g->refresh) gproji_pass_numbers(stream, g);
+    if (passing || !g->refresh) gproji_pass_numbers(stream, form, g);
     gproji_pass_weights(stream, form, g);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
@@ -22238,17 +22507,21 @@ GPROJI_INTERNAL uint64_t gproji_hash_mesh(uint64_t hash, const gproj_form *form)
 
 /* A group's rows without their numbers. */
 GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
-    int64_t t;
+    uint64_t terms = 0;
+    uint32_t t;
     int32_t r;
     hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
     hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
     hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+    for (r = 0; r < g->row_count; ++r) {
+        terms += g->row[r].terms;
+        hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
+    }
     for (r = 0; r < g->row_count; ++r)
-        hash = gproji_hash_step(hash, (uint64_t)g->row[r + 1].term << 32 ^ (uint32_t)g->row[r].element);
-    for (r = 0; r < g->row_count; ++r)
-        for (t = g->row[r].term; t < g->row[r + 1].term; ++t) {
-            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].i);
-            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], g->term[t].j);
+        for (t = 0; t < g->row[r].terms; ++t) {
+            const gproj_term *term = g->term + g->row[r].term + t;
+            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
+            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
             hash = gproji_hash_step(hash, (uint64_t)i << 32 | j);
         }
     return gproji_hash_step(hash, (uint64_t)g->row_count);

@@ -227,6 +227,77 @@ GPROJT_TEST(planarity_twice_and_normals) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Two equal forms with planarity and fairness, whose rows have their terms in common; with compiled rows if `solved`. */
+static void gprojt_common_forms(gproj_mesh *mesh[2], gproj_form *form[2], bool solved) {
+    int i;
+    for (i = 0; i < 2; ++i) {
+        mesh[i] = gprojt_noisy(0, 5, 0.05, 11);
+        form[i] = gproj_form_create(mesh[i], NULL);
+        gproj_add_planarity(form[i], 1);
+        gproj_set_schedule(form[i], gproj_add_fairness(form[i], 0.2), gprojt_schedule(0.2, 1, INT32_MAX));
+        if (solved) gproj_solve(form[i], 2, NULL);
+    }
+}
+
+static bool gprojt_same_row(gproj_form *form[2], int32_t group, int32_t row, double factor) {
+    gproj_system *a = gproj_form_system(form[0]), *b = gproj_form_system(form[1]);
+    int32_t variables = gproj_system_variable_count(a), v;
+    double *gradient = (double *)calloc(2 * (size_t)variables, sizeof *gradient);
+    bool same = gproj_system_row_value(a, group, row, gradient) ==
+                factor * gproj_system_row_value(b, group, row, gradient + variables);
+    for (v = 0; v < variables; ++v) same = same && gradient[v] == factor * gradient[variables + v];
+    free(gradient);
+    return same;
+}
+
+static bool gprojt_same_rows(gproj_form *form[2], int32_t group, int32_t changed, double factor) {
+    int32_t r, rows = gproj_form_group_info(form[0], group).rows;
+    bool same = rows > 10;
+    for (r = 0; r < rows; ++r) same = same && gprojt_same_row(form, group, r, r == changed ? factor : 1);
+    return same;
+}
+
+/* A row that gets other coefficients leaves those alone that had the same terms; and states bring them. */
+GPROJT_TEST(terms_in_common) {
+    static const double edge[6] = {2, 2, 2, -2, -2, -2}, difference[3] = {2, -1, -1}, old[3] = {1, -0.5, -0.5};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh[2];
+        gproj_form *form[2];
+        gproj_system *s;
+        gproj_error error;
+        size_t size;
+        void *state;
+        gprojt_common_forms(mesh, form, i == 1);
+        s = gproj_form_system(form[0]);
+        GPROJT_CHECK(gprojt_same_rows(form, 0, -1, 1) && gprojt_same_rows(form, 1, -1, 1));
+        gproj_system_set_row(s, 1, 4, difference, 0);
+        GPROJT_CHECK(gprojt_same_rows(form, 0, -1, 1) && gprojt_same_rows(form, 1, 4, 2));
+        gproj_system_set_row(s, 1, 4, old, 0);
+        GPROJT_CHECK(gprojt_same_rows(form, 1, -1, 1));
+        gproj_solve(form[0], 3, NULL);
+        gproj_solve(form[1], 3, NULL);
+        GPROJT_CHECK(memcmp(mesh[0]->position, mesh[1]->position, 24 * (size_t)mesh[0]->vertex_count) == 0);
+        gproj_system_set_row(s, 0, 2, edge, 0);
+        GPROJT_CHECK(gprojt_same_rows(form, 0, 2, 2));
+        GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-8);
+        size = gproj_state_size(form[0]);
+        state = malloc(size);
+        GPROJT_CHECK(gproj_state_save(form[0], state, size, &error) == GPROJ_OK);
+        GPROJT_CHECK(gproj_state_restore(form[1], state, size, &error) == GPROJ_OK);
+        GPROJT_CHECK(gprojt_same_rows(form, 0, -1, 1) && gprojt_same_rows(form, 1, -1, 1));
+        gproj_add_fixed_corners(form[0], 1); /* compiled anew */
+        gproj_add_fixed_corners(form[1], 1);
+        GPROJT_CHECK(gprojt_same_rows(form, 0, -1, 1) && gprojt_same_rows(form, 1, -1, 1));
+        gproj_solve(form[0], 3, NULL);
+        gproj_solve(form[1], 3, NULL);
+        GPROJT_CHECK(memcmp(mesh[0]->position, mesh[1]->position, 24 * (size_t)mesh[0]->vertex_count) == 0);
+        free(state);
+        gproj_form_destroy(form[0]), gproj_form_destroy(form[1]);
+        gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+    }
+}
+
 /* -- what must hold, holds -- */
 
 GPROJT_TEST(planarity_reaches_machine_precision) {
@@ -1846,6 +1917,7 @@ int main(void) {
     GPROJT_RUN(builders);
     GPROJT_RUN(gradients_of_everything);
     GPROJT_RUN(planarity_twice_and_normals);
+    GPROJT_RUN(terms_in_common);
     GPROJT_RUN(planarity_reaches_machine_precision);
     GPROJT_RUN(fixed_vertices_stay);
     GPROJT_RUN(targets_are_followed);
