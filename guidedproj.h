@@ -1499,8 +1499,8 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_RESTRICT restrict
 #endif
 
-/* Begins to bring the cache line of an address into the cache, or into that of the second level. gcc takes a function that does only this for one without
-   effect, and drops calls of it: such a function is always inlined. */
+/* Begins to bring the cache line of an address into the cache, or into that of the second level. gcc takes a function
+   that does only this for one without effect, and drops calls of it: such a function is always inlined. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_PREFETCH(address) __builtin_prefetch(address)
 #define GPROJI_PREFETCH_L2(address) __builtin_prefetch(address, 0, 1)
