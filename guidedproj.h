@@ -8230,24 +8230,34 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     return r;
 }
 
+/* Has an earlier row these terms, with these coefficients? */
+GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t count, const gproj_term *terms) {
+    return g->row[row].terms == (uint32_t)count &&
+           memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
+}
+
 /* The same for builders that know what is right: the terms name places among the locals, which are different variables of
    this system, and in the order in which the terms name them; if some of them have a block in common it is coupled
-   already. The group is not global. like: an earlier row of the group with the same terms; -1: none. */
+   already. The group is not global. like: an earlier row of the group, whose terms it shares if they are the same;
+   -1: none. */
 GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
                                            const gproj_term *terms, int32_t locals, const int32_t *local,
                                            double constant, int32_t element) {
-    size_t own = like < 0 ? (size_t)count : 0;
     gproji_group *g;
     gproji_row *row;
+    bool common;
+    size_t own;
     if (!gproji_system_is_open(s)) return;
     g = &s->group[group];
     if (s->compiled) gproji_system_forget(s);
+    common = like >= 0 && gproji_has_terms(g, like, count, terms);
+    own = common ? 0 : (size_t)count;
     if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return;
-    row = gproji_start_row(g, like < 0 ? (uint32_t)g->term_count : g->row[like].term, count, constant, element);
-    if (like < 0)
-        memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
-    else
+    row = gproji_start_row(g, common ? g->row[like].term : (uint32_t)g->term_count, count, constant, element);
+    if (common)
         g->common = true;
+    else
+        memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
     memcpy(g->local_variable + row->local, local, (size_t)locals * sizeof *local);
     gproji_end_row(s, g, row, locals);
 }
@@ -19314,13 +19324,11 @@ typedef struct gproji_difference {
    as many have them in common, where they follow each other. `term`: room for count + 1 terms and as many integers. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
                                            gproj_term *term) {
-    int32_t k, i, last, *local = (int32_t *)(void *)(term + d->count + 1);
+    int32_t k, i, *local = (int32_t *)(void *)(term + d->count + 1);
     if (!gproji_system_has_group(form->system, group)) return;
     for (i = 0; i <= d->count; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     for (k = 0; k < 3; ++k) {
-        const gproji_group *g = &form->system->group[group];
-        last = g->row_count - 1;
-        if (last >= 0 && g->row[last].terms != (uint32_t)d->count + 1) last = -1;
+        int32_t last = form->system->group[group].row_count - 1;
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
         gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, local, 0, element);
