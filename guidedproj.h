@@ -121,11 +121,12 @@
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
 
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
-     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless a
-     group first gets a weight or the guard first acts during a solve: then there is one analysis more. Every allocation
-     may fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh,
-     a curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and
-     surfaces that were added to it, and a drag to its form.
+     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
+     during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
+     sets coefficients of planarity or fairness (which their rows have in common before). Every allocation may fail: the
+     call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a curve, a
+     stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and surfaces
+     that were added to it, and a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
