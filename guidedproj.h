@@ -123,7 +123,7 @@
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
      is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
      during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
-     sets coefficients of planarity or fairness (which their rows have in common before). Every allocation may fail: the
+     sets coefficients of planarity or fairness, or of their like (which rows have in common before). Every allocation may fail: the
      call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a curve, a
      stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and surfaces
      that were added to it, and a drag to its form.
@@ -2908,19 +2908,20 @@ typedef struct gproji_shape {
     int32_t shift;  /* empty rows before the pivots */
     int32_t stride; /* of the first block, and the number of storage rows */
     int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
+    int32_t end;    /* where the storage rows of the pivots end */
 } gproji_shape;
 
 GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
     gproji_shape shape;
-    int32_t end = gproji_round_up(w, GPROJI_BLOCK);
-    shape.shift = end - w;
-    shape.stride = end + gproji_round_up(below, GPROJI_BLOCK);
+    shape.end = gproji_round_up(w, GPROJI_BLOCK);
+    shape.shift = shape.end - w;
+    shape.stride = shape.end + gproji_round_up(below, GPROJI_BLOCK);
     shape.last = -1;
 #ifdef GPROJ_USE_CBLAS
     shape.last = 0;
 #else
     if (w <= GPROJI_NARROW) return shape;
-    shape.last = gproji_pieces(end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
+    shape.last = gproji_pieces(shape.end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
 #endif
     if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else whole columns share few cache lines */
     return shape;
@@ -2946,10 +2947,9 @@ GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
     return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
 }
 
-/* The number of entries of a panel with w pivots. */
-GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape, int32_t w) {
-    int32_t end = w + shape.shift;
-    return gproji_shape_offset(shape, end) + gproji_shape_first(shape, end);
+/* The number of entries of a panel. */
+GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape) {
+    return gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
 }
 
 /* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
@@ -3888,6 +3888,7 @@ enum {
     GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
     GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
     GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
+    GPROJI_ND_SORTED = 64,    /* arcs of a node that are sorted; no mesh has more */
     GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
 };
 
@@ -4559,6 +4560,7 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
     const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
     const int32_t *end = list + nd->here.inner[v];
     int32_t back = e + nd->here.inner[v], stop = back, k;
+    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
     band->start[i] = e;
     band->ends[i] = 0;
     for (; list < end; ++list) {
@@ -4566,7 +4568,7 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2]
         if (u < 0) {
             band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
         } else if (position[*list] > position[v]) {
-            for (k = e++; k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
+            for (k = e++; few && k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
                 band->to[k] = band->to[k - 1];
             band->to[k] = u;
         } else {
@@ -5552,7 +5554,7 @@ GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
         gproji_front *front = &out->front[f];
         int64_t w = front->width;
         gproji_shape shape = gproji_shape_of(front->width, front->below);
-        front->entries = gproji_shape_entries(shape, front->width);
+        front->entries = gproji_shape_entries(shape);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->side = out->side_size;
         out->values_size += front->entries;
@@ -8123,9 +8125,10 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for one more row of so many terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + 2;
-    return g->row_count < INT32_MAX - 1 && wanted <= g->row_capacity && (!g->share || wanted <= g->share_capacity) &&
-           g->term_count + terms <= g->term_capacity && g->term_count + terms < UINT32_MAX &&
-           gproji_local_count(g) + locals <= g->local_capacity && gproji_local_count(g) + locals < UINT32_MAX;
+    return g->term && g->local_variable && g->row_count < INT32_MAX - 1 && wanted <= g->row_capacity &&
+           (!g->share || wanted <= g->share_capacity) && g->term_count + terms <= g->term_capacity &&
+           g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->local_capacity &&
+           gproji_local_count(g) + locals < UINT32_MAX;
 }
 
 /* Makes this room. */
@@ -8134,7 +8137,7 @@ GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t t
         locals >= UINT32_MAX - gproji_local_count(g))
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
                     "group '%s' has too many rows or terms", g->name);
-    else if (!gproji_reserve_rows(s, g, 1, terms, locals))
+    else if (!gproji_reserve_rows(s, g, 1, terms + 1, locals + 1)) /* also of a row without terms */
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
@@ -8237,7 +8240,7 @@ GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t 
            memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
 }
 
-/* The same for builders that know what is right: the terms name places among the locals, which are different variables of
+/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which are different variables of
    this system, and in the order in which the terms name them; if some of them have a block in common it is coupled
    already. The group is not global. like: an earlier row of the group, whose terms it shares if they are the same;
    -1: none. */
@@ -8675,8 +8678,9 @@ GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row
         if (!gproji_copy_terms(s, g, row, rank)) return false;
         copy->order = order, copy->source = row->source, copy->locals = locals;
         copy->term = row->term;
+    } else {
+        row->term = copy->term;
     }
-    row->term = copy->term;
     return true;
 }
 
@@ -20808,8 +20812,11 @@ GPROJI_INTERNAL void gproji_set_supports(gproj_form *form, const gproj_supports 
     gproji_statics *s = form->statics;
     int32_t v, e, k, first, carrying = 0;
     for (v = 0; v < mesh->vertex_count; ++v) s->axes[v] = mesh->vertex_halfedge[v] < 0 ? 0 : GPROJI_AXES;
-    for (k = 0; k < supports->count; ++k)
-        s->axes[supports->vertex[k]] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
+    for (k = 0; k < supports->count; ++k) {
+        v = supports->vertex[k];
+        if (mesh->vertex_halfedge[v] >= 0) /* else no face has it */
+            s->axes[v] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
+    }
     for (v = 0, k = 0; v < mesh->vertex_count; ++v) {
         s->first_row[v] = k;
         k = gproji_axis_row(s, v, 3);

@@ -615,6 +615,25 @@ GPROJT_TEST(fair_forces) {
 /* -- rollers -- */
 
 /* A vault on walls along which its supports slide, and pinned at the corners: the edges along the walls are ties. */
+/* A support that no face has. */
+GPROJT_TEST(supports_of_isolated_vertices) {
+    static const double position[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0.2, 0, 1, 0, 5, 5, 5};
+    static const int32_t degree[1] = {4}, corner[4] = {0, 1, 2, 3}, pins[3] = {0, 1, 4};
+    static const uint8_t slides[3] = {0, 0, 7};
+    gproj_mesh *mesh = gproj_mesh_create(5, position, 1, degree, corner, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_loads loads;
+    gproj_supports supports;
+    GPROJT_REQUIRE(form);
+    memset(&loads, 0, sizeof loads);
+    loads.area_load = 1;
+    supports.count = 3, supports.vertex = pins, supports.slides = slides;
+    GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(rollers_take_nothing_along_their_slides) {
     gproj_mesh *mesh = gprojt_vault(QUADS, 6, 10, 3);
     gprojt_list walls = gprojt_boundary(mesh);
@@ -1458,6 +1477,7 @@ int main(void) {
     GPROJT_RUN(tripods);
     GPROJT_RUN(stresses_stay_within_bounds);
     GPROJT_RUN(fair_forces);
+    GPROJT_RUN(supports_of_isolated_vertices);
     GPROJT_RUN(rollers_take_nothing_along_their_slides);
     GPROJT_RUN(units_do_not_matter);
     GPROJT_RUN(best_forces);
