@@ -123,10 +123,10 @@
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
      is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
      during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
-     sets coefficients of planarity or fairness, or of their like (which rows have in common before). Every allocation may fail: the
-     call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a curve, a
-     stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and surfaces
-     that were added to it, and a drag to its form.
+     sets coefficients of planarity, fairness or their like (which rows have in common before). Every allocation may
+     fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a
+     curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and
+     surfaces that were added to it, and a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
@@ -8240,10 +8240,10 @@ GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t 
            memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
 }
 
-/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which are different variables of
-   this system, and in the order in which the terms name them; if some of them have a block in common it is coupled
-   already. The group is not global. like: an earlier row of the group, whose terms it shares if they are the same;
-   -1: none. */
+/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which are
+   different variables of this system, and in the order in which the terms name them; if some of them have a block in
+   common it is coupled already. The group is not global. like: an earlier row of the group, whose terms it shares if
+   they are the same; -1: none. */
 GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
                                            const gproj_term *terms, int32_t locals, const int32_t *local,
                                            double constant, int32_t element) {
