@@ -74,7 +74,7 @@ for compiler in gcc clang g++ clang++ tcc i686-linux-gnu-gcc i686-linux-gnu-g++ 
     esac
 done
 if have tcc; then # what it compiles also runs
-    job 'tcc, running' "tcc -I'$root' -I'$root/tests' '$root/tests/test_dense.c' -o tcc.dense -lm && ./tcc.dense"
+    job 'tcc, running' "tcc -I'$root' -I'$root/tests' '$root/tests/test_dense.c' -o tcc.dense -lm && ./tcc.dense >tcc.dense.log || cat tcc.dense.log"
 fi
 case $(uname -m) in x86_64) vectors='-mavx2 -mfma' ;; *) vectors= ;; esac
 for compiler in gcc clang; do
