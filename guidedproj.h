@@ -2231,6 +2231,18 @@ GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, 
     return block;
 }
 
+/* Makes the block taken last as small as `count` elements, at most what it has. NULL when there is no memory; it then
+   stays as it is. */
+GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
+    int32_t last = pool->count - 1;
+    size_t bytes = gproji_bytes((size_t)count, size);
+    void *moved = gproji_retake(pool->heap, pool->block[last], pool->bytes[last], bytes, 1);
+    if (!moved) return NULL;
+    pool->block[last] = moved;
+    pool->bytes[last] = bytes;
+    return moved;
+}
+
 /* ============================================================================================================
    >>error   One door for all failures. Uses platform, number. */
 
@@ -2447,6 +2459,11 @@ GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s-
    an object; elsewhere the compiler's target decides.
 
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
+
+enum {
+    GPROJI_CACHE_LINE = 8, /* values */
+    GPROJI_FAR_TILES = 96  /* so wide products fetch their tiles ahead */
+};
 
 /* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
    following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many pieces
@@ -2747,7 +2764,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const double *c, ptrdiff_t ldc) {
     int32_t r, j;
     for (j = 0; j < columns; ++j)
-        for (r = 0; r < rows; r += 8) GPROJI_PREFETCH(c + j * ldc + r);
+        for (r = 0; r < rows; r += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c + j * ldc + r);
 }
 
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
@@ -2755,7 +2772,7 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
                                                   ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L) {                                     \
-            if (k >= 96) gproji_prefetch_tile(TALL * L, B, c, ldc);                                                        \
+            if (k >= GPROJI_FAR_TILES) gproji_prefetch_tile(TALL * L, B, c, ldc);                                          \
             gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
         }                                                                                                              \
         if (rows == MIDDLE * L)                                                                                        \
@@ -2794,7 +2811,7 @@ GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t 
             const int32_t run = piece[k].run;
             const double *s = source + piece[k].from;
             double *d = column + piece[k].to;
-            if (run < 4) { /* what a loop costs */
+            if (run < 4) { /* shorter ones are not worth a loop */
                 GPROJI_ADD_SPREAD(d, s, piece[k].mask);
                 ++k;
                 continue;
@@ -2885,10 +2902,9 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 enum {
     GPROJI_CHUNK = 128,  /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
     GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
-    GPROJI_TASK_COLUMNS = 48, /* columns that one task takes the pivots' effect off; a multiple of GPROJI_STRIP */
+    GPROJI_TASK_COLUMNS = 48, /* columns that are one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
     GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_CACHE_LINE = 8,    /* values */
-    GPROJI_ROW_BLOCK = 240    /* rows of a strip of tiles: with GPROJI_CHUNK columns they stay in the L2 cache */
+    GPROJI_ROW_BLOCK = 240    /* rows, or up to twice as many, that stay in the L2 cache with GPROJI_CHUNK columns */
 };
 
 /* The number of pieces of `size` that cover `all`. */
@@ -2903,7 +2919,7 @@ GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, 
 /* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
    each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
    multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
-   are. With a BLAS there is but one block. */
+   are. With a BLAS there is but one block. The struct has 16 bytes: where a function returns 12, tcc 0.9.27 writes 16. */
 typedef struct gproji_shape {
     int32_t shift;  /* empty rows before the pivots */
     int32_t stride; /* of the first block, and the number of storage rows */
@@ -3013,14 +3029,14 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
 /* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
    r >= at is the r-th. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
-    int32_t pivot_end = panel->w + panel->shift;
+    int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
 /* Its stride: that of all columns of its block, or of its strip of the update matrix. */
 GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
-    int32_t pivot_end = panel->w + panel->shift;
+    int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
     return gproji_update_stride(panel->update_rows, at - pivot_end);
 }
@@ -3053,7 +3069,7 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
 /* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->w + panel->shift + index * panel->task_columns;
+    int32_t at = panel->shape.end + index * panel->task_columns;
     int32_t end = gproji_min(at + panel->task_columns, panel->rows);
     int32_t first, last;
     for (first = 0; first < panel->w; first = last) {
@@ -3067,7 +3083,7 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
 GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t at = panel->last + panel->shift + index * panel->task_columns;
-    int32_t end = gproji_min(at + panel->task_columns, panel->w + panel->shift);
+    int32_t end = gproji_min(at + panel->task_columns, panel->shape.end);
     gproji_strip_update(panel, at, end, panel->first, panel->last);
 }
 
@@ -3211,7 +3227,7 @@ GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from
 
 /* Sets the columns that belong to the storage rows [from, to) to 0. */
 GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
-    int32_t pivot_end = panel->w + panel->shift, end = gproji_min(to, pivot_end);
+    int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
     from = gproji_max(from, panel->shift);
     if (from < end) {
         ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
@@ -3234,7 +3250,7 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
     double *below = gproji_panel_at(panel, last + panel->shift, first);
     double *later = gproji_panel_at(panel, last + panel->shift, last);
-    int32_t more = panel->w - last, under = panel->rows - panel->w - panel->shift, width = last - first;
+    int32_t more = panel->w - last, under = panel->rows - panel->shape.end, width = last - first;
     (void)parallel;
     if (more + under > 0)
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, more + under, width, 1.0, pivots,
@@ -3247,7 +3263,7 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
 }
 
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
-    int32_t pivot_end = panel->w + panel->shift, below = panel->rows - pivot_end, first, next;
+    int32_t pivot_end = panel->shape.end, below = panel->rows - pivot_end, first, next;
     (void)parallel;
     for (first = 0; first < below; first = next) {
         double *strip = panel->update + gproji_update_offset(panel->update_rows, first) + first;
@@ -3280,7 +3296,7 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
 
 /* The effect of a factored panel on its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
-    int32_t below = panel->rows - panel->w - panel->shift;
+    int32_t below = panel->rows - panel->shape.end;
     gproji_take_off(parallel, (double)below * below * panel->w, below, gproji_update_task, panel);
 }
 #endif
@@ -3319,7 +3335,7 @@ GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
 /* z = L^-T z on all storage rows of a panel, where the part below is known. far: the panel is not in the cache, so each
    column block is fetched ahead: processors do not foresee columns from right to left. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool far, double *z) {
-    int32_t block = panel->kernels->block, at = panel->w + panel->shift - block;
+    int32_t block = panel->kernels->block, at = panel->shape.end - block;
     for (; at >= panel->top; at -= block) {
         int32_t start = gproji_max(at - panel->shift, 0), next = gproji_max(start - block, 0);
         const double *column = gproji_panel_at(panel, at, start), *ahead = gproji_panel_at(panel, at, next);
@@ -3960,7 +3976,7 @@ typedef struct gproji_nd {
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
     int32_t light;       /* how many are light */
     int32_t kept;        /* nodes that are dissected */
-    double rim_length;   /* see gproji_rim */
+    double openness;     /* see gproji_rim */
     int32_t *order;      /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
@@ -4137,7 +4153,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
         c->outer[i] = 0;
     }
     nd->kept = tail;
-    nd->rim_length = gproji_rim(graph);
+    nd->openness = gproji_rim(graph);
     nd->unit = tail > 0 ? sqrt(weight / tail) : 1;
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
@@ -5024,7 +5040,7 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
    is far from the middle, other coordinates are tried if it is closed: then some nodes are better starts than others.
    Returns how many nodes are connected; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && nd->rim_length <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
+    int32_t starts = nd->nodes > nd->kept / 2 && nd->openness <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
     memset(best, 0, sizeof *best);
     best->cost = HUGE_VAL;
     for (k = 0; k < starts; ++k) {
@@ -5041,9 +5057,9 @@ GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
    solids, whose separators are large: there two coordinates do not tell all nodes apart. -1: so does all that comes of
    them, as its own coordinates were better. */
 GPROJI_INTERNAL double gproji_nd_next_par(const gproji_nd *nd, double par, double own, double inherited) {
-    double ratio = gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight);
+    double ratio = gproji_coarsely(gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight));
     if (par < 0 || (par > 0 && own < inherited)) return -1;
-    if (nd->rim_length < 12 && nd->nodes >= nd->kept / 8) return 0;
+    if (nd->openness < 12 && nd->nodes >= nd->kept / 8) return 0;
     return ratio < 2 ? ratio : 0;
 }
 
@@ -5068,7 +5084,7 @@ GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *par
     gproji_nd_cut cut;
     if (par > 0) {
         inherited = gproji_nd_cut_again(nd);
-        if (inherited < 1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight)) {
+        if (inherited < gproji_coarsely(1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight))) {
             gproji_nd_divide(nd, part, par);
             return;
         }
@@ -5924,7 +5940,6 @@ struct gproj_cholesky {
     int32_t *permutation; /* columns: the column of A at each column of L */
     gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
     int64_t *piece_start; /* fronts + 1 */
-    size_t piece_room;
     /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
     int64_t entries;
     int64_t *entry;       /* entries: the number of each in the caller's arrays */
@@ -5953,7 +5968,6 @@ struct gproj_cholesky {
 GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     gproji_pool_give_all(&c->numeric);
     gproji_pool_give_all(&c->kept);
-    gproji_give(&c->own, c->piece, c->piece_room, sizeof *c->piece);
     memset(&c->symbolic, 0, sizeof c->symbolic);
     c->analysed = c->factored = false;
     c->failed_column = -1;
@@ -6052,49 +6066,30 @@ GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, 
 /* The pieces of all fronts. */
 GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
-    size_t room = 0, count;
+    int64_t most = 0;
     int32_t f;
-    void *trimmed;
-    for (f = 0; f < sy->fronts; ++f) room += (size_t)gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+    for (f = 0; f < sy->fronts; ++f) most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
     c->piece_start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
-    if (!c->piece_start) return false;
-    c->piece = (gproji_piece *)gproji_take(&c->own, room, sizeof(gproji_piece));
-    c->piece_room = room;
+    c->piece = c->piece_start ? (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece) : NULL;
     if (!c->piece) return false;
     c->piece_start[0] = 0;
     for (f = 0; f < sy->fronts; ++f)
         c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
-    count = (size_t)c->piece_start[sy->fronts];
-    trimmed = gproji_retake(&c->own, c->piece, room, count, sizeof(gproji_piece));
-    if (!trimmed) return false;
-    c->piece = (gproji_piece *)trimmed;
-    c->piece_room = count;
-    return true;
+    c->piece = (gproji_piece *)gproji_pool_shrink(&c->kept, c->piece_start[sy->fronts], sizeof *c->piece);
+    return c->piece != NULL;
 }
 
-/* The storage rows of a front in its panel: at[variable] for the variables that have one. */
-GPROJI_INTERNAL void gproji_map_variables(const gproj_cholesky *c, int32_t f, int32_t *at) {
+/* The storage rows of a front in its panel: at[name[k]] for the columns k of L that have one. name: columns; NULL: a
+   column's name is its number. */
+GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const int32_t *name, int32_t *at) {
     const gproji_symbolic *sy = &c->symbolic;
     const gproji_front *front = &sy->front[f];
     int32_t shift = gproji_panel_shift(front->width) - front->first, k;
     int64_t r;
-    for (k = front->first; k < front->first + front->width; ++k) at[c->permutation[k]] = k + shift;
+    for (k = front->first; k < front->first + front->width; ++k) at[name ? name[k] : k] = k + shift;
     for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
         const int32_t *column = sy->column + sy->row_node[r];
-        for (k = column[0]; k < column[1]; ++k) at[c->permutation[k]] = sy->row_at[r] + k - column[0];
-    }
-}
-
-/* The same by columns of L. */
-GPROJI_INTERNAL void gproji_map_columns(const gproj_cholesky *c, int32_t f, int32_t *at) {
-    const gproji_symbolic *sy = &c->symbolic;
-    const gproji_front *front = &sy->front[f];
-    int32_t shift = gproji_panel_shift(front->width) - front->first, k;
-    int64_t r;
-    for (k = front->first; k < front->first + front->width; ++k) at[k] = k + shift;
-    for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
-        const int32_t *column = sy->column + sy->row_node[r];
-        for (k = column[0]; k < column[1]; ++k) at[k] = sy->row_at[r] + k - column[0];
+        for (k = column[0]; k < column[1]; ++k) at[name ? name[k] : k] = sy->row_at[r] + k - column[0];
     }
 }
 
@@ -6481,7 +6476,7 @@ GPROJI_INTERNAL void gproji_gather_columns(const gproji_gathering *gathering, in
 GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
     const gproji_panel *panel = gathering->panel;
-    int32_t pivot_end = panel->w + panel->shift, below = gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS);
+    int32_t pivot_end = panel->shape.end, below = gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS);
     int32_t begin = index < below ? pivot_end : 0, end = index < below ? pivot_end + panel->update_rows : pivot_end;
     begin += (index < below ? index : index - below) * GPROJI_TASK_COLUMNS;
     gproji_gather_columns(gathering, begin, gproji_min(begin + GPROJI_TASK_COLUMNS, end));
@@ -6490,7 +6485,7 @@ GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
 /* A front's panel and update matrix with nothing but what its children add; parallel: NULL within a task. */
 GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
                                             const gproji_panel *panel, const gproj_parallel *parallel) {
-    int32_t pivot_end = panel->w + panel->shift, rows = pivot_end + panel->update_rows;
+    int32_t pivot_end = panel->shape.end, rows = pivot_end + panel->update_rows;
     gproji_gathering gathering;
     gathering.c = c, gathering.front = front, gathering.panel = panel;
     if (front->child < 0 || front->entries + gproji_update_entries(front->update_rows) <= GPROJI_CACHED)
@@ -8234,16 +8229,16 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     return r;
 }
 
-/* Has an earlier row these terms, with these coefficients? */
+/* Is there this row, with these terms and coefficients? */
 GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t count, const gproj_term *terms) {
-    return g->row[row].terms == (uint32_t)count &&
+    return row >= 0 && row < g->row_count && g->row[row].terms == (uint32_t)count &&
            memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
 }
 
 /* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which are
    different variables of this system, and in the order in which the terms name them; if some of them have a block in
-   common it is coupled already. The group is not global. like: an earlier row of the group, whose terms it shares if
-   they are the same; -1: none. */
+   common it is coupled already. The group is not global. like: a row of the group whose terms it shares if there
+   is one and they are the same. */
 GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
                                            const gproj_term *terms, int32_t locals, const int32_t *local,
                                            double constant, int32_t element) {
@@ -8738,7 +8733,7 @@ GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     int32_t f;
     int64_t k, l;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
-        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_columns(s->cholesky, f, at);
+        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
             const gproji_row *row = &g->row[s->front_row[k].row];
@@ -9607,7 +9602,7 @@ GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, int32_t *at) {
     int32_t f;
     int64_t k, i;
     for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
-        if (d->front_start[f] < d->front_start[f + 1]) gproji_map_variables(s->cholesky, f, at);
+        if (d->front_start[f] < d->front_start[f + 1]) gproji_map_rows(s->cholesky, f, s->cholesky->permutation, at);
         for (k = d->front_start[f]; k < d->front_start[f + 1]; ++k)
             for (i = d->entry_start[d->front_node[k]]; i < d->entry_start[d->front_node[k] + 1]; ++i)
                 d->entry_at[i] = at[d->entry[i]];
@@ -19039,7 +19034,6 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], local[9], n, c, k;
-    bool first = group >= 0 && s->group[group].row_count == 0;
     double normal[3];
     if (group < 0) return;
     gproji_face_normal(form, face, normal);
@@ -19049,7 +19043,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     form->normal[face] = n;
     s->coupled[n] = 1;
     for (k = 0; k < 3; ++k) local[k] = n + k;
-    gproji_add_placed_row(s, group, first ? -1 : 0, 3, unit, 3, local, -1, face);
+    gproji_add_placed_row(s, group, 0, 3, unit, 3, local, -1, face);
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
         s->coupled[i] = 1;
@@ -19058,7 +19052,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
             local[2 * k + 1] = i + k;
             local[6 + k] = j + k;
         }
-        gproji_add_placed_row(s, group, first && c == 0 ? -1 : 1, 6, edge, 9, local, 0, face);
+        gproji_add_placed_row(s, group, 1, 6, edge, 9, local, 0, face);
     }
 }
 

@@ -574,7 +574,7 @@ static void load_blocks(void *user, int32_t front, const gproji_panel *panel) {
     const gproji_symbolic *sy = &blocks->cholesky->symbolic;
     int32_t at[8 * NODES], k, j, node[2];
     int64_t p;
-    gproji_map_variables(blocks->cholesky, front, at);
+    gproji_map_rows(blocks->cholesky, front, blocks->cholesky->permutation, at);
     for (j = 0; j < m->n; ++j)
         for (p = m->start[j]; p < m->start[j + 1]; ++p) {
             int32_t variable[2], row[2];

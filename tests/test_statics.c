@@ -614,7 +614,6 @@ GPROJT_TEST(fair_forces) {
 
 /* -- rollers -- */
 
-/* A vault on walls along which its supports slide, and pinned at the corners: the edges along the walls are ties. */
 /* A support that no face has. */
 GPROJT_TEST(supports_of_isolated_vertices) {
     static const double position[15] = {0, 0, 0, 1, 0, 0, 1, 1, 0.2, 0, 1, 0, 5, 5, 5};
@@ -629,11 +628,13 @@ GPROJT_TEST(supports_of_isolated_vertices) {
     loads.area_load = 1;
     supports.count = 3, supports.vertex = pins, supports.slides = slides;
     GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+    GPROJT_CHECK(gproj_form_group_info(form, 0).rows == 6); /* of the free vertex and the two that slide nowhere */
     GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
 
+/* A vault on walls along which its supports slide, and pinned at the corners: the edges along the walls are ties. */
 GPROJT_TEST(rollers_take_nothing_along_their_slides) {
     gproj_mesh *mesh = gprojt_vault(QUADS, 6, 10, 3);
     gprojt_list walls = gprojt_boundary(mesh);
