@@ -2478,11 +2478,11 @@ typedef struct gproji_kernels {
     int32_t block;
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* the pieces of `add` have gaps */
-    /* C -= A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows of C, B has k columns
-       and block rows. Both are parts of a panel: `stride` leads from one column to the next, but after `left` columns,
-       and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+    /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows
+       of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next, but
+       after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
-                   ptrdiff_t ldc);
+                   ptrdiff_t ldc, bool fresh);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
        diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
     void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
@@ -2633,7 +2633,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
     GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
-                                                        ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {    \
+                                                        ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,      \
+                                                        bool fresh) {                                                  \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
         const lanes zero = {0};                                                                                        \
@@ -2643,7 +2644,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
             GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
             GPROJI_TILE_NEXT                                                                                           \
         }                                                                                                              \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                           \
+        if (!fresh) { GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD) }                                           \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##T##_##kind(                                                                \
@@ -2770,15 +2771,16 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
 /* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
-                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc) {          \
+                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,            \
+                                                  bool fresh) {                                                        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L) {                                     \
             if (k >= GPROJI_FAR_TILES) gproji_prefetch_tile(TALL * L, B, c, ldc);                                          \
-            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc);                                                  \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                           \
         }                                                                                                              \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc);                                                \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, fresh);                                         \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc);                                                 \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                          \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
@@ -3000,6 +3002,7 @@ typedef struct gproji_panel {
     int32_t w, shift, top, rows;
     int32_t first, last;
     int32_t task_columns; /* that a task takes the pivots' effect off */
+    bool fresh;           /* the update matrix has no values yet: it begins with the pivots' effect */
     gproji_shape shape;
     int32_t update_rows; /* of the update matrix */
     double *values;
@@ -3017,6 +3020,7 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
     panel.task_columns = GPROJI_TASK_COLUMNS;
+    panel.fresh = false;
     panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
@@ -3048,9 +3052,9 @@ GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first
 }
 
 /* Takes the effect of the pivot columns [first, last) off the columns of later pivots, or of the update matrix, that
-   belong to the storage rows [at, end). */
+   belong to the storage rows [at, end). fresh: off nothing. */
 GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
-                                         int32_t last) {
+                                         int32_t last, bool fresh) {
     const gproji_kernels *kernels = panel->kernels;
     const double *l = gproji_panel_at(panel, 0, first);
     int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
@@ -3061,7 +3065,7 @@ GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, 
         for (column = at; column < gproji_min(end, stop); column += kernels->block) {
             int32_t row = gproji_max(begin, column);
             kernels->update(stop - row, last - first, l + row, l + column, stride, left,
-                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column));
+                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column), fresh);
         }
     }
 }
@@ -3075,7 +3079,7 @@ GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     for (first = 0; first < panel->w; first = last) {
         last = gproji_next_chunk(panel, first);
         if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
-        gproji_strip_update(panel, at, end, first, last);
+        gproji_strip_update(panel, at, end, first, last, panel->fresh && first == 0);
     }
 }
 
@@ -3084,7 +3088,7 @@ GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t at = panel->last + panel->shift + index * panel->task_columns;
     int32_t end = gproji_min(at + panel->task_columns, panel->shape.end);
-    gproji_strip_update(panel, at, end, panel->first, panel->last);
+    gproji_strip_update(panel, at, end, panel->first, panel->last, false);
 }
 
 /* The first storage row of the column block that begins with column `start`. */
@@ -3128,7 +3132,7 @@ GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
         double *corner = gproji_panel_at(panel, at, start);
         if (start > panel->first)
             kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
-                            gproji_shape_left(panel->shape, chunk), corner, stride);
+                            gproji_shape_left(panel->shape, chunk), corner, stride, false);
         failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
         if (failed >= 0) return start + failed;
         gproji_block_solve(panel, start, at + block, end - at - block);
@@ -3264,17 +3268,18 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
 
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t pivot_end = panel->shape.end, below = panel->rows - pivot_end, first, next;
+    double kept = panel->fresh ? 0 : 1;
     (void)parallel;
     for (first = 0; first < below; first = next) {
         double *strip = panel->update + gproji_update_offset(panel->update_rows, first) + first;
         const double *l2 = gproji_panel_at(panel, pivot_end + first, 0);
         int32_t rows = below - first, columns = gproji_min(GPROJI_STRIP, rows), ldc = panel->update_rows - first;
         next = first + columns;
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->shape.stride, 1.0,
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, panel->w, -1.0, l2, panel->shape.stride, kept,
                     strip, ldc);
         if (rows > columns)
             cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns, columns, panel->w, -1.0, l2 + columns,
-                        panel->shape.stride, l2, panel->shape.stride, 1.0, strip + columns, ldc);
+                        panel->shape.stride, l2, panel->shape.stride, kept, strip + columns, ldc);
     }
 }
 #else
@@ -5905,7 +5910,8 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
    panels will be that come after its parent's. Both are cleared, the children's update matrices and A's values are
    added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
-   in the cache; right-hand sides that are known then take part.
+   in the cache; right-hand sides that are known then take part. A larger front's update matrix is not cleared: it begins
+   with the pivots' effect, and what is added comes after that.
 
    Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
    of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
@@ -5918,13 +5924,15 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
     GPROJI_SOLVE_BATCH = 4,  /* right-hand sides solved together at most */
+    GPROJI_FRESH = 1 << 14,  /* values of a front whose update matrix begins with the pivots' effect */
     GPROJI_CACHED = 1 << 16, /* a factor with no more values than that stays in the L2 cache */
     GPROJI_PREFETCHED = 8192 /* values of the next panel that are fetched ahead */
 };
 
-/* Adds the matrix's values that belong to a front to its cleared panel and update matrix (see gproji_panel_column). Each
-   value once, in a front that has both of its variables. Called from several threads. */
-typedef void (*gproji_load)(void *user, int32_t front, const gproji_panel *panel);
+/* Adds the matrix's values that belong to a front to its panel and update matrix (see gproji_panel_column): to the columns
+   that belong to the storage rows [from, to), which are all of them, those of the pivots or all after these. Each value
+   once, in a front that has both of its variables. Called from several threads. */
+typedef void (*gproji_load)(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to);
 
 struct gproj_cholesky {
     gproji_heap own;
@@ -6454,15 +6462,17 @@ typedef struct gproji_gathering {
     const gproj_cholesky *c;
     const gproji_front *front;
     const gproji_panel *panel;
+    int32_t from, to;
 } gproji_gathering;
 
-/* Clears the columns that belong to the storage rows [from, to), and adds the children's: as long as they are in the
-   cache. */
+/* Adds the children's to the columns that belong to the storage rows [from, to). These are cleared before, as long as they
+   are in the cache, unless they have the pivots' effect already. */
 GPROJI_INTERNAL void gproji_gather_columns(const gproji_gathering *gathering, int32_t from, int32_t to) {
     const gproj_cholesky *c = gathering->c;
     const gproji_symbolic *sy = &c->symbolic;
     int32_t i;
-    gproji_clear_columns(gathering->panel, from, to);
+    if (from < gathering->panel->shape.end || !gathering->panel->fresh)
+        gproji_clear_columns(gathering->panel, from, to);
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
@@ -6472,36 +6482,35 @@ GPROJI_INTERNAL void gproji_gather_columns(const gproji_gathering *gathering, in
     }
 }
 
-/* Some columns of the update matrix or, after those, of the panel, which is needed at once. A task. */
+/* Some of these columns. A task. */
 GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
-    const gproji_panel *panel = gathering->panel;
-    int32_t pivot_end = panel->shape.end, below = gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS);
-    int32_t begin = index < below ? pivot_end : 0, end = index < below ? pivot_end + panel->update_rows : pivot_end;
-    begin += (index < below ? index : index - below) * GPROJI_TASK_COLUMNS;
-    gproji_gather_columns(gathering, begin, gproji_min(begin + GPROJI_TASK_COLUMNS, end));
+    int32_t begin = gathering->from + index * GPROJI_TASK_COLUMNS;
+    gproji_gather_columns(gathering, begin, gproji_min(begin + GPROJI_TASK_COLUMNS, gathering->to));
 }
 
-/* A front's panel and update matrix with nothing but what its children add; parallel: NULL within a task. */
-GPROJI_INTERNAL void gproji_gather_children(const gproj_cholesky *c, const gproji_front *front,
-                                            const gproji_panel *panel, const gproj_parallel *parallel) {
-    int32_t pivot_end = panel->shape.end, rows = pivot_end + panel->update_rows;
+/* The matrix and what the children add, in the columns that belong to the storage rows [from, to): see gproji_load.
+   parallel: NULL within a task. */
+GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gproji_panel *panel,
+                                   const gproj_parallel *parallel, int32_t from, int32_t to) {
+    const gproji_front *front = &c->symbolic.front[f];
+    double rows = panel->shape.end + panel->update_rows - from;
     gproji_gathering gathering;
-    gathering.c = c, gathering.front = front, gathering.panel = panel;
-    if (front->child < 0 || front->entries + gproji_update_entries(front->update_rows) <= GPROJI_CACHED)
-        gproji_gather_columns(&gathering, 0, rows);
+    gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
+    if (front->child < 0 || rows * (to - from) <= GPROJI_CACHED)
+        gproji_gather_columns(&gathering, from, to);
     else
-        gproji_run_tasks(parallel, 20.0 * rows * rows,
-                         gproji_pieces(pivot_end, GPROJI_TASK_COLUMNS) +
-                             gproji_pieces(panel->update_rows, GPROJI_TASK_COLUMNS),
+        gproji_run_tasks(parallel, 20.0 * rows * (to - from), gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
                          gproji_gather_task, &gathering);
+    c->load(c->load_user, f, panel, from, to);
 }
 
 /* Adds A's values to a front, where A is in compressed columns. */
-GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_panel *panel) {
+GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_panel *panel, int32_t from, int32_t to) {
     const gproj_cholesky *c = (const gproj_cholesky *)user;
     int64_t r;
-    (void)panel;
+    (void)to;
+    if (from >= panel->shape.end) return; /* a column of A has its entries in a column of L */
     for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) c->values[c->target[r]] += c->source[c->entry[r]];
 }
 
@@ -6525,12 +6534,13 @@ GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
 GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel) {
     const gproji_front *front = &c->symbolic.front[f];
     gproji_panel panel = gproji_front_panel(c, front);
-    int32_t failed;
-    gproji_gather_children(c, front, &panel, parallel);
-    c->load(c->load_user, f, &panel);
+    int32_t pivot_end = panel.shape.end, rows = pivot_end + panel.update_rows, failed;
+    panel.fresh = front->below > 0 && front->entries + gproji_update_entries(front->update_rows) > GPROJI_FRESH;
+    gproji_gather(c, f, &panel, parallel, 0, panel.fresh ? pivot_end : rows);
     failed = gproji_panel_factor(parallel, &panel);
     if (failed >= 0) return front->first + failed;
     if (front->below > 0) gproji_panel_update(parallel, &panel);
+    if (panel.fresh) gproji_gather(c, f, &panel, parallel, pivot_end, rows);
     return -1;
 }
 
@@ -9039,32 +9049,38 @@ typedef struct gproji_loading {
     double light;
 } gproji_loading;
 
-/* w^2 g g', lower triangle */
-GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
+/* w^2 g g', lower triangle, in the columns that belong to the storage rows [from, to) */
+GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row *row, const gproji_panel *panel,
+                                        int32_t from, int32_t to) {
     const double *gradient = g->local_gradient + row->local;
     const int32_t *at = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), p, q;
+    int32_t count = (int32_t)(row[1].local - row->local), first = 0, end = count, p, q;
     double w2 = gproji_weight2(g, row);
-    for (q = 0; q < count; ++q) {
+    while (first < end && at[first] < from) ++first;
+    while (first < end && at[end - 1] >= to) --end;
+    for (q = first; q < end; ++q) {
         double *column = gproji_panel_column(panel, at[q]), scale = w2 * gradient[q];
         for (p = q; p < count; ++p) column[at[p]] += scale * gradient[p];
     }
 }
 
-/* w^2 y (Hessian of phi), lower triangle */
-GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel) {
+/* w^2 y (Hessian of phi) there */
+GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel,
+                                           int32_t from, int32_t to) {
     const int32_t *at = g->local_at + row->local;
     double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
     for (; term < end; ++term) {
-        int32_t i = term->i, j = term->j;
+        int32_t i = term->i, j = term->j, column;
         if (j < 0) continue;
-        gproji_panel_column(panel, at[gproji_min(i, j)])[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
+        column = at[gproji_min(i, j)];
+        if (column < from || column >= to) continue;
+        gproji_panel_column(panel, column)[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
     }
 }
 
 /* See gproji_load. */
-GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel) {
+GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to) {
     const gproji_loading *loading = (const gproji_loading *)user;
     const gproj_system *s = loading->system;
     const int32_t *variable = s->cholesky->permutation + s->cholesky->symbolic.front[front].first;
@@ -9075,9 +9091,10 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
         const gproji_row *row = &g->row[s->front_row[k].row];
         gproji_expect_rows(s, k, true);
         if (!(g->weight > 0) || !row->active) continue;
-        gproji_load_square(g, row, panel);
-        if (loading->curved) gproji_load_curvature(g, row, panel);
+        gproji_load_square(g, row, panel, from, to);
+        if (loading->curved) gproji_load_curvature(g, row, panel, from, to);
     }
+    if (from >= panel->shape.end) return;
     for (j = 0; j < panel->w; ++j) {
         double epsilon = variable[j] < loading->light_from ? loading->epsilon : loading->light;
         *gproji_panel_at(panel, j + panel->shift, j) += epsilon * epsilon;
@@ -10234,12 +10251,15 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     }
 }
 
-/* W W' at a node. */
-GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int32_t size, const gproji_panel *panel) {
+/* W W' at a node, in the columns that belong to the storage rows [from, to). */
+GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int32_t size, const gproji_panel *panel,
+                                           int32_t from, int32_t to) {
     const int32_t *at = d->entry_at + d->entry_start[v];
-    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), i, j, p;
+    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), first = 0, end = count, i, j, p;
     const double *w = d->value + d->value_start[v];
-    for (j = 0; j < count; ++j) {
+    while (first < end && at[first] < from) ++first;
+    while (first < end && at[end - 1] >= to) --end;
+    for (j = first; j < end; ++j) {
         double *column = gproji_panel_column(panel, at[j]);
         for (i = j; i < count; ++i) {
             double sum = 0;
@@ -10269,7 +10289,8 @@ GPROJI_INLINED void gproji_schur_expect(const gproj_system *s, int64_t k) {
 }
 
 /* I + W W' of one front: see gproji_load. */
-GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel) {
+GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel, int32_t from,
+                                             int32_t to) {
     const gproj_system *s = (const gproj_system *)user;
     const gproji_schur *d = &s->schur;
     int32_t j;
@@ -10278,11 +10299,11 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
         int32_t v = d->front_node[k], size = s->node_first[v + 1] - s->node_first[v];
         gproji_schur_expect(s, k + GPROJI_SCHUR_AHEAD);
         if (size == 3)
-            gproji_schur_load_node(d, v, 3, panel);
+            gproji_schur_load_node(d, v, 3, panel, from, to);
         else
-            gproji_schur_load_node(d, v, size, panel);
+            gproji_schur_load_node(d, v, size, panel, from, to);
     }
-    for (j = 0; j < panel->w; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
+    for (j = 0; j < panel->w && from < panel->shape.end; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
 }
 
 /* w g_i, without auxiliary variables, where U will be. */

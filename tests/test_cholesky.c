@@ -568,7 +568,7 @@ typedef struct block_matrix {
 } block_matrix;
 
 /* A gproji_load: the entries whose earlier node is a pivot of the front. */
-static void load_blocks(void *user, int32_t front, const gproji_panel *panel) {
+static void load_blocks(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to) {
     const block_matrix *blocks = (const block_matrix *)user;
     const matrix *m = blocks->matrix;
     const gproji_symbolic *sy = &blocks->cholesky->symbolic;
@@ -583,8 +583,9 @@ static void load_blocks(void *user, int32_t front, const gproji_panel *panel) {
             k = sy->place[node[0]] < sy->place[node[1]] ? 0 : 1;
             if (sy->front_of[sy->place[node[k]]] != front) continue;
             for (k = 0; k < 2; ++k) row[k] = at[variable[k]];
-            gproji_panel_column(panel, row[0] < row[1] ? row[0] : row[1])[row[0] < row[1] ? row[1] : row[0]] +=
-                m->value[p];
+            k = row[0] < row[1] ? 0 : 1;
+            if (row[k] < from || row[k] >= to) continue;
+            gproji_panel_column(panel, row[k])[row[1 - k]] += m->value[p];
         }
 }
 

@@ -54,9 +54,10 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
     fill_spd(n, a, seed);
     for (j = 0; j < w; ++j)
         for (i = j; i < n; ++i) panel[place_of(shape, i, j)] = a[at(i, j, n)];
-    for (i = 0; i < (int32_t)update_size; ++i) update[i] = i % 16;
     naive_partial(n, w, a);
     job = gproji_make_panel(kernels, w, u, panel, inverse, update);
+    job.fresh = u % 3 == 1;
+    for (i = 0; i < (int32_t)update_size; ++i) update[i] = job.fresh ? NAN : i % 16;
     GPROJT_CHECK(gproji_panel_factor(NULL, &job) == -1);
     for (j = 0; j < w; ++j) {
         for (i = j; i < n; ++i) error = fmax(error, fabs(panel[place_of(shape, i, j)] - a[at(i, j, n)]));
@@ -68,7 +69,7 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
         for (j = 0; j < u; ++j)
             for (i = j; i < u; ++i) {
                 ptrdiff_t place = gproji_update_offset(update_rows, j) + i;
-                double sum = (double)(place % 16);
+                double sum = job.fresh ? 0 : (double)(place % 16);
                 int32_t k;
                 for (k = 0; k < w; ++k) sum -= a[at(w + i, k, n)] * a[at(w + j, k, n)];
                 error = fmax(error, fabs(sum - update[place]));
@@ -152,7 +153,7 @@ static size_t begin_of(int32_t t, int32_t stride, int32_t left) {
     return place;
 }
 
-/* C -= A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing columns. */
+/* C -= A B', C = - A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing columns. */
 static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
     enum {
         MOST = 64,
@@ -169,14 +170,17 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
             for (skip = -1; skip < (k == 0 ? B : 1); ++skip) {
                 int32_t rows = blocks * B, columns = B - gproji_max(skip, 0), first = B - columns;
                 int32_t left = k % 3 ? 1 + (k + blocks) % GPROJI_BLOCK : INT32_MAX;
+                bool fresh = skip < 0 && (k + blocks) % 2;
                 double error = 0;
                 for (i = 0; i < STRIDE * DEEP; ++i) a[i] = gprojt_uniform(seed), b[i] = gprojt_uniform(seed);
                 for (i = 0; i < MOST * WIDE; ++i)
                     c[i] = was[i] = gprojt_uniform(seed), triangle[i] = gprojt_uniform(seed);
                 for (j = 0; j < columns; ++j) triangle[at(first + j, j, MOST)] += 1.0;
                 for (j = 0; j < columns; ++j) inverse[j] = 1.0 / triangle[at(first + j, j, MOST)];
+                for (i = 0; fresh && i < rows; ++i)
+                    for (j = 0; j < B; ++j) was[at(i, j, MOST)] = 0, c[at(i, j, MOST)] = NAN; /* not read */
                 if (skip < 0)
-                    kernels->update(rows, k, a, b, STRIDE, left, c, MOST);
+                    kernels->update(rows, k, a, b, STRIDE, left, c, MOST, fresh);
                 else
                     kernels->solve(rows, k, a, b, STRIDE, left, c, MOST, triangle, inverse, skip);
                 for (i = 0; i < MOST; ++i)
