@@ -1217,11 +1217,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
    written.
 
-   Where only constraints act, such as planarity, and wishes for single vertices, such as closeness, steps are found by
-   the multipliers of the constraints, which are several times fewer than the variables. Fairness, equilibrium, circular
-   and conical faces, options->nearest and drags need the matrix of all variables; the first of these after a solve by
-   multipliers, and the first such solve after it, analyse anew. The same constraints are met, on paths that differ a
-   little.
+   Where only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness,
+   steps are found by the multipliers of the constraints if these are clearly fewer than the variables. With fairness,
+   circular or conical faces they are not, and options->nearest and drags always need the matrix of all variables; the
+   first of these after a solve by multipliers, and the first such solve after it, analyse anew. The same constraints
+   are met, on paths that differ a little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
    face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
@@ -9274,10 +9274,11 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    parallel, vector, kernels, dense, symbolic, cholesky, system.
 
    Where only constraints act there are fewer of them than variables, and it pays to solve for their multipliers. Rows
-   with a common auxiliary node (the normal of a face) are an element, with the other rows of that face; any other row
-   that joins nodes is one by itself. eps does not act on auxiliary variables, so those of an element are whatever suits
-   its rows best: of the rows w (phi + G dv + N dn) with other variables v and auxiliary ones n, an orthonormal basis Q of
-   what is orthogonal to the columns of w N leaves
+   with a common auxiliary node (the normal of a face) are an element, with the other rows of that face; so are the
+   rows of a vertex that join nodes (its equilibrium), and any other row that does is one by itself. eps does not act
+   on auxiliary variables, so those of an element are whatever suits its rows best: of the rows w (phi + G dv + N dn)
+   with other variables v and auxiliary ones n, an orthonormal basis Q of what is orthogonal to the columns of w N
+   leaves
        r + C dv,   r = Q'w phi,   C = Q'w G.
    A planar quad has five rows and a normal of three components, and the rows of its edges add up to nothing: one is left.
    Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step makes
@@ -9305,7 +9306,7 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
    (l + 1) GPROJI_BLOCK_MAX + k for the k-th of the element's l-th node; in a row with a single node, k. */
 
-static const double gproji_schur_most = 0.7;       /* so many multipliers a variable at most */
+static const double gproji_schur_most = 0.85;      /* so many multipliers a variable that elements share, at most */
 static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplied by */
 static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
 static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
@@ -9324,18 +9325,24 @@ enum {
     GPROJI_NOWHERE = INT32_MIN
 };
 
-/* The entry of a row of a face, which joins nodes, in of_face; NULL: it is no such row. */
-GPROJI_INTERNAL int32_t *gproji_face_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                             int32_t *of_face) {
-    return g->place == GPROJ_PLACE_FACE && row->element >= 0 && row->element < s->node_count ? of_face + row->element
-                                                                                             : NULL;
+/* Where of_place has the element of a row of such a place, a face or a vertex; NULL: the row is of another, or its number is
+   not below that of the nodes. */
+GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
+                                            gproj_place place, int32_t *of_place) {
+    return g->place == place && row->element >= 0 && row->element < s->node_count ? of_place + row->element : NULL;
 }
 
+/* The elements that have been met, by what makes them: -1 at first. Each has room for all nodes. */
+typedef struct gproji_elements {
+    int32_t *of_node; /* auxiliary ones */
+    int32_t *of_face, *of_vertex;
+} gproji_elements;
+
 /* Where a row belongs: its element, or -1 - node for the only node that it has, or GPROJI_NOWHERE. An auxiliary node makes
-   an element of its rows, and takes in other rows of the same face. element_of: of auxiliary nodes, of_face: of faces, -1
-   at first. False: it joins auxiliary variables of several elements. */
+   an element of its rows, and takes in other rows of the same face. False: it joins auxiliary variables of several
+   elements. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                          int32_t *element_of, int32_t *of_face, int32_t *belongs) {
+                                          const gproji_elements *elements, int32_t *belongs) {
     int32_t auxiliary = -1, kept = -1, *own, *face;
     bool many = false;
     int64_t l;
@@ -9355,23 +9362,24 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         if (kept >= 0) *belongs = -1 - kept;
         return true;
     }
-    face = gproji_face_element(s, g, row, of_face);
-    own = auxiliary >= 0 ? &element_of[auxiliary] : face;
+    face = gproji_place_element(s, g, row, GPROJ_PLACE_FACE, elements->of_face);
+    own = auxiliary >= 0 ? &elements->of_node[auxiliary] : face;
+    if (!own) own = gproji_place_element(s, g, row, GPROJ_PLACE_VERTEX, elements->of_vertex);
     *belongs = own && *own >= 0 ? *own : s->schur.elements++;
     if (own) *own = *belongs;
     if (face) *face = *belongs;
     return true;
 }
 
-/* How many multipliers may be worth while. */
+/* How many multipliers may be worth while, at most. */
 GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
     int32_t v, kept = 0;
     for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
     return gproji_schur_most * kept;
 }
 
-/* Is the row certainly an element of its own, or the first of one? With auxiliary variables it is if their node comes
-   after `*highest`, which becomes that; else if it joins nodes and is no row of a face. */
+/* Has the row certainly a multiplier of its own, or is it the first of an element? With auxiliary variables it is if their
+   node comes after `*highest`, which becomes that; others have one if they join nodes and are no rows of a face. */
 GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group *g, const gproji_row *row,
                                        int32_t *highest) {
     const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
@@ -9389,7 +9397,7 @@ GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group
     return many && g->place != GPROJ_PLACE_FACE;
 }
 
-/* Are there certainly more elements than `limit`? To see this costs less than to classify all rows. */
+/* Are there certainly more multipliers than `limit`? To see this costs less than to classify all rows. */
 GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
     int32_t i, r, count = 0, highest = -1;
     for (i = 0; i < s->group_count; ++i) {
@@ -9404,16 +9412,15 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
 }
 
 /* The element or node of all rows, group by group. Groups that are without weight have none. False: nothing is gained. */
-GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, double limit, int32_t *element_of, int32_t *of_face,
+GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, double limit, const gproji_elements *elements,
                                            int32_t *belongs) {
     int32_t i, r, v;
-    for (v = 0; v < s->node_count; ++v) element_of[v] = of_face[v] = -1;
+    for (v = 0; v < s->node_count; ++v) elements->of_node[v] = elements->of_face[v] = elements->of_vertex[v] = -1;
     s->schur.elements = 0;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r)
-            if (!gproji_schur_belongs(s, g, &g->row[r], element_of, of_face, belongs++) || s->schur.elements > limit)
-                return false;
+            if (!gproji_schur_belongs(s, g, &g->row[r], elements, belongs++) || s->schur.elements > limit) return false;
     }
     return s->schur.elements > 0;
 }
@@ -9483,11 +9490,24 @@ GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t elemen
     return s->schur.closes[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
 }
 
+/* How many variables belong to several elements. With the matrix of all variables the others are eliminated without much
+   ado, and count as little as auxiliary ones. met: work, of each node. */
+GPROJI_INTERNAL int32_t gproji_schur_shared(const gproj_system *s, int32_t *met) {
+    const gproji_schur *d = &s->schur;
+    int32_t v, count = 0;
+    int64_t l;
+    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    for (l = 0; l < d->link_start[d->elements]; ++l) met[d->link_node[l]]++;
+    for (v = 0; v < s->node_count; ++v)
+        if (met[v] > 1) count += s->node_first[v + 1] - s->node_first[v];
+    return count;
+}
+
 /* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
    to pay. met: work, of each node. */
 GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
-    const double limit = gproji_schur_limit(s);
+    const double limit = gproji_schur_most * gproji_schur_shared(s, met);
     int32_t e, most = 0;
     int64_t l;
     memset(met, 0, (size_t)s->node_count * sizeof *met);
@@ -9531,15 +9551,17 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
     size_t nodes = (size_t)s->node_count, rows = (size_t)gproji_structure_of(s).rows;
+    gproji_elements elements;
     int32_t *mark, *belongs;
     bool enough;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
-    mark = (int32_t *)gproji_take(&s->own, 2 * nodes, sizeof *mark);
+    mark = (int32_t *)gproji_take(&s->own, 3 * nodes, sizeof *mark);
     belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
     enough = mark && belongs;
-    if (enough && gproji_schur_classify(s, limit, mark, mark + nodes, belongs))
+    elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
+    if (enough && gproji_schur_classify(s, limit, &elements, belongs))
         enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
-    gproji_give(&s->own, mark, 2 * nodes, sizeof *mark);
+    gproji_give(&s->own, mark, 3 * nodes, sizeof *mark);
     gproji_give(&s->own, belongs, rows, sizeof *belongs);
     if (!s->schur.on) gproji_schur_forget(s);
     return enough;
@@ -10137,13 +10159,42 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
     }
 }
 
+/* C and r of an element without such columns: its multipliers are those of its rows. */
+GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
+    const gproji_schur *d = &s->schur;
+    int32_t first = d->first[e], left = d->first[e + 1] - first, i;
+    int64_t link = d->link_start[e], l;
+    for (l = link; l < d->link_start[e + 1]; ++l) {
+        int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+        memset(d->value + d->link_value[l], 0, (size_t)(left * size) * sizeof *d->value);
+    }
+    for (i = 0; i < left; ++i) {
+        gproji_row_name name = d->row[d->row_start[e] + i];
+        const gproji_group *g = &s->group[name.group];
+        const gproji_row *row = &g->row[name.row];
+        double w = gproji_acting_weight(g, row);
+        d->side[first + i] = w > 0 ? w * row->phi : 0;
+        d->share[first + i] = 0;
+        for (l = row->local; l < row[1].local && w > 0; ++l) {
+            int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX, v = d->link_node[link + at / GPROJI_BLOCK_MAX];
+            double *value = d->value + d->link_value[link + at / GPROJI_BLOCK_MAX];
+            value[i * (s->node_first[v + 1] - s->node_first[v]) + at % GPROJI_BLOCK_MAX] = w * g->local_gradient[l];
+        }
+    }
+}
+
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproji_schur *d = &assembly->system->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     while (e < end) {
-        gproji_alike alike = gproji_gather_alike(assembly->system, e, end, d->work + chunk * d->most);
+        gproji_alike alike;
+        if (gproji_schur_columns(assembly->system, e) == 0) {
+            gproji_schur_plain(assembly->system, e++);
+            continue;
+        }
+        alike = gproji_gather_alike(assembly->system, e, end, d->work + chunk * d->most);
         gproji_schur_alike(assembly->system, &alike, assembly->epsilon2);
         e += alike.lanes;
     }

@@ -153,7 +153,8 @@ static size_t begin_of(int32_t t, int32_t stride, int32_t left) {
     return place;
 }
 
-/* C -= A B', C = - A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing columns. */
+/* C -= A B', C = - A B', and X = (C - A B') L^-T, for tiles of every height and depth, and with every number of missing
+   columns. */
 static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
     enum {
         MOST = 64,

@@ -295,6 +295,8 @@ static const gprojt_case gprojt_cases[] = {
     {GPROJT_HEXAGONS, 4, 0.3, GPROJT_COMMON | GPROJT_VOLUME | GPROJT_TWICE},
     {GPROJT_HEXAGONS, 4, 1, GPROJT_AREAS | GPROJT_CLOSE},
     {GPROJT_QUADS, 4, 1, GPROJT_VOLUME | GPROJT_TWICE | GPROJT_FIXED | GPROJT_CLOSE},
+    {GPROJT_QUADS, 4, 1, GPROJT_FORCES},
+    {GPROJT_QUADS, 5, 0.3, GPROJT_FORCES | GPROJT_CLOSE | GPROJT_GUARDED | GPROJT_ONE_ROW | GPROJT_VOLUME},
 };
 enum {
     GPROJT_CASES = sizeof gprojt_cases / sizeof gprojt_cases[0]
@@ -353,8 +355,9 @@ static int gprojt_takes_multipliers(int what) {
 }
 
 GPROJT_TEST(taken_where_only_constraints_act) {
-    static const int with[] = {0, GPROJT_CORNERS, GPROJT_CLOSE, GPROJT_VOLUME, GPROJT_GLIDES, GPROJT_NOT_FAIR};
-    static const int without[] = {GPROJT_FAIR, GPROJT_GAUSS, GPROJT_CIRCLES, GPROJT_FORCES};
+    static const int with[] = {
+        0, GPROJT_CORNERS, GPROJT_CLOSE, GPROJT_VOLUME, GPROJT_GLIDES, GPROJT_NOT_FAIR, GPROJT_FORCES};
+    static const int without[] = {GPROJT_FAIR, GPROJT_GAUSS, GPROJT_CIRCLES};
     size_t i;
     for (i = 0; i < sizeof with / sizeof *with; ++i) GPROJT_CHECK(gprojt_takes_multipliers(with[i]) == 1);
     for (i = 0; i < sizeof without / sizeof *without; ++i) GPROJT_CHECK(gprojt_takes_multipliers(without[i]) == 0);

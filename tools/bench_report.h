@@ -441,8 +441,9 @@ static void bench_write_markdown(FILE *file, const bench_report *report) {
     for (i = 0; i < (int)(sizeof label / sizeof *label); ++i)
         if (bench_has(report, label[i][0]))
             bench_write_row(file, report, label[i][1], label[i][0], false, bench_value_ratio);
-    fputs("\nPlanarity alone is solved for one multiplier a quad; with fairness or equilibrium the unknowns are all "
-          "variables.\n",
+    fputs("\nPlanarity alone is solved for one multiplier a quad, with equilibrium for three more a vertex; with "
+          "fairness the "
+          "unknowns are\nall variables.\n",
           file);
     bench_write_details(file, report, "Planar quads", "quad");
     bench_write_details(file, report, "Planar quads and fairness", "fairness");
