@@ -5924,7 +5924,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
 enum {
     GPROJI_SOLVE_BATCH = 4,  /* right-hand sides solved together at most */
-    GPROJI_FRESH = 1 << 14,  /* values of a front whose update matrix begins with the pivots' effect */
+    GPROJI_FRESH = 1 << 12,  /* values of a front whose update matrix begins with the pivots' effect */
     GPROJI_CACHED = 1 << 16, /* a factor with no more values than that stays in the L2 cache */
     GPROJI_PREFETCHED = 8192 /* values of the next panel that are fetched ahead */
 };

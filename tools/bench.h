@@ -76,7 +76,8 @@ typedef bool (*bench_visit)(void *user, const bench_step *step);
 typedef struct bench_form bench_form;
 
 /* One build of our solver. `create` makes a mesh, a form and its rows; `solve` goes back to where it began and takes
-   steps, or none, which is set-up only; `rows`, in a visit: the rows from which the next step will come (the arrays are
+   steps, or none, which is set-up only; `factor`, after a solve with steps, factors the last one's matrix once more, without
+   right-hand sides, and returns the seconds; `rows`, in a visit: the rows from which the next step will come (the arrays are
    made at the first call). `load` reads a mesh from a file. Times are processor times; with `workers` >= 1, that many
    threads, they are wall times. */
 typedef struct bench_solver {
@@ -84,6 +85,7 @@ typedef struct bench_solver {
     bench_form *(*create)(const bench_mesh *mesh, bench_task task, int32_t workers);
     void (*destroy)(bench_form *form);
     bool (*solve)(bench_form *form, int32_t iterations, bench_visit visit, void *user);
+    double (*factor)(bench_form *form);
     void (*rows)(bench_form *form, bench_rows *rows);
     bench_facts (*facts)(const bench_form *form);
 } bench_solver;
