@@ -1479,19 +1479,23 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJ_ASSERT(condition) assert(condition)
 #endif
 
-#if defined(__GNUC__) || defined(__clang__) || defined(__TINYC__)
-#define GPROJI_INTERNAL __attribute__((unused)) static
-#else
-#define GPROJI_INTERNAL static
-#endif
-
-/* GPROJI_NOINLINE: what is called from many places and seldom, so that the rest compiles sooner and stays small. */
+/* GPROJI_INTERNAL: most functions. clang inlines none of them, or it would take nearly twice as long to compile and give
+   code of the same speed; gcc takes as long either way and chooses. GPROJI_INLINE: what is short, or called in inner
+   loops. GPROJI_NOINLINE: what is called from many places and seldom, so that gcc, too, compiles sooner and the rest
+   stays small. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
 #define GPROJI_NOINLINE __attribute__((unused, noinline)) static
 #else
 #define GPROJI_INLINE static inline
 #define GPROJI_NOINLINE GPROJI_INTERNAL
+#endif
+#if defined(__clang__)
+#define GPROJI_INTERNAL GPROJI_NOINLINE
+#elif defined(__GNUC__) || defined(__TINYC__)
+#define GPROJI_INTERNAL __attribute__((unused)) static
+#else
+#define GPROJI_INTERNAL static
 #endif
 
 #if defined(__cplusplus)
@@ -4928,7 +4932,7 @@ typedef struct gproji_nd_leaf {
 } gproji_nd_leaf;
 
 /* How many bits are set. */
-GPROJI_INTERNAL int32_t gproji_bits(uint64_t x) {
+GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     x -= (x >> 1) & 0x5555555555555555u;
     x = (x & 0x3333333333333333u) + ((x >> 2) & 0x3333333333333333u);
     x = (x + (x >> 4)) & 0x0f0f0f0f0f0f0f0fu;
@@ -4936,7 +4940,7 @@ GPROJI_INTERNAL int32_t gproji_bits(uint64_t x) {
 }
 
 /* The number of the lowest bit of x > 0. */
-GPROJI_INTERNAL int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
+GPROJI_INLINE int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
 
 GPROJI_INTERNAL int32_t gproji_nd_leaf_degree(const gproji_nd_leaf *leaf, const uint64_t *set) {
     int32_t degree = 0, p, k;
@@ -7862,7 +7866,7 @@ GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
 
 GPROJ_API const gproj_error *gproj_system_error(const gproj_system *s) { return s ? &s->error : gproji_no_object(); }
 
-GPROJI_INTERNAL bool gproji_system_ready(const gproj_system *s) { return s && s->error.code == GPROJ_OK; }
+GPROJI_INLINE bool gproji_system_ready(const gproj_system *s) { return s && s->error.code == GPROJ_OK; }
 
 /* May the caller add something, or start a solve? */
 GPROJI_INTERNAL bool gproji_system_is_open(gproj_system *s) {
@@ -8005,7 +8009,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     return s->group_count++;
 }
 
-GPROJI_INTERNAL bool gproji_system_has_group(const gproj_system *s, int32_t group) {
+GPROJI_INLINE bool gproji_system_has_group(const gproj_system *s, int32_t group) {
     return s && group >= 0 && group < s->group_count;
 }
 
@@ -8292,7 +8296,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_system_has_row(const gproj_system *s, int32_t group, int32_t row) {
+GPROJI_INLINE bool gproji_system_has_row(const gproj_system *s, int32_t group, int32_t row) {
     return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
 }
 
@@ -18906,7 +18910,7 @@ GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
     return part;
 }
 
-GPROJI_INTERNAL void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
+GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
     term->i = i;
     term->j = j;
     term->a = a;
@@ -20649,7 +20653,7 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
 GPROJI_INLINE bool gproji_has_weight(const gproji_statics *s, int32_t vertex) { return (s->axes[vertex] & 4) != 0; }
 
 /* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: how far its rows go. */
-GPROJI_INTERNAL int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
+GPROJI_INLINE int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
     int32_t row = s->first_row[vertex], c;
     for (c = 0; c < axis; ++c) row += s->axes[vertex] >> c & 1;
     return row;
@@ -20685,8 +20689,8 @@ GPROJI_INLINE void gproji_add_weight_terms(const gproji_weight_row *weight, int3
 }
 
 /* The weight of an edge, w'(a - b) / 2 on each end with w along the edge: linear, without a constant. */
-GPROJI_INTERNAL void gproji_linearise_edge_load(const gproji_weight_row *weight, const double *x, double half,
-                                                int32_t vertex, int32_t other) {
+GPROJI_INLINE void gproji_linearise_edge_load(const gproji_weight_row *weight, const double *x, double half,
+                                              int32_t vertex, int32_t other) {
     static const double none[3] = {0, 0, 0};
     double d[3];
     gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
@@ -20708,8 +20712,8 @@ GPROJI_INTERNAL void gproji_find_face_loads(const gproj_form *form, const double
 }
 
 /* The face's part of the weight on the vertex where a halfedge begins. */
-GPROJI_INTERNAL void gproji_linearise_face_load(const gproji_weight_row *weight, const gproj_mesh *mesh,
-                                                const double *x, const double *load, int32_t halfedge) {
+GPROJI_INLINE void gproji_linearise_face_load(const gproji_weight_row *weight, const gproj_mesh *mesh, const double *x,
+                                              const double *load, int32_t halfedge) {
     int32_t h = halfedge;
     *weight->constant += load[3];
     do {
