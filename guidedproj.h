@@ -2428,6 +2428,16 @@ GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
+/* sum |a_i b_i|, in the same way. */
+GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, size_t count) {
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += fabs(a[i + k] * b[i + k]);
+    for (; i < count; ++i) sum[0] += fabs(a[i] * b[i]);
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
 /* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
 typedef struct gproji_sum {
     double high, low;
@@ -8931,27 +8941,15 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
     return phi;
 }
 
-/* phi of a run without its constant, the sum of its terms' absolute values, and grad phi; four sums as in gproji_dot. */
+/* The same for a run (see gproji_row): its value is summed up as gproji_dot does it. */
 GPROJI_INTERNAL double gproji_linearise_run(const gproji_group *g, const gproji_row *row, const double *x,
                                             double *gradient, double *size) {
     const gproj_term *term = g->term + row->term;
-    double phi[4] = {0, 0, 0, 0}, sum[4] = {0, 0, 0, 0};
-    uint32_t t, k;
+    uint32_t t;
     x += g->local_variable[row->local];
-    for (t = 0; t + 4 <= row->terms; t += 4)
-        for (k = 0; k < 4; ++k) {
-            double value = term[t + k].a * x[t + k];
-            gradient[t + k] = term[t + k].a;
-            phi[k] += value;
-            sum[k] += fabs(value);
-        }
-    for (; t < row->terms; ++t) {
-        gradient[t] = term[t].a;
-        phi[0] += term[t].a * x[t];
-        sum[0] += fabs(term[t].a * x[t]);
-    }
-    *size = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    return (phi[0] + phi[1]) + (phi[2] + phi[3]);
+    for (t = 0; t < row->terms; ++t) gradient[t] = term[t].a;
+    *size = fabs(row->constant) + gproji_absolute_dot(gradient, x, row->terms);
+    return row->constant + gproji_dot(gradient, x, row->terms);
 }
 
 /* phi and grad phi of a row; one without weight gets zeros. Rows of bounds act where they are violated, or where they did
@@ -8959,16 +8957,12 @@ GPROJI_INTERNAL double gproji_linearise_run(const gproji_group *g, const gproji_
    up with more digits. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     double *gradient = g->local_gradient + row->local, phi, size;
-    bool run = row->run && row->weight > 0;
-    if (!run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    if (!row->run || !(row->weight > 0)) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
     row->phi = 0;
     if (!(row->weight > 0)) row->active = false;
     if (!(row->weight > 0)) return;
-    if (run) {
-        phi = row->constant + gproji_linearise_run(g, row, s->x, gradient, &size);
-        size += fabs(row->constant);
-    } else
-        phi = gproji_linearise_row(g, row, s->x, gradient, &size);
+    phi = row->run ? gproji_linearise_run(g, row, s->x, gradient, &size)
+                   : gproji_linearise_row(g, row, s->x, gradient, &size);
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
     row->phi = phi;
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -10699,18 +10693,15 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* By how much rounding may change the value of a linear row of a compiled group. */
+/* By how much rounding may change the value of a linear row of a compiled group. Four sums: see gproji_dot. */
 GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, const double *x) {
     const int32_t *variable = g->local_variable + g->row[row].local;
-    double sum = 0;
-    int64_t t;
-    if (g->row[row].run) {
-        gproji_linearise_run(g, &g->row[row], x, g->local_gradient + g->row[row].local, &sum);
-        return 16 * DBL_EPSILON * sum;
-    }
-    for (t = g->row[row].term; t < (int64_t)g->row[row].term + g->row[row].terms; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[variable[g->term[t].i]]);
-    return 16 * DBL_EPSILON * sum;
+    const gproj_term *term = g->term + g->row[row].term;
+    double sum[4] = {0, 0, 0, 0};
+    uint32_t t;
+    for (t = 0; t < g->row[row].terms; ++t)
+        if (term[t].j < 0) sum[t % 4] += fabs(term[t].a * x[variable[term[t].i]]);
+    return 16 * DBL_EPSILON * ((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
 
 /* A pass over all variables, by several threads. */
