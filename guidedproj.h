@@ -4413,8 +4413,8 @@ GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position
         int32_t i = nd->rim[k], p = position[i];
         const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
         for (; list < end; ++list) {
-            if (p < least[*list]) least[*list] = p;
-            if (p > most[*list]) most[*list] = p;
+            least[*list] = gproji_min(least[*list], p);
+            most[*list] = gproji_max(most[*list], p);
         }
     }
     for (k = 0; k < nd->halos; ++k) {
