@@ -8606,44 +8606,95 @@ typedef struct gproji_placing {
     size_t rows;
 } gproji_placing;
 
-/* Sorts a narrow row's variables by their columns, which become `at`. rank: where each has gone. By insertion: rows are
-   short, and their terms name the variables of a node in order. Returns which have come to the places, 4 bits each; 0:
-   all were there already. */
-GPROJI_INLINE uint64_t gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local, int32_t *at,
-                                          int32_t *rank) {
-    uint64_t key[GPROJI_WIDE_ROW], order = 0; /* key: a column, and behind it which of the variables that is */
-    int32_t variable[GPROJI_WIDE_ROW], i, k;
-    bool moved = false;
+/* How a row's locals are sorted. */
+typedef struct gproji_sorting {
+    uint16_t *from; /* which of them comes to each place, */
+    uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
+} gproji_sorting;
+
+/* How rows were sorted, which is how others are, mostly: the last one with so many locals, three of which had the same
+   order. Few rows have more than three nodes. */
+typedef struct gproji_sortings {
+    gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
+    gproji_sorting many; /* of the row at hand if it has more */
+    uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
+    uint16_t many_from[GPROJI_WIDE_ROW];
+} gproji_sortings;
+
+/* As they are. */
+GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *from, int32_t count) {
+    int32_t i;
+    for (i = 0; i < count; ++i) from[i] = (uint16_t)i;
+    sorting->from = from;
+    sorting->order = 0;
+}
+
+GPROJI_INTERNAL void gproji_start_sortings(gproji_sortings *all) {
+    int32_t i, k;
+    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
+        for (k = 0; k < 8; ++k) gproji_start_sorting(&all->last[i][k], all->last_from[i][k], i);
+}
+
+/* A guess how a row is to be sorted. */
+GPROJI_INLINE gproji_sorting *gproji_guess_sorting(gproji_sortings *all, const int32_t *column, int32_t count,
+                                                   const int32_t *local) {
+    int32_t first, second, last;
+    if (count > GPROJI_COPY_LOCALS) {
+        gproji_start_sorting(&all->many, all->many_from, count);
+        return &all->many;
+    }
+    first = column[local[0]], second = column[local[count > 1]], last = column[local[count - 1]];
+    return &all->last[count][(first < second) + 2 * (second < last) + 4 * (first < last)];
+}
+
+/* Puts the locals where the sorting says. `at`: their columns. Returns whether these are ascending then. */
+GPROJI_INLINE bool gproji_move_locals(const int32_t *GPROJI_RESTRICT column, int32_t count,
+                                      int32_t *GPROJI_RESTRICT local, int32_t *GPROJI_RESTRICT at,
+                                      const gproji_sorting *sorting) {
+    const uint16_t *from = sorting->from;
+    int32_t variable[GPROJI_WIDE_ROW], i, last = -1;
+    bool ascending = true;
+    memcpy(variable, local, (size_t)count * sizeof *local);
     for (i = 0; i < count; ++i) {
-        uint64_t own;
-        variable[i] = local[i];
+        local[i] = variable[from[i]];
         at[i] = column[local[i]];
-        own = (uint64_t)at[i] << 32 | (uint32_t)i;
-        for (k = i; k > 0 && key[k - 1] > own; --k) key[k] = key[k - 1];
-        moved |= k != i;
-        key[k] = own;
+        ascending &= at[i] > last;
+        last = at[i];
     }
-    if (!moved) return 0;
-    for (i = 0; i < count; ++i) {
-        uint32_t from = (uint32_t)key[i];
-        at[i] = (int32_t)(key[i] >> 32);
-        local[i] = variable[from];
-        rank[from] = i;
-        order = order << 4 | (from & 15);
+    return ascending;
+}
+
+/* Sorts locals and their columns. By insertion: rows are short, and their terms name the variables of a node in order. */
+GPROJI_INTERNAL void gproji_sort_locals(int32_t count, int32_t *local, int32_t *at, gproji_sorting *sorting) {
+    uint16_t *from = sorting->from;
+    int32_t i, k;
+    bool moved = false;
+    for (i = 1; i < count; ++i) {
+        int32_t own_at = at[i], own = local[i];
+        uint16_t own_from = from[i];
+        for (k = i; k > 0 && at[k - 1] > own_at; --k) at[k] = at[k - 1], local[k] = local[k - 1], from[k] = from[k - 1];
+        at[k] = own_at, local[k] = own, from[k] = own_from;
     }
-    return count > GPROJI_COPY_LOCALS ? 1 : order;
+    for (i = 0, sorting->order = 0; i < count; ++i) {
+        sorting->order = sorting->order << 4 | (from[i] & 15);
+        moved |= from[i] != i;
+    }
+    if (!moved || count > GPROJI_COPY_LOCALS) sorting->order = moved;
 }
 
 /* Copies of terms that rows have in common, for locals that have moved: those met last. */
 typedef struct gproji_copy {
-    uint64_t order; /* see gproji_sort_locals */
+    uint64_t order; /* see gproji_sorting */
     uint32_t source, term;
     int32_t locals; /* 0: none */
 } gproji_copy;
 
 /* Lets terms name the places where the locals have gone. */
-GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const int32_t *rank) {
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals,
+                                       const gproji_sorting *sorting) {
     gproj_term *end = term + count;
+    int32_t rank[GPROJI_WIDE_ROW], i;
+    for (i = 0; i < locals; ++i) rank[sorting->from[i]] = i;
     for (; term < end; ++term) {
         term->i = rank[term->i];
         if (term->j >= 0) term->j = rank[term->j];
@@ -8651,26 +8702,28 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const i
 }
 
 /* Gives the row a copy of its terms for the moved locals. False: no memory. */
-GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, const int32_t *rank) {
+GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+                                       const gproji_sorting *sorting) {
     void *term = g->term;
     size_t wanted = g->term_count + row->terms;
     bool enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->term_capacity, wanted, sizeof *g->term);
     g->term = (gproj_term *)term;
     if (!enough) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
-    gproji_rename_terms(g->term + g->term_count, row->terms, rank);
+    gproji_rename_terms(g->term + g->term_count, row->terms, locals, sorting);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
     return true;
 }
 
 /* The same, with the copy that another row has got, if there is one. */
-GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals, uint64_t order,
-                                    const int32_t *rank, gproji_copy *copy) {
-    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, rank);
+GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+                                    const gproji_sorting *sorting, gproji_copy *copy) {
+    uint64_t order = sorting->order;
+    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, locals, sorting);
     copy += order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS);
     if (copy->order != order || copy->source != row->source || copy->locals != locals) {
-        if (!gproji_copy_terms(s, g, row, rank)) return false;
+        if (!gproji_copy_terms(s, g, row, locals, sorting)) return false;
         copy->order = order, copy->source = row->source, copy->locals = locals;
         copy->term = row->term;
     } else {
@@ -8679,10 +8732,10 @@ GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row
     return true;
 }
 
-/* Undoes gproji_sort_locals. */
-GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32_t *rank) {
+/* Undoes a sorting. */
+GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const gproji_sorting *sorting) {
     int32_t variable[GPROJI_WIDE_ROW], i;
-    for (i = 0; i < count; ++i) variable[i] = local[rank[i]];
+    for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
     memcpy(local, variable, (size_t)count * sizeof *local);
 }
 
@@ -8691,21 +8744,24 @@ GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     gproji_copy copy[1 << GPROJI_COPY_BITS];
-    int32_t rank[GPROJI_WIDE_ROW], r;
+    gproji_sortings sortings;
+    int32_t r;
     memset(copy, 0, sizeof copy);
+    gproji_start_sortings(&sortings);
     g->sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local);
-        uint64_t order;
+        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local_at + row->local;
+        gproji_sorting *sorting;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        order = gproji_sort_locals(column, count, local, g->local_at + row->local, rank);
-        if (order && !g->common) {
-            gproji_rename_terms(g->term + row->term, row->terms, rank);
-        } else if (order && !gproji_find_copy(s, g, row, count, order, rank, copy)) {
-            gproji_move_back(count, local, rank);
+        sorting = gproji_guess_sorting(&sortings, column, count, local);
+        if (!gproji_move_locals(column, count, local, at, sorting)) gproji_sort_locals(count, local, at, sorting);
+        if (sorting->order && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, count, sorting);
+        } else if (sorting->order && !gproji_find_copy(s, g, row, count, sorting, copy)) {
+            gproji_move_back(count, local, sorting);
             return false;
         }
         front[r] = sy->front_of[sy->place[s->node[local[0]]]];
