@@ -4195,12 +4195,13 @@ GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes,
     part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
 }
 
-/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
-   end. */
+/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. nd->number: the numbers
+   of nodes in their side; ~name of those in the separator. Returns where the arcs end. */
 GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
+    const int32_t *number = nd->number, *halo = nd->halo, nodes = nd->nodes;
     int32_t i;
-    for (i = 0; i < nd->nodes; ++i) {
+    for (i = 0; i < nodes; ++i) {
         const int32_t *list, *end;
         int32_t all, *in, *out;
         if (nd->side[i] != side) continue;
@@ -4211,14 +4212,15 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
         b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
         for (; list < end; ++list) {
-            if (nd->side[*list] == 2)
-                *--out = a->name[*list];
+            int32_t k = number[*list];
+            if (k < 0)
+                *--out = ~k;
             else
-                *in++ = nd->number[*list];
+                *in++ = k;
         }
         b->inner[to] = (int32_t)(in - (b->adjacent + e));
         b->outer[to] = all - b->inner[to];
-        for (end += a->outer[i]; list < end; ++list) *in++ = nd->halo[*list];
+        for (end += a->outer[i]; list < end; ++list) *in++ = halo[*list];
         e += all;
         to++;
     }
@@ -4231,8 +4233,11 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part,
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
     for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
-    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i)
-        if (nd->side[i] == 2) nd->order[at++] = nd->here.name[i];
+    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i) {
+        if (nd->side[i] != 2) continue;
+        nd->order[at++] = nd->here.name[i];
+        nd->number[i] = ~nd->here.name[i];
+    }
     e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
     gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
     small = count[1] < count[0];
@@ -4353,17 +4358,17 @@ GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; 
 /* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
    positions are halved so many times. */
 GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
-    int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
-    int32_t least = INT32_MAX, most = INT32_MIN;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->here.x[i] + fy * nd->here.y[i];
-        position[i] = p;
-        if (p < least) least = p;
-        if (p > most) most = p;
+    const int32_t *x = nd->here.x, *y = nd->here.y, fx = gproji_nd_direction(axis, 0);
+    const int32_t fy = gproji_nd_direction(axis, 1), nodes = nd->nodes;
+    int32_t least = INT32_MAX, most = INT32_MIN, halved = 0, i;
+    for (i = 0; i < nodes; ++i) {
+        int32_t p = position[i] = fx * x[i] + fy * y[i];
+        least = gproji_min(least, p), most = gproji_max(most, p);
     }
-    for (*shift = 0; (most - least) >> *shift >= nd->nodes;) ++*shift;
-    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> *shift;
-    return ((most - least) >> *shift) + 1;
+    while ((most - least) >> halved >= nodes) ++halved;
+    for (i = 0; i < nodes; ++i) position[i] = (position[i] - least) >> halved;
+    *shift = halved;
+    return ((most - least) >> halved) + 1;
 }
 
 /* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
