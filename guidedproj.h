@@ -4464,12 +4464,13 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, in
 
 /* For all thresholds at once, what has neighbours across. */
 GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
+    const int32_t *adjacent = nd->here.adjacent, nodes = nd->nodes;
+    const unsigned char *near = nd->near;
     int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
+    for (i = 0; i < nodes; ++i) {
         int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
         const int32_t *list, *end;
-        if (!nd->near[p]) continue;
+        if (!near[p]) continue;
         list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
         for (; list < end; ++list) {
             int32_t q = position[*list];
@@ -8530,15 +8531,15 @@ GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *gr
 /* The graph from the incidence, but for the nodes' sizes. mark: node_count entries. */
 GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, uint32_t *mark,
                                           gproji_meetings *graph) {
+    const uint32_t *start = in->row_start;
     size_t filled = 0;
-    uint32_t e, f;
     int32_t v;
     memset(mark, 0, (size_t)in->node_count * sizeof *mark);
     for (v = 0; v < in->node_count; ++v) {
-        const uint32_t own = (uint32_t)v + 1;
+        const uint32_t own = (uint32_t)v + 1, *row = in->node_row + in->node_start[v], *rows = row;
+        const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
         size_t most = filled; /* with all of the node's rows, as if they had nothing in common */
-        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
-            most += in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]];
+        for (; row < rows_end; ++row) most += start[*row + 1] - start[*row];
         if (most > graph->room) {
             void *room = graph->adjacent;
             bool enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
@@ -8547,13 +8548,14 @@ GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incide
         }
         graph->start[v] = (int64_t)filled;
         mark[v] = own;
-        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
-            for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
-                int32_t other = in->row_node[f];
-                if (mark[other] == own) continue;
-                mark[other] = own;
-                graph->adjacent[filled++] = other;
+        for (row = rows; row < rows_end; ++row) {
+            const int32_t *node = in->row_node + start[*row], *end = in->row_node + start[*row + 1];
+            for (; node < end; ++node) {
+                if (mark[*node] == own) continue;
+                mark[*node] = own;
+                graph->adjacent[filled++] = *node;
             }
+        }
     }
     graph->start[in->node_count] = (int64_t)filled;
     return true;
@@ -8792,14 +8794,15 @@ GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
 /* The storage rows of all narrow rows' locals, front by front, from their columns. at: work, of each column. */
 GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     int32_t f;
-    int64_t k, l;
+    int64_t k;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
         if (s->front_start[f] < s->front_start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
             const gproji_row *row = &g->row[s->front_row[k].row];
+            int32_t *local = g->local_at + row->local, *end = g->local_at + row[1].local;
             gproji_expect_rows(s, k, false);
-            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_at[l]];
+            for (; local < end; ++local) *local = at[*local];
         }
     }
 }
