@@ -5198,8 +5198,9 @@ typedef struct gproji_symbolic {
 } gproji_symbolic;
 
 enum {
-    GPROJI_TASK_SHARE = 24
-}; /* a task has at most about this part of all flops */
+    GPROJI_TASK_SHARE = 24, /* a task has at most about this part of all flops */
+    GPROJI_NODES_AHEAD = 8  /* see gproji_expect_neighbours */
+};
 
 /* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
 typedef struct gproji_analysis {
@@ -5240,6 +5241,14 @@ GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t 
     for (k = 0; k < count; ++k) place[order[k]] = k;
 }
 
+/* Nodes in the order of elimination come from all over the memory: asks for the neighbours of those that follow. */
+GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const int32_t *order, int32_t k) {
+    if (k + 2 * GPROJI_NODES_AHEAD < graph->nodes) {
+        GPROJI_PREFETCH(graph->start + order[k + 2 * GPROJI_NODES_AHEAD]);
+        GPROJI_PREFETCH(graph->adjacent + graph->start[order[k + GPROJI_NODES_AHEAD]]);
+    }
+}
+
 /* parent[k] = min { i > k : L_ik != 0 }. ancestor: work, shortcuts towards the root. */
 GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const int32_t *order, const int32_t *place,
                                              int32_t *parent, int32_t *ancestor) {
@@ -5247,6 +5256,7 @@ GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const in
     int64_t e;
     for (k = 0; k < graph->nodes; ++k) {
         parent[k] = ancestor[k] = -1;
+        gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
             for (i = place[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
                 above = ancestor[i];
@@ -5336,6 +5346,7 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     for (k = 0; k < n; ++k) {
         int32_t own = graph->weight[order[k]], up = an->parent[k];
         if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
+        gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
             int32_t i = place[graph->adjacent[e]], weight, meet;
             if (i <= k || first[k] <= last[i]) continue; /* k is no leaf of the subtree of row i */
@@ -5523,6 +5534,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     if (!out->row_node || !out->row_at || !out->relative) return false;
     for (i = 0; i < out->nodes; ++i) {
         int32_t node = out->order[i], own = out->front_of[i];
+        gproji_expect_neighbours(graph, out->order, i);
         for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
             int32_t k = out->place[graph->adjacent[e]];
             if (k >= i) continue;
