@@ -4164,6 +4164,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
 GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
     const gproji_nd_nodes *c = &nd->copy[part->copy];
     gproji_nd_nodes *here = &nd->here;
+    double weight = 0;
     int32_t i, k;
     here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
     here->inner = c->inner + part->first, here->outer = c->outer + part->first;
@@ -4171,11 +4172,12 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     here->adjacent = c->adjacent;
     nd->nodes = part->nodes;
     nd->rims = nd->halos = 0;
-    nd->weight = nd->halo_weight = 0;
-    for (i = 0; i < nd->nodes; ++i) {
+    nd->halo_weight = 0;
+    for (i = 0; i < part->nodes; ++i) {
         int32_t *list = here->adjacent + here->from[i] + here->inner[i];
-        nd->weight += here->weight[i];
-        if (here->outer[i] > 0) nd->rim[nd->rims++] = i;
+        weight += here->weight[i];
+        if (here->outer[i] == 0) continue;
+        nd->rim[nd->rims++] = i;
         for (k = 0; k < here->outer[i]; ++k) {
             int32_t name = list[k], at = nd->halo_of[name];
             if (at >= nd->halos || nd->halo[at] != name) {
@@ -4186,6 +4188,7 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
             list[k] = at;
         }
     }
+    nd->weight = weight;
 }
 
 GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
@@ -4925,7 +4928,7 @@ typedef struct gproji_nd_leaf {
     uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
     uint64_t plane[32][GPROJI_ND_WORDS];
     int32_t unit[32];
-    int32_t degree[GPROJI_ND_LEAF];
+    int64_t key[GPROJI_ND_LEAF]; /* of each node: its degree, and behind it its number */
 } gproji_nd_leaf;
 
 /* How many bits are set. */
@@ -4939,14 +4942,15 @@ GPROJI_INTERNAL int32_t gproji_bits(uint64_t x) {
 /* The number of the lowest bit of x > 0. */
 GPROJI_INTERNAL int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
 
-GPROJI_INTERNAL int32_t gproji_nd_leaf_degree(const gproji_nd_leaf *leaf, const uint64_t *set) {
+GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i) {
+    const uint64_t *set = leaf->set[i];
     int32_t degree = 0, p, k;
     for (p = 0; p < leaf->planes; ++p) {
         int32_t count = 0;
         for (k = 0; k < leaf->words; ++k) count += gproji_bits(set[k] & leaf->plane[p][k]);
         degree += count * leaf->unit[p];
     }
-    return degree;
+    return (int64_t)degree * GPROJI_ND_LEAF + i;
 }
 
 /* The planes of the weights; equal ones are one. */
@@ -4980,7 +4984,7 @@ GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *l
         for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
         for (end += nd->here.outer[i]; list < end; ++list)
             if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
-        leaf->degree[i] = gproji_nd_leaf_degree(leaf, set);
+        leaf->key[i] = gproji_nd_leaf_key(leaf, i);
     }
 }
 
@@ -4988,14 +4992,15 @@ GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *l
 GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
     gproji_nd_leaf leaf;
     uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
-    int32_t i, k;
+    int32_t nodes = nd->nodes, i, k;
     gproji_nd_leaf_start(nd, &leaf);
     while (alive) {
-        int32_t pivot = 0;
-        for (i = 1; i < nd->nodes; ++i)
-            if (leaf.degree[i] < leaf.degree[pivot]) pivot = i;
+        int64_t least = INT64_MAX;
+        int32_t pivot;
+        for (i = 0; i < nodes; ++i) least = leaf.key[i] < least ? leaf.key[i] : least;
+        pivot = (int32_t)(least % GPROJI_ND_LEAF);
         nd->order[place++] = nd->here.name[pivot];
-        leaf.degree[pivot] = INT32_MAX;
+        leaf.key[pivot] = INT64_MAX;
         alive &= ~((uint64_t)1 << pivot);
         for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
             uint64_t *set;
@@ -5003,7 +5008,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
             set = leaf.set[i];
             for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
             set[0] &= alive & ~((uint64_t)1 << i);
-            leaf.degree[i] = gproji_nd_leaf_degree(&leaf, set);
+            leaf.key[i] = gproji_nd_leaf_key(&leaf, i);
         }
     }
 }
