@@ -4062,14 +4062,15 @@ GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_
 GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     double dense = gproji_dense_degree(total);
-    int32_t a, b, heaviest = gproji_graph_heaviest(graph), *mark = nd->number;
+    int32_t a, b, heaviest = gproji_graph_heaviest(graph), lightest = heaviest, *mark = nd->number;
     int64_t e;
     for (a = 0; a < graph->nodes; ++a) {
         mark[a] = -1;
+        lightest = gproji_min(lightest, graph->weight[a]);
         if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
     }
     for (b = 0; b < graph->nodes; ++b) {
-        if (nd->kind[b] == GPROJI_ND_DENSE) continue;
+        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
         for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
             a = graph->adjacent[e];
             if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
