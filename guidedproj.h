@@ -4468,13 +4468,12 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, in
 
 /* For all thresholds at once, what has neighbours across. */
 GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent, nodes = nd->nodes;
-    const unsigned char *near = nd->near;
+    const int32_t *adjacent = nd->here.adjacent;
     int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nodes; ++i) {
+    for (i = 0; i < nd->nodes; ++i) {
         int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
         const int32_t *list, *end;
-        if (!near[p]) continue;
+        if (!nd->near[p]) continue;
         list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
         for (; list < end; ++list) {
             int32_t q = position[*list];
