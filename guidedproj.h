@@ -4081,14 +4081,15 @@ GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_
 GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     double dense = gproji_dense_degree(total);
-    int32_t a, b, heaviest = gproji_graph_heaviest(graph), *mark = nd->number;
+    int32_t a, b, heaviest = gproji_graph_heaviest(graph), lightest = heaviest, *mark = nd->number;
     int64_t e;
     for (a = 0; a < graph->nodes; ++a) {
         mark[a] = -1;
+        lightest = gproji_min(lightest, graph->weight[a]);
         if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
     }
     for (b = 0; b < graph->nodes; ++b) {
-        if (nd->kind[b] == GPROJI_ND_DENSE) continue;
+        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
         for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
             a = graph->adjacent[e];
             if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
@@ -4183,6 +4184,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
 GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
     const gproji_nd_nodes *c = &nd->copy[part->copy];
     gproji_nd_nodes *here = &nd->here;
+    double weight = 0;
     int32_t i, k;
     here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
     here->inner = c->inner + part->first, here->outer = c->outer + part->first;
@@ -4190,11 +4192,12 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
     here->adjacent = c->adjacent;
     nd->nodes = part->nodes;
     nd->rims = nd->halos = 0;
-    nd->weight = nd->halo_weight = 0;
-    for (i = 0; i < nd->nodes; ++i) {
+    nd->halo_weight = 0;
+    for (i = 0; i < part->nodes; ++i) {
         int32_t *list = here->adjacent + here->from[i] + here->inner[i];
-        nd->weight += here->weight[i];
-        if (here->outer[i] > 0) nd->rim[nd->rims++] = i;
+        weight += here->weight[i];
+        if (here->outer[i] == 0) continue;
+        nd->rim[nd->rims++] = i;
         for (k = 0; k < here->outer[i]; ++k) {
             int32_t name = list[k], at = nd->halo_of[name];
             if (at >= nd->halos || nd->halo[at] != name) {
@@ -4205,6 +4208,7 @@ GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) 
             list[k] = at;
         }
     }
+    nd->weight = weight;
 }
 
 GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
@@ -4214,12 +4218,13 @@ GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes,
     part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
 }
 
-/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. Returns where the arcs
-   end. */
+/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. nd->number: the numbers
+   of nodes in their side; ~name of those in the separator. Returns where the arcs end. */
 GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
+    const int32_t *number = nd->number, *halo = nd->halo, nodes = nd->nodes;
     int32_t i;
-    for (i = 0; i < nd->nodes; ++i) {
+    for (i = 0; i < nodes; ++i) {
         const int32_t *list, *end;
         int32_t all, *in, *out;
         if (nd->side[i] != side) continue;
@@ -4230,14 +4235,15 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
         b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
         for (; list < end; ++list) {
-            if (nd->side[*list] == 2)
-                *--out = a->name[*list];
+            int32_t k = number[*list];
+            if (k < 0)
+                *--out = ~k;
             else
-                *in++ = nd->number[*list];
+                *in++ = k;
         }
         b->inner[to] = (int32_t)(in - (b->adjacent + e));
         b->outer[to] = all - b->inner[to];
-        for (end += a->outer[i]; list < end; ++list) *in++ = nd->halo[*list];
+        for (end += a->outer[i]; list < end; ++list) *in++ = halo[*list];
         e += all;
         to++;
     }
@@ -4250,8 +4256,11 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part,
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
     for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
-    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i)
-        if (nd->side[i] == 2) nd->order[at++] = nd->here.name[i];
+    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i) {
+        if (nd->side[i] != 2) continue;
+        nd->order[at++] = nd->here.name[i];
+        nd->number[i] = ~nd->here.name[i];
+    }
     e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
     gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
     small = count[1] < count[0];
@@ -4372,17 +4381,17 @@ GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; 
 /* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
    positions are halved so many times. */
 GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
-    int32_t fx = gproji_nd_direction(axis, 0), fy = gproji_nd_direction(axis, 1), i;
-    int32_t least = INT32_MAX, most = INT32_MIN;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = fx * nd->here.x[i] + fy * nd->here.y[i];
-        position[i] = p;
-        if (p < least) least = p;
-        if (p > most) most = p;
+    const int32_t *x = nd->here.x, *y = nd->here.y, fx = gproji_nd_direction(axis, 0);
+    const int32_t fy = gproji_nd_direction(axis, 1), nodes = nd->nodes;
+    int32_t least = INT32_MAX, most = INT32_MIN, halved = 0, i;
+    for (i = 0; i < nodes; ++i) {
+        int32_t p = position[i] = fx * x[i] + fy * y[i];
+        least = gproji_min(least, p), most = gproji_max(most, p);
     }
-    for (*shift = 0; (most - least) >> *shift >= nd->nodes;) ++*shift;
-    for (i = 0; i < nd->nodes; ++i) position[i] = (position[i] - least) >> *shift;
-    return ((most - least) >> *shift) + 1;
+    while ((most - least) >> halved >= nodes) ++halved;
+    for (i = 0; i < nodes; ++i) position[i] = (position[i] - least) >> halved;
+    *shift = halved;
+    return ((most - least) >> halved) + 1;
 }
 
 /* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
@@ -4432,8 +4441,8 @@ GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position
         int32_t i = nd->rim[k], p = position[i];
         const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
         for (; list < end; ++list) {
-            if (p < least[*list]) least[*list] = p;
-            if (p > most[*list]) most[*list] = p;
+            least[*list] = gproji_min(least[*list], p);
+            most[*list] = gproji_max(most[*list], p);
         }
     }
     for (k = 0; k < nd->halos; ++k) {
@@ -4938,7 +4947,7 @@ typedef struct gproji_nd_leaf {
     uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
     uint64_t plane[32][GPROJI_ND_WORDS];
     int32_t unit[32];
-    int32_t degree[GPROJI_ND_LEAF];
+    int64_t key[GPROJI_ND_LEAF]; /* of each node: its degree, and behind it its number */
 } gproji_nd_leaf;
 
 /* How many bits are set. */
@@ -4952,14 +4961,15 @@ GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
 /* The number of the lowest bit of x > 0. */
 GPROJI_INLINE int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
 
-GPROJI_INTERNAL int32_t gproji_nd_leaf_degree(const gproji_nd_leaf *leaf, const uint64_t *set) {
+GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i) {
+    const uint64_t *set = leaf->set[i];
     int32_t degree = 0, p, k;
     for (p = 0; p < leaf->planes; ++p) {
         int32_t count = 0;
         for (k = 0; k < leaf->words; ++k) count += gproji_bits(set[k] & leaf->plane[p][k]);
         degree += count * leaf->unit[p];
     }
-    return degree;
+    return (int64_t)degree * GPROJI_ND_LEAF + i;
 }
 
 /* The planes of the weights; equal ones are one. */
@@ -4993,7 +5003,7 @@ GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *l
         for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
         for (end += nd->here.outer[i]; list < end; ++list)
             if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
-        leaf->degree[i] = gproji_nd_leaf_degree(leaf, set);
+        leaf->key[i] = gproji_nd_leaf_key(leaf, i);
     }
 }
 
@@ -5001,14 +5011,15 @@ GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *l
 GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
     gproji_nd_leaf leaf;
     uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
-    int32_t i, k;
+    int32_t nodes = nd->nodes, i, k;
     gproji_nd_leaf_start(nd, &leaf);
     while (alive) {
-        int32_t pivot = 0;
-        for (i = 1; i < nd->nodes; ++i)
-            if (leaf.degree[i] < leaf.degree[pivot]) pivot = i;
+        int64_t least = INT64_MAX;
+        int32_t pivot;
+        for (i = 0; i < nodes; ++i) least = leaf.key[i] < least ? leaf.key[i] : least;
+        pivot = (int32_t)(least % GPROJI_ND_LEAF);
         nd->order[place++] = nd->here.name[pivot];
-        leaf.degree[pivot] = INT32_MAX;
+        leaf.key[pivot] = INT64_MAX;
         alive &= ~((uint64_t)1 << pivot);
         for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
             uint64_t *set;
@@ -5016,7 +5027,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
             set = leaf.set[i];
             for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
             set[0] &= alive & ~((uint64_t)1 << i);
-            leaf.degree[i] = gproji_nd_leaf_degree(&leaf, set);
+            leaf.key[i] = gproji_nd_leaf_key(&leaf, i);
         }
     }
 }
@@ -5211,8 +5222,9 @@ typedef struct gproji_symbolic {
 } gproji_symbolic;
 
 enum {
-    GPROJI_TASK_SHARE = 24
-}; /* a task has at most about this part of all flops */
+    GPROJI_TASK_SHARE = 24, /* a task has at most about this part of all flops */
+    GPROJI_NODES_AHEAD = 8  /* see gproji_expect_neighbours */
+};
 
 /* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
 typedef struct gproji_analysis {
@@ -5253,6 +5265,14 @@ GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t 
     for (k = 0; k < count; ++k) place[order[k]] = k;
 }
 
+/* Nodes in the order of elimination come from all over the memory: asks for the neighbours of those that follow. */
+GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const int32_t *order, int32_t k) {
+    if (k + 2 * GPROJI_NODES_AHEAD < graph->nodes) {
+        GPROJI_PREFETCH(graph->start + order[k + 2 * GPROJI_NODES_AHEAD]);
+        GPROJI_PREFETCH(graph->adjacent + graph->start[order[k + GPROJI_NODES_AHEAD]]);
+    }
+}
+
 /* parent[k] = min { i > k : L_ik != 0 }. ancestor: work, shortcuts towards the root. */
 GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const int32_t *order, const int32_t *place,
                                              int32_t *parent, int32_t *ancestor) {
@@ -5260,6 +5280,7 @@ GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const in
     int64_t e;
     for (k = 0; k < graph->nodes; ++k) {
         parent[k] = ancestor[k] = -1;
+        gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
             for (i = place[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
                 above = ancestor[i];
@@ -5349,6 +5370,7 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     for (k = 0; k < n; ++k) {
         int32_t own = graph->weight[order[k]], up = an->parent[k];
         if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
+        gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
             int32_t i = place[graph->adjacent[e]], weight, meet;
             if (i <= k || first[k] <= last[i]) continue; /* k is no leaf of the subtree of row i */
@@ -5536,6 +5558,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     if (!out->row_node || !out->row_at || !out->relative) return false;
     for (i = 0; i < out->nodes; ++i) {
         int32_t node = out->order[i], own = out->front_of[i];
+        gproji_expect_neighbours(graph, out->order, i);
         for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
             int32_t k = out->place[graph->adjacent[e]];
             if (k >= i) continue;
@@ -8549,15 +8572,15 @@ GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *gr
 /* The graph from the incidence, but for the nodes' sizes. mark: node_count entries. */
 GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, uint32_t *mark,
                                           gproji_meetings *graph) {
+    const uint32_t *start = in->row_start;
     size_t filled = 0;
-    uint32_t e, f;
     int32_t v;
     memset(mark, 0, (size_t)in->node_count * sizeof *mark);
     for (v = 0; v < in->node_count; ++v) {
-        const uint32_t own = (uint32_t)v + 1;
+        const uint32_t own = (uint32_t)v + 1, *row = in->node_row + in->node_start[v], *rows = row;
+        const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
         size_t most = filled; /* with all of the node's rows, as if they had nothing in common */
-        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
-            most += in->row_start[in->node_row[e] + 1] - in->row_start[in->node_row[e]];
+        for (; row < rows_end; ++row) most += start[*row + 1] - start[*row];
         if (most > graph->room) {
             void *room = graph->adjacent;
             bool enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
@@ -8566,13 +8589,14 @@ GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incide
         }
         graph->start[v] = (int64_t)filled;
         mark[v] = own;
-        for (e = in->node_start[v]; e < in->node_start[v + 1]; ++e)
-            for (f = in->row_start[in->node_row[e]]; f < in->row_start[in->node_row[e] + 1]; ++f) {
-                int32_t other = in->row_node[f];
-                if (mark[other] == own) continue;
-                mark[other] = own;
-                graph->adjacent[filled++] = other;
+        for (row = rows; row < rows_end; ++row) {
+            const int32_t *node = in->row_node + start[*row], *end = in->row_node + start[*row + 1];
+            for (; node < end; ++node) {
+                if (mark[*node] == own) continue;
+                mark[*node] = own;
+                graph->adjacent[filled++] = *node;
             }
+        }
     }
     graph->start[in->node_count] = (int64_t)filled;
     return true;
@@ -8630,44 +8654,95 @@ typedef struct gproji_placing {
     size_t rows;
 } gproji_placing;
 
-/* Sorts a narrow row's variables by their columns, which become `at`. rank: where each has gone. By insertion: rows are
-   short, and their terms name the variables of a node in order. Returns which have come to the places, 4 bits each; 0:
-   all were there already. */
-GPROJI_INLINE uint64_t gproji_sort_locals(const int32_t *column, int32_t count, int32_t *local, int32_t *at,
-                                          int32_t *rank) {
-    uint64_t key[GPROJI_WIDE_ROW], order = 0; /* key: a column, and behind it which of the variables that is */
-    int32_t variable[GPROJI_WIDE_ROW], i, k;
-    bool moved = false;
+/* How a row's locals are sorted. */
+typedef struct gproji_sorting {
+    uint16_t *from; /* which of them comes to each place, */
+    uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
+} gproji_sorting;
+
+/* How rows were sorted, which is how others are, mostly: the last one with so many locals, three of which had the same
+   order. Few rows have more than three nodes. */
+typedef struct gproji_sortings {
+    gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
+    gproji_sorting many; /* of the row at hand if it has more */
+    uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
+    uint16_t many_from[GPROJI_WIDE_ROW];
+} gproji_sortings;
+
+/* As they are. */
+GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *from, int32_t count) {
+    int32_t i;
+    for (i = 0; i < count; ++i) from[i] = (uint16_t)i;
+    sorting->from = from;
+    sorting->order = 0;
+}
+
+GPROJI_INTERNAL void gproji_start_sortings(gproji_sortings *all) {
+    int32_t i, k;
+    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
+        for (k = 0; k < 8; ++k) gproji_start_sorting(&all->last[i][k], all->last_from[i][k], i);
+}
+
+/* A guess how a row is to be sorted. */
+GPROJI_INLINE gproji_sorting *gproji_guess_sorting(gproji_sortings *all, const int32_t *column, int32_t count,
+                                                   const int32_t *local) {
+    int32_t first, second, last;
+    if (count > GPROJI_COPY_LOCALS) {
+        gproji_start_sorting(&all->many, all->many_from, count);
+        return &all->many;
+    }
+    first = column[local[0]], second = column[local[count > 1]], last = column[local[count - 1]];
+    return &all->last[count][(first < second) + 2 * (second < last) + 4 * (first < last)];
+}
+
+/* Puts the locals where the sorting says. `at`: their columns. Returns whether these are ascending then. */
+GPROJI_INLINE bool gproji_move_locals(const int32_t *GPROJI_RESTRICT column, int32_t count,
+                                      int32_t *GPROJI_RESTRICT local, int32_t *GPROJI_RESTRICT at,
+                                      const gproji_sorting *sorting) {
+    const uint16_t *from = sorting->from;
+    int32_t variable[GPROJI_WIDE_ROW], i, last = -1;
+    bool ascending = true;
+    memcpy(variable, local, (size_t)count * sizeof *local);
     for (i = 0; i < count; ++i) {
-        uint64_t own;
-        variable[i] = local[i];
+        local[i] = variable[from[i]];
         at[i] = column[local[i]];
-        own = (uint64_t)at[i] << 32 | (uint32_t)i;
-        for (k = i; k > 0 && key[k - 1] > own; --k) key[k] = key[k - 1];
-        moved |= k != i;
-        key[k] = own;
+        ascending &= at[i] > last;
+        last = at[i];
     }
-    if (!moved) return 0;
-    for (i = 0; i < count; ++i) {
-        uint32_t from = (uint32_t)key[i];
-        at[i] = (int32_t)(key[i] >> 32);
-        local[i] = variable[from];
-        rank[from] = i;
-        order = order << 4 | (from & 15);
+    return ascending;
+}
+
+/* Sorts locals and their columns. By insertion: rows are short, and their terms name the variables of a node in order. */
+GPROJI_INTERNAL void gproji_sort_locals(int32_t count, int32_t *local, int32_t *at, gproji_sorting *sorting) {
+    uint16_t *from = sorting->from;
+    int32_t i, k;
+    bool moved = false;
+    for (i = 1; i < count; ++i) {
+        int32_t own_at = at[i], own = local[i];
+        uint16_t own_from = from[i];
+        for (k = i; k > 0 && at[k - 1] > own_at; --k) at[k] = at[k - 1], local[k] = local[k - 1], from[k] = from[k - 1];
+        at[k] = own_at, local[k] = own, from[k] = own_from;
     }
-    return count > GPROJI_COPY_LOCALS ? 1 : order;
+    for (i = 0, sorting->order = 0; i < count; ++i) {
+        sorting->order = sorting->order << 4 | (from[i] & 15);
+        moved |= from[i] != i;
+    }
+    if (!moved || count > GPROJI_COPY_LOCALS) sorting->order = moved;
 }
 
 /* Copies of terms that rows have in common, for locals that have moved: those met last. */
 typedef struct gproji_copy {
-    uint64_t order; /* see gproji_sort_locals */
+    uint64_t order; /* see gproji_sorting */
     uint32_t source, term;
     int32_t locals; /* 0: none */
 } gproji_copy;
 
 /* Lets terms name the places where the locals have gone. */
-GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const int32_t *rank) {
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals,
+                                       const gproji_sorting *sorting) {
     gproj_term *end = term + count;
+    int32_t rank[GPROJI_WIDE_ROW], i;
+    for (i = 0; i < locals; ++i) rank[sorting->from[i]] = i;
     for (; term < end; ++term) {
         term->i = rank[term->i];
         if (term->j >= 0) term->j = rank[term->j];
@@ -8675,26 +8750,28 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, const i
 }
 
 /* Gives the row a copy of its terms for the moved locals. False: no memory. */
-GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, const int32_t *rank) {
+GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+                                       const gproji_sorting *sorting) {
     void *term = g->term;
     size_t wanted = g->term_count + row->terms;
     bool enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->term_capacity, wanted, sizeof *g->term);
     g->term = (gproj_term *)term;
     if (!enough) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
-    gproji_rename_terms(g->term + g->term_count, row->terms, rank);
+    gproji_rename_terms(g->term + g->term_count, row->terms, locals, sorting);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
     return true;
 }
 
 /* The same, with the copy that another row has got, if there is one. */
-GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals, uint64_t order,
-                                    const int32_t *rank, gproji_copy *copy) {
-    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, rank);
+GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
+                                    const gproji_sorting *sorting, gproji_copy *copy) {
+    uint64_t order = sorting->order;
+    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, locals, sorting);
     copy += order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS);
     if (copy->order != order || copy->source != row->source || copy->locals != locals) {
-        if (!gproji_copy_terms(s, g, row, rank)) return false;
+        if (!gproji_copy_terms(s, g, row, locals, sorting)) return false;
         copy->order = order, copy->source = row->source, copy->locals = locals;
         copy->term = row->term;
     } else {
@@ -8703,10 +8780,10 @@ GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row
     return true;
 }
 
-/* Undoes gproji_sort_locals. */
-GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32_t *rank) {
+/* Undoes a sorting. */
+GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const gproji_sorting *sorting) {
     int32_t variable[GPROJI_WIDE_ROW], i;
-    for (i = 0; i < count; ++i) variable[i] = local[rank[i]];
+    for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
     memcpy(local, variable, (size_t)count * sizeof *local);
 }
 
@@ -8715,21 +8792,24 @@ GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const int32
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     gproji_copy copy[1 << GPROJI_COPY_BITS];
-    int32_t rank[GPROJI_WIDE_ROW], r;
+    gproji_sortings sortings;
+    int32_t r;
     memset(copy, 0, sizeof copy);
+    gproji_start_sortings(&sortings);
     g->sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local);
-        uint64_t order;
+        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local_at + row->local;
+        gproji_sorting *sorting;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        order = gproji_sort_locals(column, count, local, g->local_at + row->local, rank);
-        if (order && !g->common) {
-            gproji_rename_terms(g->term + row->term, row->terms, rank);
-        } else if (order && !gproji_find_copy(s, g, row, count, order, rank, copy)) {
-            gproji_move_back(count, local, rank);
+        sorting = gproji_guess_sorting(&sortings, column, count, local);
+        if (!gproji_move_locals(column, count, local, at, sorting)) gproji_sort_locals(count, local, at, sorting);
+        if (sorting->order && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, count, sorting);
+        } else if (sorting->order && !gproji_find_copy(s, g, row, count, sorting, copy)) {
+            gproji_move_back(count, local, sorting);
             return false;
         }
         front[r] = sy->front_of[sy->place[s->node[local[0]]]];
@@ -8755,14 +8835,15 @@ GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
 /* The storage rows of all narrow rows' locals, front by front, from their columns. at: work, of each column. */
 GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
     int32_t f;
-    int64_t k, l;
+    int64_t k;
     for (f = 0; f < (int32_t)s->front_count; ++f) {
         if (s->front_start[f] < s->front_start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
         for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
             gproji_group *g = &s->group[s->front_row[k].group];
             const gproji_row *row = &g->row[s->front_row[k].row];
+            int32_t *local = g->local_at + row->local, *end = g->local_at + row[1].local;
             gproji_expect_rows(s, k, false);
-            for (l = row->local; l < row[1].local; ++l) g->local_at[l] = at[g->local_at[l]];
+            for (; local < end; ++local) *local = at[*local];
         }
     }
 }
