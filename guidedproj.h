@@ -3351,14 +3351,14 @@ GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
     for (i = 0; i < count; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH_L2(value + i);
 }
 
-/* z = L^-T z on all storage rows of a panel, where the part below is known. far: the panel is not in the cache, so each
+/* z = L^-T z on all storage rows of a panel, where the part below is known. is_far: the panel is not in the cache, so each
    column block is fetched ahead: processors do not foresee columns from right to left. */
-GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool far, double *z) {
+GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_far, double *z) {
     int32_t block = panel->kernels->block, at = panel->shape.end - block;
     for (; at >= panel->top; at -= block) {
         int32_t start = gproji_max(at - panel->shift, 0), next = gproji_max(start - block, 0);
         const double *column = gproji_panel_at(panel, at, start), *ahead = gproji_panel_at(panel, at, next);
-        if (far) gproji_prefetch_values(ahead, column - ahead);
+        if (is_far) gproji_prefetch_values(ahead, column - ahead);
         panel->kernels->backward(panel->rows - at, column, gproji_shape_stride(panel->shape, at),
                                  panel->inverse + start, start + panel->shift - at, z + at);
     }
@@ -4017,7 +4017,7 @@ typedef struct gproji_nd {
     int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
     int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
     int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
-    unsigned char *near;           /* 1: near a threshold, 3: a threshold */
+    unsigned char *nearby;         /* 1: near a threshold, 3: a threshold */
     double reach[4][4];            /* see gproji_nd_sample */
     gproji_band band;
 } gproji_nd;
@@ -4055,9 +4055,9 @@ GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     nd->halo_of = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
     nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    nd->near = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
+    nd->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
     nd->other_side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->near && nd->other_side;
+    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->nearby && nd->other_side;
 }
 
 /* -- nodes that are not dissected -- */
@@ -4467,7 +4467,7 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, in
     double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
     most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
     halo[0] = 0, halo[1] = nd->halo_weight;
-    memset(nd->near, 0, (size_t)range + 1);
+    memset(nd->nearby, 0, (size_t)range + 1);
     for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
         double own;
         below += nd->sum[t - 1];
@@ -4480,8 +4480,8 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, in
         count = gproji_min(count + 1, most);
     }
     for (k = 0; k < count; ++k) {
-        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->near[t] |= 1;
-        nd->near[at[k]] = 3;
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->nearby[t] |= 1;
+        nd->nearby[at[k]] = 3;
     }
 }
 
@@ -4492,7 +4492,7 @@ GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *positio
     for (i = 0; i < nd->nodes; ++i) {
         int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
         const int32_t *list, *end;
-        if (!nd->near[p]) continue;
+        if (!nd->nearby[p]) continue;
         list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
         for (; list < end; ++list) {
             int32_t q = position[*list];
@@ -4524,7 +4524,7 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *b
         below += sum[t - 1];
         low += nd->low[t], high += nd->high[t];
         halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (nd->near[t] != 3) continue;
+        if (nd->nearby[t] != 3) continue;
         separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
         cost = gproji_nd_threshold_cost(nd, below, separator, halo);
         if (cost >= best->cost) continue;
@@ -6531,13 +6531,13 @@ GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
 GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gproji_panel *panel,
                                    const gproj_parallel *parallel, int32_t from, int32_t to) {
     const gproji_front *front = &c->symbolic.front[f];
-    double rows = panel->shape.end + panel->update_rows - from;
+    int64_t rows = panel->shape.end + panel->update_rows - from, entries = rows * (to - from);
     gproji_gathering gathering;
     gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
-    if (front->child < 0 || rows * (to - from) <= GPROJI_CACHED)
+    if (front->child < 0 || entries <= GPROJI_CACHED)
         gproji_gather_columns(&gathering, from, to);
     else
-        gproji_run_tasks(parallel, 20.0 * rows * (to - from), gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
+        gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
                          gproji_gather_task, &gathering);
     c->load(c->load_user, f, panel, from, to);
 }
@@ -11093,14 +11093,14 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     int32_t i, r;
     for (i = 0; s->schur.on && i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        double near;
+        double reach;
         if (!g->guard || !(g->weight > 0)) continue;
         for (r = 0; r < g->row_count && !(g->row[r].active && g->row[r].waits); ++r) continue;
         if (r == g->row_count) continue;
-        near = ++g->wakings < GPROJI_WAKINGS ? g->wakings * g->slack : HUGE_VAL;
+        reach = ++g->wakings < GPROJI_WAKINGS ? g->wakings * g->slack : HUGE_VAL;
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            bool is_near = gproji_fmin(row->phi, gproji_row_value(g, r, s->x)) < near;
+            bool is_near = gproji_fmin(row->phi, gproji_row_value(g, r, s->x)) < reach;
             if (row->active || (row->weight > 0 && is_near)) row->waits = false;
         }
         woken = true;

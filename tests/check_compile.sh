@@ -53,7 +53,7 @@ for standard in c++11 c++20; do
     syntax header.cpp $standard clang++
 done
 
-# Some warnings, and the stack, come from code generation only. It is measured how long gcc and clang take.
+# Some warnings, and the stack, come from code generation only.
 for compiler in gcc clang g++ clang++ tcc i686-linux-gnu-gcc i686-linux-gnu-g++ \
     x86_64-w64-mingw32-gcc x86_64-w64-mingw32-g++; do
     if ! have $compiler; then skip "$compiler -O2: not installed"; continue; fi
@@ -62,8 +62,7 @@ for compiler in gcc clang g++ clang++ tcc i686-linux-gnu-gcc i686-linux-gnu-g++ 
     *++) language="-std=c++11 whole.cpp" ;;
     tcc) strict='-Wall -Werror' language=whole.c syntax='-o syntax.o -c' ;;
     esac
-    job "$compiler -O2" \
-        "TIMEFORMAT=%U; { time $compiler -O2 $strict -I'$root' -c $language -o $compiler.o 2>&3; } 3>&2 2>$compiler.time"
+    job "$compiler -O2" "$compiler -O2 $strict -I'$root' -c $language -o $compiler.o"
     case $compiler in
     tcc | *-*)
         for combination in "${switches[@]}"; do
@@ -72,6 +71,11 @@ for compiler in gcc clang g++ clang++ tcc i686-linux-gnu-gcc i686-linux-gnu-g++ 
         done
         ;;
     esac
+done
+for compiler in 'x86_64-w64-mingw32-gcc -std=c99 header.c' 'x86_64-w64-mingw32-g++ -std=c++11 header.cpp'; do
+    have ${compiler%% *} || continue # windows.h has macros for near, far, small, min, ...
+    job "${compiler%% *}, after windows.h" \
+        "${compiler% *} -Wall -Wextra -Werror -include windows.h -DGUIDEDPROJ_IMPLEMENTATION -I'$root' -fsyntax-only ${compiler##* }"
 done
 if have tcc; then # what it compiles also runs
     job 'tcc, running' "tcc -I'$root' -I'$root/tests' '$root/tests/test_dense.c' -o tcc.dense -lm && ./tcc.dense >tcc.dense.log || cat tcc.dense.log"
@@ -96,9 +100,14 @@ else
 fi
 run_jobs
 
+# How long gcc and clang take, with nothing beside them; machines have slow spells, so in the best of three attempts.
+TIMEFORMAT=%U
 for compiler in gcc clang; do
     have $compiler || continue
-    seconds=$(cat "$work/$compiler.time")
+    for attempt in 1 2 3; do
+        seconds=$({ time $compiler -O2 -std=c99 -I"$root" -c "$work/whole.c" -o "$work/timed.o"; } 2>&1)
+        [ "${seconds%[.,]*}" -lt 20 ] && break
+    done
     echo "$compiler -O2 compiles in $seconds s"
     if [ "${seconds%[.,]*}" -lt 20 ]; then pass; else fail "$compiler -O2 takes more than 20 s to compile"; fi
 done
