@@ -9770,10 +9770,10 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     }
 }
 
-/* Consecutive elements that are alike: `left` multipliers, m rows and `count` columns, the first `closes` of which are no
-   auxiliary variables. What is done to all of them is done in lanes, number k of lane l being at [k GPROJI_LANES + l]: one
-   element alone is a chain of square roots and quotients, each of which waits for the one before. Lanes without an
-   element have zeros. */
+/* Consecutive elements with auxiliary variables that are alike: `left` multipliers, m rows and `count` columns, the
+   first `closes` of which are no auxiliary variables. What is done to all of them is done in lanes, number k of lane l
+   being at [k GPROJI_LANES + l]: one element alone is a chain of square roots and quotients, each of which waits for
+   the one before. Lanes without an element have zeros. */
 typedef struct gproji_alike {
     int32_t first, lanes, m, count, closes, left;
     double *column;   /* m x count: what the multipliers are orthogonal to; then reflections */
@@ -10192,7 +10192,6 @@ GPROJI_INTERNAL void gproji_reflect_alike_back(const gproji_alike *a, int32_t j,
 GPROJI_INTERNAL void gproji_schur_triangles(const gproj_system *s, gproji_alike *a, double epsilon2) {
     const gproji_schur *d = &s->schur;
     int32_t size = a->count - a->closes, l, k;
-    if (size == 0) return;
     if (size == 3)
         gproji_take_triangle(a, a->m, a->closes, 3);
     else
@@ -10244,7 +10243,7 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
     }
 }
 
-/* C and r of an element without such columns: its multipliers are those of its rows. */
+/* C and r of an element without auxiliary variables: its multipliers are those of its rows. */
 GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     const gproji_schur *d = &s->schur;
     int32_t first = d->first[e], left = d->first[e + 1] - first, i;

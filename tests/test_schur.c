@@ -349,6 +349,7 @@ static int gprojt_takes_multipliers(int what) {
     gprojt_build(form, mesh, 1, what);
     GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
     on = gprojt_is_on(form);
+    GPROJT_CHECK(!on || form->system->schur.elements <= mesh->face_count + mesh->vertex_count); /* no rows apart */
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     return on;

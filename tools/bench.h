@@ -76,10 +76,10 @@ typedef bool (*bench_visit)(void *user, const bench_step *step);
 typedef struct bench_form bench_form;
 
 /* One build of our solver. `create` makes a mesh, a form and its rows; `solve` goes back to where it began and takes
-   steps, or none, which is set-up only; `factor`, after a solve with steps, factors the last one's matrix once more, without
-   right-hand sides, and returns the seconds; `rows`, in a visit: the rows from which the next step will come (the arrays are
-   made at the first call). `load` reads a mesh from a file. Times are processor times; with `workers` >= 1, that many
-   threads, they are wall times. */
+   steps, or none, which is set-up only; `factor`, after a solve with steps, factors the last one's matrix once more,
+   without right-hand sides, and returns the seconds, infinite where it fails; `rows`, in a visit: the rows from which
+   the next step will come (the arrays are made at the first call). `load` reads a mesh from a file. Times are
+   processor times; with `workers` >= 1, that many threads, they are wall times. */
 typedef struct bench_solver {
     bool (*load)(const char *path, bench_mesh *mesh);
     bench_form *(*create)(const bench_mesh *mesh, bench_task task, int32_t workers);

@@ -445,8 +445,7 @@ static void bench_write_markdown(FILE *file, const bench_report *report) {
         if (bench_has(report, label[i][0]))
             bench_write_row(file, report, label[i][1], label[i][0], false, bench_value_ratio);
     fputs("\nPlanarity alone is solved for one multiplier a quad, with equilibrium for three more a vertex; with "
-          "fairness the "
-          "unknowns are\nall variables.\n",
+          "fairness the unknowns are\nall variables.\n",
           file);
     bench_write_details(file, report, "Planar quads", "quad");
     bench_write_details(file, report, "Planar quads and fairness", "fairness");
