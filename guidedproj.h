@@ -10386,22 +10386,42 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     }
 }
 
+/* The column of W W' at a node that belongs to its j-th multiplier; at: the storage rows of all. */
+GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, const int32_t *at, int32_t count, int32_t j,
+                                             const gproji_panel *panel) {
+    double *column = gproji_panel_column(panel, at[j]);
+    int32_t i, p;
+    for (i = j; i < count; ++i) {
+        double sum = 0;
+        for (p = 0; p < size; ++p) sum += w[i * size + p] * w[j * size + p];
+        column[at[i]] += sum;
+    }
+}
+
+/* All four columns at a vertex of four quads, the most frequent node: without loops. */
+GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, const gproji_panel *panel) {
+    double v[12]; /* copies, which what is stored leaves alone */
+    int32_t to[4];
+    memcpy(v, w, sizeof v);
+    memcpy(to, at, sizeof to);
+    gproji_schur_load_column(v, 3, to, 4, 0, panel);
+    gproji_schur_load_column(v, 3, to, 4, 1, panel);
+    gproji_schur_load_column(v, 3, to, 4, 2, panel);
+    gproji_schur_load_column(v, 3, to, 4, 3, panel);
+}
+
 /* W W' at a node, in the columns that belong to the storage rows [from, to). */
 GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int32_t size, const gproji_panel *panel,
                                            int32_t from, int32_t to) {
     const int32_t *at = d->entry_at + d->entry_start[v];
-    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), first = 0, end = count, i, j, p;
+    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), first = 0, end = count, j;
     const double *w = d->value + d->value_start[v];
     while (first < end && at[first] < from) ++first;
     while (first < end && at[end - 1] >= to) --end;
-    for (j = first; j < end; ++j) {
-        double *column = gproji_panel_column(panel, at[j]);
-        for (i = j; i < count; ++i) {
-            double sum = 0;
-            for (p = 0; p < size; ++p) sum += w[i * size + p] * w[j * size + p];
-            column[at[i]] += sum;
-        }
-    }
+    if (size == 3 && count == 4 && end - first == 4)
+        gproji_schur_load_four(w, at, panel);
+    else
+        for (j = first; j < end; ++j) gproji_schur_load_column(w, size, at, count, j, panel);
 }
 
 /* Begins to bring what gproji_schur_load_node needs into the cache: of the k-th node, and where it is of a later one. */
