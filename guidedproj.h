@@ -8639,7 +8639,7 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
 /* What the places of all rows are found with. */
 typedef struct gproji_placing {
     int32_t *column; /* of each variable, its column of L */
-    int32_t *at;     /* of each column of L, its storage row in a front */
+    int32_t *at;     /* of each column of L, its front; then, front by front, its storage row there */
     int32_t *front;  /* of all rows, group by group, the front; -1: none */
     size_t rows;
 } gproji_placing;
@@ -8777,10 +8777,18 @@ GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const gproj
     memcpy(local, variable, (size_t)count * sizeof *local);
 }
 
-/* Gives the locals of a group's rows their order, and local_at their columns. front: of each row, the front of the
-   variable that is eliminated first; -1 where there is none. Counts the rows of each front. False: no memory. */
-GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, int32_t *front) {
-    const gproji_symbolic *sy = &s->cholesky->symbolic;
+/* host: of each column of L, its front. */
+GPROJI_INTERNAL void gproji_name_fronts(const gproji_symbolic *sy, int32_t *host) {
+    int32_t f, k;
+    for (f = 0; f < sy->fronts; ++f)
+        for (k = 0; k < sy->front[f].width; ++k) host[sy->front[f].first + k] = f;
+}
+
+/* Gives the locals of a group's rows their order, and local_at their columns. host: the front of each column; front: of
+   each row, that of the variable which is eliminated first; -1 where there is none. Counts the rows of each front. False:
+   no memory. */
+GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
+                                        int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
     gproji_sortings sortings;
     int32_t r;
@@ -8802,7 +8810,7 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
             gproji_move_back(count, local, sorting);
             return false;
         }
-        front[r] = sy->front_of[sy->place[s->node[local[0]]]];
+        front[r] = host[at[0]];
         s->front_start[front[r] + 2]++;
     }
     return true;
@@ -8872,8 +8880,9 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     memset(&placing, 0, sizeof placing);
     for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
     done = gproji_take_placing(s, &placing);
+    if (done) gproji_name_fronts(&s->cholesky->symbolic, placing.at);
     for (i = 0; done && i < s->group_count; ++i) {
-        done = gproji_place_group(s, &s->group[i], placing.column, placing.front + row);
+        done = gproji_place_group(s, &s->group[i], placing.column, placing.at, placing.front + row);
         row += (size_t)s->group[i].row_count;
     }
     if (done) {
