@@ -8272,30 +8272,31 @@ GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t 
            memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
 }
 
-/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which are
-   different variables of this system, and in the order in which the terms name them; if some of them have a block in
-   common it is coupled already. The group is not global. like: a row of the group whose terms it shares if there
+/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which the builder
+   writes where this returns, unless it is NULL: different variables of this system, in the order in which the terms name
+   them; if some of them have a block in common it is coupled already. (Copied from an array they would have to be read
+   again right after they were written.) The group is not global. like: a row of the group whose terms it shares if there
    is one and they are the same. */
-GPROJI_INTERNAL void gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
-                                           const gproj_term *terms, int32_t locals, const int32_t *local,
-                                           double constant, int32_t element) {
+GPROJI_INTERNAL int32_t *gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
+                                               const gproj_term *terms, int32_t locals, double constant,
+                                               int32_t element) {
     gproji_group *g;
     gproji_row *row;
     bool common;
     size_t own;
-    if (!gproji_system_is_open(s)) return;
+    if (!gproji_system_is_open(s)) return NULL;
     g = &s->group[group];
     if (s->compiled) gproji_system_forget(s);
     common = like >= 0 && gproji_has_terms(g, like, count, terms);
     own = common ? 0 : (size_t)count;
-    if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return;
+    if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return NULL;
     row = gproji_start_row(g, common ? g->row[like].term : (uint32_t)g->term_count, count, constant, element);
     if (common)
         g->common = true;
     else
         memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
-    memcpy(g->local_variable + row->local, local, (size_t)locals * sizeof *local);
     gproji_end_row(s, g, row, locals);
+    return g->local_variable + row->local;
 }
 
 /* Gives each row its own terms. */
@@ -8477,7 +8478,9 @@ GPROJI_INLINE uint32_t gproji_row_nodes(const gproj_system *s, const gproji_grou
 
 /* Are the nodes of a row, in their order, the first of the next one's? */
 GPROJI_INLINE bool gproji_begins_like(uint32_t count, const int32_t *node, uint32_t next_count, const int32_t *next) {
-    return next_count >= count && next[1] == node[1] && memcmp(next, node, (size_t)count * sizeof *node) == 0;
+    uint32_t k;
+    for (k = 0; k < count && next_count >= count && next[k] == node[k];) ++k;
+    return k == count;
 }
 
 /* The nodes of each row, without rows that join nothing more: those of one node, or with the first nodes of the row after
@@ -9494,7 +9497,7 @@ GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group
 /* Are there certainly more multipliers than `limit`? To see this costs less than to classify all rows. */
 GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
     int32_t i, r, count = 0, highest = -1;
-    for (i = 0; i < s->group_count; ++i) {
+    for (i = s->group_count - 1; i >= 0; --i) { /* wishes, which have many, are often the last */
         const gproji_group *g = &s->group[i];
         for (r = 0; !g->idle && r < g->row_count; ++r) {
             if (g->row[r].waits || g->row[r].wide) continue;
@@ -19218,7 +19221,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
-    int32_t h = mesh->face_halfedge[face], local[9], n, c, k;
+    int32_t h = mesh->face_halfedge[face], *local, n, c, k;
     double normal[3];
     if (group < 0) return;
     gproji_face_normal(form, face, normal);
@@ -19227,17 +19230,17 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     gproji_set_auxiliary(s, n, 3);
     form->normal[face] = n;
     s->coupled[n] = 1;
-    for (k = 0; k < 3; ++k) local[k] = n + k;
-    gproji_add_placed_row(s, group, 0, 3, unit, 3, local, -1, face);
+    local = gproji_add_placed_row(s, group, 0, 3, unit, 3, -1, face);
+    for (k = 0; k < 3 && local; ++k) local[k] = n + k;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
         s->coupled[i] = 1;
-        for (k = 0; k < 3; ++k) {
+        local = gproji_add_placed_row(s, group, 1, 6, edge, 9, 0, face);
+        for (k = 0; k < 3 && local; ++k) {
             local[2 * k] = n + k;
             local[2 * k + 1] = i + k;
             local[6 + k] = j + k;
         }
-        gproji_add_placed_row(s, group, 1, 6, edge, 9, local, 0, face);
     }
 }
 
@@ -19505,17 +19508,18 @@ typedef struct gproji_difference {
 } gproji_difference;
 
 /* The three rows of a difference, one a coordinate. Its points are different ones. Their number makes the terms: rows with
-   as many have them in common, where they follow each other. `term`: room for count + 1 terms and as many integers. */
+   as many have them in common, where they follow each other. `term`: room for count + 1 terms. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
                                            gproj_term *term) {
-    int32_t k, i, *local = (int32_t *)(void *)(term + d->count + 1);
+    int32_t k, i;
     if (!gproji_system_has_group(form->system, group)) return;
     for (i = 0; i <= d->count; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     for (k = 0; k < 3; ++k) {
-        int32_t last = form->system->group[group].row_count - 1;
+        int32_t last = form->system->group[group].row_count - 1, *local;
+        local = gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, 0, element);
+        if (!local) return;
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
-        gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, local, 0, element);
     }
 }
 
