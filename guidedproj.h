@@ -5263,13 +5263,15 @@ GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const in
     }
 }
 
-/* parent[k] = min { i > k : L_ik != 0 }. ancestor: work, shortcuts towards the root. */
-GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, const int32_t *order, const int32_t *place,
-                                             int32_t *parent, int32_t *ancestor) {
+/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` places are not adjacent to each other. ancestor: work,
+   shortcuts towards the root. */
+GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t apart, const int32_t *order,
+                                             const int32_t *place, int32_t *parent, int32_t *ancestor) {
     int32_t k, i, above;
     int64_t e;
     for (k = 0; k < graph->nodes; ++k) {
         parent[k] = ancestor[k] = -1;
+        if (k < apart) continue;
         gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
             for (i = place[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
@@ -5778,11 +5780,11 @@ GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
 }
 
 /* Elimination tree, column counts and their sums for the order in `out`, which becomes a postorder of the tree unless
-   `keep_order`. */
-GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, bool keep_order) {
+   `keep_order`. apart: see gproji_elimination_tree. */
+GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart, bool keep_order) {
     gproji_symbolic *out = an->out;
     gproji_invert(out->nodes, out->order, out->place);
-    gproji_elimination_tree(an->graph, out->order, out->place, an->parent, an->a);
+    gproji_elimination_tree(an->graph, apart, out->order, out->place, an->parent, an->a);
     if (keep_order) {
         gproji_column_counts_by_rows(an);
     } else {
@@ -5839,7 +5841,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, g
         forecast = gproji_forecast(&condensed->rest);
         if (forecast > (double)GPROJI_DISSECT_FORECAST * out->nodes) {
             if (!gproji_dissected_order(an, condensed)) return false;
-            gproji_count_factor(an, keep_order);
+            gproji_count_factor(an, condensed->count, keep_order);
             if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
             counted = true;
         }
@@ -5849,12 +5851,12 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, g
     if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
         if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
         if (!gproji_dissected_order(an, condensed)) return false;
-        gproji_count_factor(an, keep_order);
+        gproji_count_factor(an, condensed->count, keep_order);
         counted = true;
     }
     if (counted && out->flops < flops) return true;
     if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
-    gproji_count_factor(an, keep_order);
+    gproji_count_factor(an, 0, keep_order);
     return true;
 }
 
@@ -5868,7 +5870,7 @@ GPROJI_INTERNAL bool gproji_condensed_order(gproji_analysis *an, bool keep_order
         done = gproji_better_order(an, keep_order, &condensed);
     } else {
         done = gproji_condense(&condensed, an->keep->heap, an->graph) && gproji_dissected_order(an, &condensed);
-        if (done) gproji_count_factor(an, keep_order);
+        if (done) gproji_count_factor(an, condensed.count, keep_order);
     }
     gproji_pool_give_all(&condensed.pool);
     return done;
@@ -5888,7 +5890,7 @@ GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_choles
     } else {
         for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
     }
-    gproji_count_factor(an, options->disable_postorder);
+    gproji_count_factor(an, 0, options->disable_postorder);
     return true;
 }
 
