@@ -7680,6 +7680,13 @@ typedef struct gproji_hinge {
 } gproji_hinge;
 
 /* Steps by multipliers: see >>schur. `nodes` are the system's. */
+/* A node where multipliers meet, on its way into the front that eliminates the first of them. */
+typedef struct gproji_crossing {
+    int64_t value; /* where in W its rows begin */
+    int32_t count; /* multipliers */
+    int32_t size;  /* variables */
+} gproji_crossing;
+
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
@@ -7696,19 +7703,20 @@ typedef struct gproji_schur {
     int64_t *link_value;  /* where in `value` the element's block of W for that node begins: multipliers x its size */
     int64_t *entry_start; /* nodes + 1: the multipliers that meet at each node, in the order of their elimination */
     int32_t *entry;
-    int32_t *entry_at;    /* their storage rows in the node's front */
     int64_t *value_start; /* nodes + 1: where in `value` the node's rows of W begin: entries x its size */
     int64_t *root_start;  /* nodes: where in `root` its L^-1 begins: size x size */
-    int64_t *front_start; /* fronts + 1: the nodes of front f are front_node[front_start[f]..] */
-    int32_t *front_node;
-    double *value;    /* W */
-    double *root;     /* L^-1, D = L L' */
-    double *side;     /* 1 + wide_count columns: r + W b, and W U; then z and Y */
-    double *share;    /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
-    double *metric;   /* nodes: 1 and the sum of these */
-    uint8_t *turns;   /* nodes: is it in a row with auxiliary variables? */
-    double *triangle; /* elements x triangle_size: R, with the inverses of its diagonal */
-    double *work;     /* chunks x most */
+    int64_t *front_start; /* fronts + 1: the nodes of front f are crossing[front_start[f]..] */
+    gproji_crossing *crossing;
+    int64_t *front_entry; /* fronts: the multipliers at these nodes, one after the other, have the storage rows */
+    int32_t *entry_at;    /* entry_at[front_entry[f]..] */
+    double *value;        /* W */
+    double *root;         /* L^-1, D = L L' */
+    double *side;         /* 1 + wide_count columns: r + W b, and W U; then z and Y */
+    double *share;        /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
+    double *metric;       /* nodes: 1 and the sum of these */
+    uint8_t *turns;       /* nodes: is it in a row with auxiliary variables? */
+    double *triangle;     /* elements x triangle_size: R, with the inverses of its diagonal */
+    double *work;         /* chunks x most */
     int32_t chunks, wide, triangle_size;
     int32_t kept; /* variables from this one on are auxiliary (those before may be) */
     int64_t most; /* what one element needs of `work` */
@@ -9700,8 +9708,8 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     return true;
 }
 
-/* Sorts the elements at each node by their elimination, and the nodes by the front of their first. */
-GPROJI_INTERNAL void gproji_schur_order(gproj_system *s, gproji_incidence *in) {
+/* Sorts the elements at each node by their elimination, and the nodes by the front of their first: `sequence`. */
+GPROJI_INTERNAL void gproji_schur_order(gproj_system *s, gproji_incidence *in, int32_t *sequence) {
     gproji_schur *d = &s->schur;
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     int32_t v, f;
@@ -9719,7 +9727,7 @@ GPROJI_INTERNAL void gproji_schur_order(gproj_system *s, gproji_incidence *in) {
     for (f = 0; f < sy->fronts; ++f) d->front_start[f + 2] += d->front_start[f + 1];
     for (v = 0; v < s->node_count; ++v)
         if (in->row_start[v] < in->row_start[v + 1])
-            d->front_node[d->front_start[sy->front_of[sy->place[in->row_node[in->row_start[v]]]] + 1]++] = v;
+            sequence[d->front_start[sy->front_of[sy->place[in->row_node[in->row_start[v]]]] + 1]++] = v;
 }
 
 /* Where W has its blocks: node by node, in each the multipliers in the order of their elimination. */
@@ -9741,16 +9749,21 @@ GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, const gproji_inci
     d->entry_start[v] = entry, d->value_start[v] = value;
 }
 
-/* The storage rows of the multipliers at each node, in its front. at: work, of each multiplier. */
-GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, int32_t *at) {
+/* The nodes of each front, and the storage rows of their multipliers there. at: work, of each multiplier. */
+GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, const int32_t *sequence, int32_t *at) {
     gproji_schur *d = &s->schur;
     int32_t f;
-    int64_t k, i;
+    int64_t k, i, entry = 0;
     for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
+        d->front_entry[f] = entry;
         if (d->front_start[f] < d->front_start[f + 1]) gproji_map_rows(s->cholesky, f, s->cholesky->permutation, at);
-        for (k = d->front_start[f]; k < d->front_start[f + 1]; ++k)
-            for (i = d->entry_start[d->front_node[k]]; i < d->entry_start[d->front_node[k] + 1]; ++i)
-                d->entry_at[i] = at[d->entry[i]];
+        for (k = d->front_start[f]; k < d->front_start[f + 1]; ++k) {
+            int32_t v = sequence[k];
+            d->crossing[k].value = d->value_start[v];
+            d->crossing[k].count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]);
+            d->crossing[k].size = s->node_first[v + 1] - s->node_first[v];
+            for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i) d->entry_at[entry++] = at[d->entry[i]];
+        }
     }
 }
 
@@ -9857,7 +9870,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
     d->front_start =
         (int64_t *)gproji_pool_take_zeroed(pool, (int64_t)s->cholesky->symbolic.fronts + 2, sizeof(int64_t));
-    d->front_node = (int32_t *)gproji_pool_take(pool, nodes, sizeof(int32_t));
+    d->crossing = (gproji_crossing *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *d->crossing);
+    d->front_entry = (int64_t *)gproji_pool_take(pool, s->cholesky->symbolic.fronts, sizeof(int64_t));
     d->value = (double *)gproji_pool_take(pool, values, sizeof(double));
     d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
     d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * d->first[d->elements], sizeof(double));
@@ -9867,12 +9881,14 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = (double *)gproji_pool_take(pool, d->chunks * d->most, sizeof(double));
     return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
-           d->front_start && d->front_node && d->value && d->root && d->side && d->share && d->metric && d->turns &&
-           d->triangle && d->work;
+           d->front_start && d->crossing && d->front_entry && d->value && d->root && d->side && d->share && d->metric &&
+           d->turns && d->triangle && d->work;
 }
 
-/* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier. */
-GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, uint32_t *mark, int32_t *at) {
+/* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier;
+   sequence: of each node. */
+GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, uint32_t *mark,
+                                                int32_t *sequence, int32_t *at) {
     const gproji_schur *d = &s->schur;
     gproji_meetings graph;
     gproj_code code = GPROJ_ERROR_MEMORY;
@@ -9884,9 +9900,9 @@ GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidenc
     gproji_give_meetings(&s->own, &graph, (size_t)d->elements);
     if (code) return code;
     if (!gproji_schur_take(s)) return GPROJ_ERROR_MEMORY;
-    gproji_schur_order(s, in);
+    gproji_schur_order(s, in, sequence);
     gproji_schur_place_links(s, in);
-    gproji_schur_place_entries(s, at);
+    gproji_schur_place_entries(s, sequence, at);
     gproji_schur_place_locals(s, at);
     return GPROJ_OK;
 }
@@ -9898,11 +9914,13 @@ GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
     uint32_t *mark = (uint32_t *)gproji_take(&s->own, most, sizeof *mark);
     int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
+    int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *sequence);
     memset(&in, 0, sizeof in);
-    if (mark && at && gproji_take_local_places(s)) code = gproji_schur_arrange(s, &in, mark, at);
+    if (mark && at && sequence && gproji_take_local_places(s)) code = gproji_schur_arrange(s, &in, mark, sequence, at);
     gproji_incidence_give(&s->own, &in);
     gproji_give(&s->own, mark, most, sizeof *mark);
     gproji_give(&s->own, at, most, sizeof *at);
+    gproji_give(&s->own, sequence, (size_t)s->node_count, sizeof *sequence);
     return code;
 }
 
@@ -10432,36 +10450,15 @@ GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, c
 }
 
 /* W W' at a node, in the columns that belong to the storage rows [from, to). */
-GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, int32_t v, int32_t size, const gproji_panel *panel,
-                                           int32_t from, int32_t to) {
-    const int32_t *at = d->entry_at + d->entry_start[v];
-    int32_t count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]), first = 0, end = count, j;
-    const double *w = d->value + d->value_start[v];
+GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
+                                           const gproji_panel *panel, int32_t from, int32_t to) {
+    int32_t first = 0, end = count;
     while (first < end && at[first] < from) ++first;
     while (first < end && at[end - 1] >= to) --end;
     if (size == 3 && count == 4 && end - first == 4)
         gproji_schur_load_four(w, at, panel);
     else
-        for (j = first; j < end; ++j) gproji_schur_load_column(w, size, at, count, j, panel);
-}
-
-/* Begins to bring what gproji_schur_load_node needs into the cache: of the k-th node, and where it is of a later one. */
-GPROJI_INLINED void gproji_schur_expect(const gproj_system *s, int64_t k) {
-    const gproji_schur *d = &s->schur;
-    int64_t end = d->front_start[s->cholesky->symbolic.fronts];
-    if (k + GPROJI_SCHUR_AHEAD < end) {
-        int32_t v = d->front_node[k + GPROJI_SCHUR_AHEAD];
-        GPROJI_PREFETCH(s->node_first + v);
-        GPROJI_PREFETCH(d->entry_start + v);
-        GPROJI_PREFETCH(d->value_start + v);
-    }
-    if (k < end) {
-        int32_t v = d->front_node[k];
-        const double *w = d->value + d->value_start[v];
-        GPROJI_PREFETCH(d->entry_at + d->entry_start[v]);
-        GPROJI_PREFETCH(w);
-        GPROJI_PREFETCH(w + 8);
-    }
+        for (; first < end; ++first) gproji_schur_load_column(w, size, at, count, first, panel);
 }
 
 /* I + W W' of one front: see gproji_load. */
@@ -10469,15 +10466,17 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
                                              int32_t to) {
     const gproj_system *s = (const gproj_system *)user;
     const gproji_schur *d = &s->schur;
+    const gproji_crossing *node = d->crossing + d->front_start[front], *end = d->crossing + d->front_start[front + 1];
+    const int32_t *at = d->entry_at + d->front_entry[front];
     int32_t j;
-    int64_t k;
-    for (k = d->front_start[front]; k < d->front_start[front + 1]; ++k) {
-        int32_t v = d->front_node[k], size = s->node_first[v + 1] - s->node_first[v];
-        gproji_schur_expect(s, k + GPROJI_SCHUR_AHEAD);
-        if (size == 3)
-            gproji_schur_load_node(d, v, 3, panel, from, to);
+    for (; node < end; at += node++->count) {
+        const double *w = d->value + node->value, *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
+        GPROJI_PREFETCH(later);
+        GPROJI_PREFETCH(later + 8);
+        if (node->size == 3)
+            gproji_schur_load_node(w, 3, at, node->count, panel, from, to);
         else
-            gproji_schur_load_node(d, v, size, panel, from, to);
+            gproji_schur_load_node(w, node->size, at, node->count, panel, from, to);
     }
     for (j = 0; j < panel->w && from < panel->shape.end; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
 }
