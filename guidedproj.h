@@ -6137,14 +6137,6 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Where among the values the column of gproji_panel_column begins, for storage row `at` of front f. */
-GPROJI_INTERNAL int64_t gproji_column_place(const gproj_cholesky *c, int32_t f, int32_t at) {
-    const gproji_front *front = &c->symbolic.front[f];
-    gproji_shape shape = gproji_shape_of(front->width, front->below);
-    if (at < shape.end) return front->panel + gproji_shape_offset(shape, at);
-    return front->update - shape.end + gproji_update_offset(front->update_rows, at - shape.end);
-}
-
 /* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
    their graph (see gproji_graph). The options' permutation is one of the nodes. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
@@ -7715,17 +7707,16 @@ typedef struct gproji_schur {
     int64_t *root_start;  /* nodes: where in `root` its L^-1 begins: size x size */
     int64_t *front_start; /* fronts + 1: the nodes of front f are crossing[front_start[f]..] */
     gproji_crossing *crossing;
-    int64_t *front_entry;  /* fronts: the multipliers at these nodes, one after the other, have the storage rows */
-    int32_t *entry_at;     /* entry_at[front_entry[f]..], */
-    int64_t *entry_column; /* and their columns are there: see gproji_column_place */
-    double *value;         /* W */
-    double *root;          /* L^-1, D = L L' */
-    double *side;          /* 1 + wide_count columns: r + W b, and W U; then z and Y */
-    double *share;         /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
-    double *metric;        /* nodes: 1 and the sum of these */
-    uint8_t *turns;        /* nodes: is it in a row with auxiliary variables? */
-    double *triangle;      /* elements x triangle_size: R, with the inverses of its diagonal */
-    double *work;          /* chunks x most */
+    int64_t *front_entry; /* fronts: the multipliers at these nodes, one after the other, have the storage rows */
+    int32_t *entry_at;    /* entry_at[front_entry[f]..] */
+    double *value;        /* W */
+    double *root;         /* L^-1, D = L L' */
+    double *side;         /* 1 + wide_count columns: r + W b, and W U; then z and Y */
+    double *share;        /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
+    double *metric;       /* nodes: 1 and the sum of these */
+    uint8_t *turns;       /* nodes: is it in a row with auxiliary variables? */
+    double *triangle;     /* elements x triangle_size: R, with the inverses of its diagonal */
+    double *work;         /* chunks x most */
     int32_t chunks, wide, triangle_size;
     int32_t kept; /* variables from this one on are auxiliary (those before may be) */
     int64_t most; /* what one element needs of `work` */
@@ -9771,10 +9762,7 @@ GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, const int32_t *
             d->crossing[k].value = d->value_start[v];
             d->crossing[k].count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]);
             d->crossing[k].size = s->node_first[v + 1] - s->node_first[v];
-            for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, ++entry) {
-                d->entry_at[entry] = at[d->entry[i]];
-                d->entry_column[entry] = gproji_column_place(s->cholesky, f, d->entry_at[entry]);
-            }
+            for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i) d->entry_at[entry++] = at[d->entry[i]];
         }
     }
 }
@@ -9880,7 +9868,6 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
     d->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
     d->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    d->entry_column = (int64_t *)gproji_pool_take(pool, entries, sizeof(int64_t));
     d->front_start =
         (int64_t *)gproji_pool_take_zeroed(pool, (int64_t)s->cholesky->symbolic.fronts + 2, sizeof(int64_t));
     d->crossing = (gproji_crossing *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *d->crossing);
@@ -9894,8 +9881,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = (double *)gproji_pool_take(pool, d->chunks * d->most, sizeof(double));
     return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
-           d->entry_column && d->front_start && d->crossing && d->front_entry && d->value && d->root && d->side &&
-           d->share && d->metric && d->turns && d->triangle && d->work;
+           d->front_start && d->crossing && d->front_entry && d->value && d->root && d->side && d->share && d->metric &&
+           d->turns && d->triangle && d->work;
 }
 
 /* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier;
@@ -10438,9 +10425,10 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     }
 }
 
-/* From the j-th multiplier at a node its column of W W', in the storage rows `at` of all of them. */
+/* The column of W W' at a node that belongs to its j-th multiplier; at: the storage rows of all. */
 GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, const int32_t *at, int32_t count, int32_t j,
-                                             double *column) {
+                                             const gproji_panel *panel) {
+    double *column = gproji_panel_column(panel, at[j]);
     int32_t i, p;
     for (i = j; i < count; ++i) {
         double sum = 0;
@@ -10449,31 +10437,28 @@ GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, cons
     }
 }
 
-/* All four columns at a vertex of four quads, the most frequent node: without loops. place: see entry_column. */
-GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, const int64_t *place, double *values) {
+/* All four columns at a vertex of four quads, the most frequent node: without loops. */
+GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, const gproji_panel *panel) {
     double v[12]; /* copies, which what is stored leaves alone */
     int32_t to[4];
     memcpy(v, w, sizeof v);
     memcpy(to, at, sizeof to);
-    gproji_schur_load_column(v, 3, to, 4, 0, values + place[0]);
-    gproji_schur_load_column(v, 3, to, 4, 1, values + place[1]);
-    gproji_schur_load_column(v, 3, to, 4, 2, values + place[2]);
-    gproji_schur_load_column(v, 3, to, 4, 3, values + place[3]);
+    gproji_schur_load_column(v, 3, to, 4, 0, panel);
+    gproji_schur_load_column(v, 3, to, 4, 1, panel);
+    gproji_schur_load_column(v, 3, to, 4, 2, panel);
+    gproji_schur_load_column(v, 3, to, 4, 3, panel);
 }
 
-/* W W' at a node, in the columns that belong to the storage rows [from, to). entry: of its first multiplier. */
-GPROJI_INLINED void gproji_schur_load_node(const gproji_schur *d, const gproji_crossing *node, int32_t size,
-                                           int64_t entry, double *values, int32_t from, int32_t to) {
-    const double *w = d->value + node->value;
-    const int32_t *at = d->entry_at + entry;
-    const int64_t *place = d->entry_column + entry;
-    int32_t first = 0, end = node->count;
+/* W W' at a node, in the columns that belong to the storage rows [from, to). */
+GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
+                                           const gproji_panel *panel, int32_t from, int32_t to) {
+    int32_t first = 0, end = count;
     while (first < end && at[first] < from) ++first;
     while (first < end && at[end - 1] >= to) --end;
-    if (size == 3 && node->count == 4 && end - first == 4)
-        gproji_schur_load_four(w, at, place, values);
+    if (size == 3 && count == 4 && end - first == 4)
+        gproji_schur_load_four(w, at, panel);
     else
-        for (; first < end; ++first) gproji_schur_load_column(w, size, at, node->count, first, values + place[first]);
+        for (; first < end; ++first) gproji_schur_load_column(w, size, at, count, first, panel);
 }
 
 /* I + W W' of one front: see gproji_load. */
@@ -10482,17 +10467,16 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     const gproj_system *s = (const gproj_system *)user;
     const gproji_schur *d = &s->schur;
     const gproji_crossing *node = d->crossing + d->front_start[front], *end = d->crossing + d->front_start[front + 1];
-    double *values = s->cholesky->values;
-    int64_t entry = d->front_entry[front];
+    const int32_t *at = d->entry_at + d->front_entry[front];
     int32_t j;
-    for (; node < end; entry += node++->count) {
-        const double *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
+    for (; node < end; at += node++->count) {
+        const double *w = d->value + node->value, *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
         GPROJI_PREFETCH(later + 8);
         if (node->size == 3)
-            gproji_schur_load_node(d, node, 3, entry, values, from, to);
+            gproji_schur_load_node(w, 3, at, node->count, panel, from, to);
         else
-            gproji_schur_load_node(d, node, node->size, entry, values, from, to);
+            gproji_schur_load_node(w, node->size, at, node->count, panel, from, to);
     }
     for (j = 0; j < panel->w && from < panel->shape.end; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
 }
