@@ -5804,7 +5804,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart, boo
 enum {
     GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
     GPROJI_DISSECT_FORECAST = 1200,     /* per node; see gproji_forecast */
-    GPROJI_DISSECT_LEAST = 2500,        /* nodes of a graph for which a forecast is made */
+    GPROJI_DISSECT_LEAST = 600,         /* nodes of a graph for which a forecast is made */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
