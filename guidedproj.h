@@ -9571,9 +9571,8 @@ GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element)
     return false;
 }
 
-/* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node; links:
-   NULL to count only. */
-GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark, int32_t *links) {
+/* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node. */
+GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark) {
     gproji_schur *d = &s->schur;
     int64_t k, l, count = 0;
     int32_t e, v;
@@ -9589,8 +9588,7 @@ GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark, int32_
                 if (s->auxiliary[variable]) d->auxiliary[e] = node;
                 if (s->auxiliary[variable] || mark[node] == e) continue;
                 mark[node] = e;
-                if (links) links[count] = node;
-                ++count;
+                d->link_node[count++] = node;
             }
         }
     }
@@ -9643,7 +9641,8 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
 /* Sorts rows, and finds what the elements join and leave. False: no memory, or d->on is false and it does not pay. */
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
-    int64_t elements = d->elements, nodes = s->node_count;
+    int64_t elements = d->elements, nodes = s->node_count, links = 0;
+    int32_t i;
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
     d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
@@ -9654,9 +9653,11 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->closes || !d->first || !d->link_start)
         return false;
     gproji_schur_sort_rows(s, belongs);
-    d->link_node = (int32_t *)gproji_pool_take(&d->pool, gproji_schur_scan(s, mark, NULL), sizeof(int32_t));
+    for (i = 0; i < s->group_count; ++i) links += (int64_t)gproji_local_count(&s->group[i]); /* at most */
+    d->link_node = (int32_t *)gproji_pool_take(&d->pool, links, sizeof(int32_t));
     if (!d->link_node) return false;
-    gproji_schur_scan(s, mark, d->link_node);
+    d->link_node = (int32_t *)gproji_pool_shrink(&d->pool, gproji_schur_scan(s, mark), sizeof(int32_t));
+    if (!d->link_node) return false;
     d->on = gproji_schur_number(s, mark);
     return true;
 }
