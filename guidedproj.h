@@ -10585,7 +10585,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. These
+   are small where dx is, so that rounding of phi never makes a short step look like one that raises M. A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
    in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
    goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
@@ -10924,8 +10925,18 @@ GPROJI_INTERNAL void gproji_add_quartic(const gproji_hinge *row, double c[5]) {
     c[4] += w2 * q * q;
 }
 
-/* M(t) along dx, for x = saved + dx and rows linearised at `saved`: phi(saved + t dx) = phi + t h + t^2 q with
-   h = grad phi'dx, q = phi(saved + dx) - phi - h. Of the bounds' rows those that a t <= 2 may violate. */
+/* The row's products at dx: phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference. */
+GPROJI_INTERNAL double gproji_row_products(const gproji_group *g, const gproji_row *row, const double *dx) {
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    const int32_t *variable = g->local_variable + row->local;
+    double sum = 0;
+    for (; term < end; ++term)
+        if (term->j >= 0) sum += term->a * dx[variable[term->i]] * dx[variable[term->j]];
+    return sum;
+}
+
+/* M(t) along dx, for rows linearised where it begins: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. Of
+   the bounds' rows those that a t <= 2 may violate. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -10939,7 +10950,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_value(g, r, s->x) - along.phi - along.h;
+            along.q = gproji_row_products(g, row, s->step);
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
