@@ -514,7 +514,7 @@ typedef enum gproj_outcome {
 
 /* What one iteration did; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number;    /* from 1 */
+    int32_t number;    /* from 1; numbers are left out where no step can be found before a schedule ends */
     double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
     double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
     double energy;     /* the wishes' part of it */
@@ -552,7 +552,7 @@ typedef struct gproj_solve_options {
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations; /* steps taken */
+    int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
     int32_t damped;     /* of these, steps that were damped, shortened, guarded or met bounds */
     double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;   /* what it was compared with */
@@ -10588,9 +10588,10 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. These
    are small where dx is, so that rounding of phi never makes a short step look like one that raises M. A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
-   in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
-   goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
-   needed.
+   in the method of Levenberg (1944) and Marquardt (1963). Where no eps helps, x is at a minimum; that is a verdict on what
+   must hold only after wishes and others have gone as they are scheduled, so iterations are left out until then. Near the
+   end and without wishes, a step along which the merit goes on falling beyond t = 1 is lengthened: at singular points of
+   the constraints Newton's steps are half of what is needed.
 
    With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, where a bound's row counts
    only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
@@ -10684,10 +10685,14 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     loop->lap = now;
 }
 
+/* The last iteration in which a group has a weight; 0: it keeps one for ever. */
+GPROJI_INTERNAL int32_t gproji_last_iteration(const gproj_system *s, const gproji_group *g) {
+    return g->schedule.last == 0 && g->kind == GPROJ_WISH ? s->default_last : g->schedule.last;
+}
+
 /* The weight of a group in iteration n. */
 GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
-    int32_t last = g->schedule.last;
-    if (last == 0 && g->kind == GPROJ_WISH) last = s->default_last;
+    int32_t last = gproji_last_iteration(s, g);
     if (last > 0 && n > last) return 0;
     return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
@@ -11236,6 +11241,28 @@ GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_sta
     return a->residual < 0.9 * b->residual || a->merit < 0.6 * b->merit;
 }
 
+/* The last iteration with the weights of n, but for a decay of what must hold. */
+GPROJI_INTERNAL int32_t gproji_last_alike(const gproj_system *s, int32_t n) {
+    int32_t end = INT32_MAX, i;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        int32_t last = gproji_last_iteration(s, g);
+        if (!(g->weight > 0) || g->row_count == 0) continue;
+        if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1) return n;
+        if (last > 0) end = gproji_min(end, last);
+    }
+    return end;
+}
+
+/* Iteration n has found no step: leaves out those in which nothing would be different. False: that is all the others. */
+GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
+    int32_t last = gproji_last_alike(loop->system, n);
+    if (last >= loop->iterations) return false;
+    loop->frame_first += last - loop->result.iterations; /* they take no time */
+    loop->result.iterations = last;
+    return true;
+}
+
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11246,8 +11273,12 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
-        if (!gproji_iterate(loop))
-            return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
+        if (!gproji_iterate(loop)) {
+            if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+            if (gproji_holds(loop)) return GPROJ_CONVERGED;
+            if (!gproji_leave_out(loop, loop->result.iterations + 1)) return GPROJ_STALLED;
+            continue;
+        }
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;

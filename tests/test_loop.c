@@ -360,6 +360,39 @@ GPROJT_TEST(steps_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* As long as there is a group that no step can serve there is no step. That it will go is known from its schedule: the
+   solve waits for that, in no time, and then does what can be done. */
+static void gprojt_check_wait(gproj_kind kind, gproj_schedule schedule, int32_t iterations, gproj_outcome outcome,
+                              int32_t last) {
+    static const double x[2] = {1, 5};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.epsilon = 1e-150;
+    gprojt_add_group(s, "other", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "faint", kind, 1);
+    gprojt_add_linear(s, 0, 1, 1, -2, 0);
+    gprojt_add_linear(s, 1, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
+    gproj_system_set_schedule(s, 1, schedule);
+    result = gproj_system_solve(s, iterations, &options);
+    GPROJT_CHECK(result.outcome == outcome && result.iterations == last);
+    GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == (outcome == GPROJ_CONVERGED ? 2 : 5));
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(no_verdict_before_schedules_end) {
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 8), 9, GPROJ_CONVERGED, 9);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 9), 9, GPROJ_STALLED, 0); /* it does not end in time */
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 0), 9, GPROJ_STALLED, 0);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 1, 1 << 30), INT32_MAX, GPROJ_CONVERGED, (1 << 30) + 1);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0.9, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0.9, 0), 9, GPROJ_STALLED, 8); /* tried with each weight */
+    gprojt_check_wait(GPROJ_CONSTRAINT, gprojt_schedule(1, 0.9, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_CONSTRAINT, gprojt_schedule(1, 0.9, 0), 9, GPROJ_STALLED, 0);
+}
+
 /* eps^2 that vanishes in floating point leaves a matrix of zeros. */
 GPROJT_TEST(not_positive_definite) {
     static const double x[2] = {1, 2};
@@ -1025,6 +1058,7 @@ int main(void) {
     GPROJT_RUN(values_that_are_no_numbers);
     GPROJT_RUN(rows_that_overflow);
     GPROJT_RUN(steps_that_overflow);
+    GPROJT_RUN(no_verdict_before_schedules_end);
     GPROJT_RUN(not_positive_definite);
     GPROJT_RUN(steps_that_raise_the_merit_are_damped);
     GPROJT_RUN(steps_are_lengthened_near_singular_points);
