@@ -16608,6 +16608,20 @@ GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *
     return gproji_dot3(b, face);
 }
 
+/* The same of all faces; `area`: the sum of their areas. */
+GPROJI_INTERNAL double gproji_faces_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
+                                           double *gradient, double *area) {
+    double sum = 0, all = 0;
+    int32_t f;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double face[3] = {0, 0, 0};
+        sum += gproji_face_volume(mesh, position, apex, f, gradient, face);
+        all += gproji_length3(face);
+    }
+    *area = all / 2;
+    return sum;
+}
+
 /* What the wall from a face's edge pq at the boundary down to the plane through `apex` adds to six times the volume, in
    coordinates from there (p x q)_z (p_z + q_z), and to its derivatives with what the faces' lack there, - p x q. */
 GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double apex[3], int32_t p, int32_t q,
@@ -16631,15 +16645,11 @@ GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double a
 GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
                                      double *area) {
     size_t count = gradient ? 3 * (size_t)mesh->vertex_count : 0, k;
-    double sum = 0, all = 0, apex[3];
-    int32_t f, i;
+    double sum, all, apex[3];
+    int32_t i;
     gproji_set3(position[0], position[1], -height, apex);
     if (gradient) memset(gradient, 0, count * sizeof *gradient);
-    for (f = 0; f < mesh->face_count; ++f) {
-        double face[3] = {0, 0, 0};
-        sum += gproji_face_volume(mesh, position, apex, f, gradient, face);
-        all += gproji_length3(face);
-    }
+    sum = gproji_faces_volume(mesh, position, apex, gradient, &all);
     for (i = 0; i < mesh->loop_count; ++i) {
         int32_t start = mesh->loop_halfedge[i], h = start;
         do { /* against the faces' direction */
@@ -16648,7 +16658,7 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
         } while (h != start);
     }
     for (k = 0; k < count; ++k) gradient[k] *= 1.0 / 6;
-    if (area) *area = all / 2;
+    if (area) *area = all;
     return sum / 6;
 }
 
