@@ -514,7 +514,7 @@ typedef enum gproj_outcome {
 
 /* What one iteration did; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number;    /* from 1 */
+    int32_t number;    /* from 1; numbers are left out where no step can be found before a schedule ends */
     double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
     double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
     double energy;     /* the wishes' part of it */
@@ -552,7 +552,7 @@ typedef struct gproj_solve_options {
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations; /* steps taken */
+    int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
     int32_t damped;     /* of these, steps that were damped, shortened, guarded or met bounds */
     double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;   /* what it was compared with */
@@ -2425,6 +2425,16 @@ GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count
     for (i = 0; i + 4 <= count; i += 4)
         for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
     for (; i < count; ++i) sum[0] += a[i] * b[i];
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* sum |a_i b_i|, in the same way. */
+GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, size_t count) {
+    double sum[4] = {0, 0, 0, 0};
+    size_t i, k;
+    for (i = 0; i + 4 <= count; i += 4)
+        for (k = 0; k < 4; ++k) sum[k] += fabs(a[i + k] * b[i + k]);
+    for (; i < count; ++i) sum[0] += fabs(a[i] * b[i]);
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
@@ -9041,16 +9051,28 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
     return phi;
 }
 
+/* The same for a run (see gproji_row): its value is summed up as gproji_dot does it. */
+GPROJI_INTERNAL double gproji_linearise_run(const gproji_group *g, const gproji_row *row, const double *x,
+                                            double *gradient, double *size) {
+    const gproj_term *term = g->term + row->term;
+    uint32_t t;
+    x += g->local_variable[row->local];
+    for (t = 0; t < row->terms; ++t) gradient[t] = term[t].a;
+    *size = fabs(row->constant) + gproji_absolute_dot(gradient, x, row->terms);
+    return row->constant + gproji_dot(gradient, x, row->terms);
+}
+
 /* phi and grad phi of a row; one without weight gets zeros. Rows of bounds act where they are violated, or where they did
    in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger than s->rounding, phi is added
    up with more digits. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     double *gradient = g->local_gradient + row->local, phi, size;
-    memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    if (!row->run || !(row->weight > 0)) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
     row->phi = 0;
     if (!(row->weight > 0)) row->active = false;
     if (!(row->weight > 0)) return;
-    phi = gproji_linearise_row(g, row, s->x, gradient, &size);
+    phi = row->run ? gproji_linearise_run(g, row, s->x, gradient, &size)
+                   : gproji_linearise_row(g, row, s->x, gradient, &size);
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
     row->phi = phi;
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -9122,6 +9144,9 @@ GPROJI_INLINE double gproji_weight2(const gproji_group *g, const gproji_row *row
 GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row *row, const double *v) {
     double sum = 0;
     int64_t l;
+    if (row->run)
+        return gproji_dot(g->local_gradient + row->local, v + g->local_variable[row->local],
+                          (size_t)(row[1].local - row->local));
     for (l = row->local; l < row[1].local; ++l) sum += g->local_gradient[l] * v[g->local_variable[l]];
     return sum;
 }
@@ -10392,23 +10417,28 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
 
-/* side = a + W x at the multipliers of an element. */
-GPROJI_INLINED void gproji_schur_times(const gproj_system *s, int32_t e, const double *a, const double *x,
-                                       double *side) {
+/* side = a + W x at the multipliers of some elements. */
+GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
+                                        double *side) {
     const gproji_schur *d = &s->schur;
-    int32_t first = d->first[e], left = d->first[e + 1] - first, j, k;
-    int64_t l;
-    for (j = 0; j < left; ++j) {
-        double sum = a ? a[first + j] : 0;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            int32_t v = d->link_node[l], at = s->node_first[v], size = s->node_first[v + 1] - at;
-            const double *w = d->value + d->link_value[l] + (int64_t)j * size, *b = x + at;
-            if (size == 3)
-                sum += w[0] * b[0] + w[1] * b[1] + w[2] * b[2];
-            else
-                for (k = 0; k < size; ++k) sum += w[k] * b[k];
+    const int32_t *node_first = s->node_first;
+    for (; e < end; ++e) {
+        int32_t first = d->first[e], left = d->first[e + 1] - first, j, k;
+        const int32_t *node = d->link_node + d->link_start[e], *last = d->link_node + d->link_start[e + 1];
+        for (j = 0; j < left; ++j) {
+            const int64_t *value = d->link_value + d->link_start[e];
+            const int32_t *v = node;
+            double sum = a ? a[first + j] : 0;
+            for (; v < last; ++v, ++value) {
+                int32_t at = node_first[*v], size = node_first[*v + 1] - at;
+                const double *w = d->value + *value + (ptrdiff_t)j * size, *b = x + at;
+                if (size == 3)
+                    sum += w[0] * b[0] + w[1] * b[1] + w[2] * b[2];
+                else
+                    for (k = 0; k < size; ++k) sum += w[k] * b[k];
+            }
+            side[first + j] = sum;
         }
-        side[first + j] = sum;
     }
 }
 
@@ -10418,12 +10448,9 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    bool own = gproji_schur_has_own(s);
-    for (; e < end; ++e) {
-        if (own) gproji_schur_times(s, e, d->side, s->step, d->side);
-        for (i = 0; i < d->wide; ++i)
-            gproji_schur_times(s, e, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
-    }
+    if (gproji_schur_has_own(s)) gproji_schur_times(s, e, end, d->side, s->step, d->side);
+    for (i = 0; i < d->wide; ++i)
+        gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
 
 /* The column of W W' at a node that belongs to its j-th multiplier; at: the storage rows of all. */
@@ -10626,11 +10653,13 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and phi(x + dx). A step that would
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. These
+   are small where dx is, so that rounding of phi never makes a short step look like one that raises M. A step that would
    raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
-   in the method of Levenberg (1944) and Marquardt (1963). Near the end and without wishes, a step along which the merit
-   goes on falling beyond t = 1 is lengthened: at singular points of the constraints Newton's steps are half of what is
-   needed.
+   in the method of Levenberg (1944) and Marquardt (1963). Where no eps helps, x is at a minimum; that is a verdict on what
+   must hold only after wishes and others have gone as they are scheduled, so iterations are left out until then. Near the
+   end and without wishes, a step along which the merit goes on falling beyond t = 1 is lengthened: at singular points of
+   the constraints Newton's steps are half of what is needed.
 
    With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, where a bound's row counts
    only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
@@ -10724,10 +10753,14 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     loop->lap = now;
 }
 
+/* The last iteration in which a group has a weight; 0: it keeps one for ever. */
+GPROJI_INTERNAL int32_t gproji_last_iteration(const gproj_system *s, const gproji_group *g) {
+    return g->schedule.last == 0 && g->kind == GPROJ_WISH ? s->default_last : g->schedule.last;
+}
+
 /* The weight of a group in iteration n. */
 GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
-    int32_t last = g->schedule.last;
-    if (last == 0 && g->kind == GPROJ_WISH) last = s->default_last;
+    int32_t last = gproji_last_iteration(s, g);
     if (last > 0 && n > last) return 0;
     return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
@@ -10787,14 +10820,15 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* By how much rounding may change the value of a linear row of a compiled group. */
+/* By how much rounding may change the value of a linear row of a compiled group. Four sums: see gproji_dot. */
 GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, const double *x) {
     const int32_t *variable = g->local_variable + g->row[row].local;
-    double sum = 0;
-    int64_t t;
-    for (t = g->row[row].term; t < (int64_t)g->row[row].term + g->row[row].terms; ++t)
-        if (g->term[t].j < 0) sum += fabs(g->term[t].a * x[variable[g->term[t].i]]);
-    return 16 * DBL_EPSILON * sum;
+    const gproj_term *term = g->term + g->row[row].term;
+    double sum[4] = {0, 0, 0, 0};
+    uint32_t t;
+    for (t = 0; t < g->row[row].terms; ++t)
+        if (term[t].j < 0) sum[t % 4] += fabs(term[t].a * x[variable[term[t].i]]);
+    return 16 * DBL_EPSILON * ((sum[0] + sum[1]) + (sum[2] + sum[3]));
 }
 
 /* A pass over all variables, by several threads. */
@@ -10965,8 +10999,18 @@ GPROJI_INTERNAL void gproji_add_quartic(const gproji_hinge *row, double c[5]) {
     c[4] += w2 * q * q;
 }
 
-/* M(t) along dx, for x = saved + dx and rows linearised at `saved`: phi(saved + t dx) = phi + t h + t^2 q with
-   h = grad phi'dx, q = phi(saved + dx) - phi - h. Of the bounds' rows those that a t <= 2 may violate. */
+/* The row's products at dx: phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference. */
+GPROJI_INTERNAL double gproji_row_products(const gproji_group *g, const gproji_row *row, const double *dx) {
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    const int32_t *variable = g->local_variable + row->local;
+    double sum = 0;
+    for (; term < end; ++term)
+        if (term->j >= 0) sum += term->a * dx[variable[term->i]] * dx[variable[term->j]];
+    return sum;
+}
+
+/* M(t) along dx, for rows linearised where it begins: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. Of
+   the bounds' rows those that a t <= 2 may violate. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -10980,7 +11024,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_value(g, r, s->x) - along.phi - along.h;
+            along.q = gproji_row_products(g, row, s->step);
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
@@ -11266,6 +11310,28 @@ GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_sta
     return a->residual < 0.9 * b->residual || a->merit < 0.6 * b->merit;
 }
 
+/* The last iteration with the weights of n, but for a decay of what must hold. */
+GPROJI_INTERNAL int32_t gproji_last_alike(const gproj_system *s, int32_t n) {
+    int32_t end = INT32_MAX, i;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        int32_t last = gproji_last_iteration(s, g);
+        if (!(g->weight > 0) || g->row_count == 0) continue;
+        if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1) return n;
+        if (last > 0) end = gproji_min(end, last);
+    }
+    return end;
+}
+
+/* Iteration n has found no step: leaves out those in which nothing would be different. False: that is all the others. */
+GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
+    int32_t last = gproji_last_alike(loop->system, n);
+    if (last >= loop->iterations) return false;
+    loop->frame_first += last - loop->result.iterations; /* they take no time */
+    loop->result.iterations = last;
+    return true;
+}
+
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11276,8 +11342,12 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
-        if (!gproji_iterate(loop))
-            return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_STALLED;
+        if (!gproji_iterate(loop)) {
+            if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+            if (gproji_holds(loop)) return GPROJ_CONVERGED;
+            if (!gproji_leave_out(loop, loop->result.iterations + 1)) return GPROJ_STALLED;
+            continue;
+        }
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
@@ -16556,25 +16626,10 @@ GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex)
     return sum;
 }
 
-/* The volume between one triangle with the vectorial area A and the plane z = -height: A_z times its mean height. With
-   `gradient` (of a, b, c) the derivatives are added to it. */
-GPROJI_INTERNAL double gproji_triangle_volume(const double *const corner[3], const double area[3], double height,
-                                              double *const gradient[3]) {
-    double mean = height + (corner[0][2] + corner[1][2] + corner[2][2]) / 3;
-    int32_t k;
-    for (k = 0; gradient && k < 3; ++k) {
-        const double *b = corner[(k + 1) % 3], *c = corner[(k + 2) % 3];
-        gradient[k][0] += mean * (b[1] - c[1]) / 2;
-        gradient[k][1] += mean * (c[0] - b[0]) / 2;
-        gradient[k][2] += area[2] / 3;
-    }
-    return area[2] * mean;
-}
-
-/* What a face adds to six times the volume of a closed mesh, by tetrahedra of the origin and the triangles from its first
-   corner, and to the derivatives of that, which are right for all faces together; `face`: twice its vectorial area. */
-GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, int32_t f, double *gradient,
-                                          double face[3]) {
+/* What a face adds to six times the volume between the mesh and `apex`, by tetrahedra of that and the triangles from the
+   face's first corner, and to the derivatives of the volume where the mesh is closed; `face`: twice its vectorial area. */
+GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
+                                          int32_t f, double *gradient, double face[3]) {
     int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
     const double *first = position + 3 * (size_t)mesh->origin[start];
     double b[3], c[3], area[3], before[3] = {0, 0, 0};
@@ -16590,57 +16645,62 @@ GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *
     }
     if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
     if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
-    return gproji_dot3(first, face);
+    gproji_sub3(first, apex, b);
+    return gproji_dot3(b, face);
 }
 
-/* gproji_volume of a closed mesh. */
-GPROJI_INTERNAL double gproji_closed_volume(const gproj_mesh *mesh, const double *position, double *gradient,
-                                            double *area) {
-    size_t count = gradient ? 3 * (size_t)mesh->vertex_count : 0, i;
+/* The same of all faces; `area`: the sum of their areas. */
+GPROJI_INTERNAL double gproji_faces_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
+                                           double *gradient, double *area) {
     double sum = 0, all = 0;
     int32_t f;
     for (f = 0; f < mesh->face_count; ++f) {
         double face[3] = {0, 0, 0};
-        sum += gproji_face_volume(mesh, position, f, gradient, face);
+        sum += gproji_face_volume(mesh, position, apex, f, gradient, face);
         all += gproji_length3(face);
     }
-    for (i = 0; i < count; ++i) gradient[i] *= 1.0 / 6;
-    if (area) *area = all / 2;
-    return sum / 6;
+    *area = all / 2;
+    return sum;
+}
+
+/* What the wall from a face's edge pq at the boundary down to the plane through `apex` adds to six times the volume, in
+   coordinates from there (p x q)_z (p_z + q_z), and to its derivatives with what the faces' lack there, - p x q. */
+GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double apex[3], int32_t p, int32_t q,
+                                          double *gradient) {
+    double a[3], b[3], area[3], height;
+    gproji_sub3(position + 3 * (size_t)p, apex, a);
+    gproji_sub3(position + 3 * (size_t)q, apex, b);
+    gproji_cross3(a, b, area);
+    height = a[2] + b[2];
+    if (gradient) {
+        gradient[3 * (size_t)p] += height * b[1] - area[0];
+        gradient[3 * (size_t)p + 1] -= height * b[0] + area[1];
+        gradient[3 * (size_t)q] -= height * a[1] + area[0];
+        gradient[3 * (size_t)q + 1] += height * a[0] - area[1];
+    }
+    return area[2] * height;
 }
 
 /* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
    areas; `gradient` becomes the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
 GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
                                      double *area) {
-    double sum = 0, all = 0, *slope[3];
-    const double *corner[3];
-    int32_t f, k, h;
-    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
-    if (mesh->loop_count == 0) return gproji_closed_volume(mesh, position, gradient, area);
-    for (f = 0; f < mesh->face_count; ++f) {
-        int32_t start = mesh->face_halfedge[f];
-        double face[3] = {0, 0, 0}, b[3], c[3], vector[3];
-        for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
-            size_t vertex[3];
-            vertex[0] = (size_t)mesh->origin[start];
-            vertex[1] = (size_t)mesh->origin[h];
-            vertex[2] = (size_t)mesh->origin[mesh->next[h]];
-            for (k = 0; k < 3; ++k) {
-                corner[k] = position + 3 * vertex[k];
-                slope[k] = gradient ? gradient + 3 * vertex[k] : NULL;
-            }
-            gproji_sub3(corner[1], corner[0], b);
-            gproji_sub3(corner[2], corner[0], c);
-            gproji_cross3(b, c, vector);
-            gproji_set3(vector[0] / 2, vector[1] / 2, vector[2] / 2, vector);
-            gproji_add_scaled3(1, vector, face);
-            sum += gproji_triangle_volume(corner, vector, height, gradient ? slope : NULL);
-        }
-        all += gproji_length3(face);
+    size_t count = gradient ? 3 * (size_t)mesh->vertex_count : 0, k;
+    double sum, all, apex[3];
+    int32_t i;
+    gproji_set3(position[0], position[1], -height, apex);
+    if (gradient) memset(gradient, 0, count * sizeof *gradient);
+    sum = gproji_faces_volume(mesh, position, apex, gradient, &all);
+    for (i = 0; i < mesh->loop_count; ++i) {
+        int32_t start = mesh->loop_halfedge[i], h = start;
+        do { /* against the faces' direction */
+            sum += gproji_wall_volume(position, apex, mesh->origin[mesh->next[h]], mesh->origin[h], gradient);
+            h = mesh->next[h];
+        } while (h != start);
     }
+    for (k = 0; k < count; ++k) gradient[k] *= 1.0 / 6;
     if (area) *area = all;
-    return sum;
+    return sum / 6;
 }
 
 GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
@@ -20420,16 +20480,14 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     const gproji_part *part = (const gproji_part *)user;
     gproj_form *form = part->form;
     const double *x = gproj_system_values(system);
-    double height = form->centre[2] * form->scale, area, constant;
+    double height = form->centre[2] * form->scale, area, constant, scale;
     int32_t count, t;
     gproj_term *term = gproji_row_terms(system, group, 0, &count);
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
-    area = gproji_fmax(area, 1e-12);
-    constant /= area;
-    for (t = 0; t < count; ++t) {
-        term[t].a = part->gradient[t] / area;
-        constant -= term[t].a * x[t]; /* in the order of the row's value: their roundings are alike */
-    }
+    scale = 1 / gproji_fmax(area, 1e-12);
+    for (t = 0; t < count; ++t) term[t].a = part->gradient[t] *= scale;
+    /* summed up as the row's value is: their roundings are the same */
+    constant = scale * constant - gproji_dot(part->gradient, x, (size_t)count);
     gproj_system_set_row(system, group, 0, NULL, constant);
 }
 

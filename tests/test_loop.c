@@ -360,6 +360,39 @@ GPROJT_TEST(steps_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* As long as there is a group that no step can serve there is no step. That it will go is known from its schedule: the
+   solve waits for that, in no time, and then does what can be done. */
+static void gprojt_check_wait(gproj_kind kind, gproj_schedule schedule, int32_t iterations, gproj_outcome outcome,
+                              int32_t last) {
+    static const double x[2] = {1, 5};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.epsilon = 1e-150;
+    gprojt_add_group(s, "other", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "faint", kind, 1);
+    gprojt_add_linear(s, 0, 1, 1, -2, 0);
+    gprojt_add_linear(s, 1, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
+    gproj_system_set_schedule(s, 1, schedule);
+    result = gproj_system_solve(s, iterations, &options);
+    GPROJT_CHECK(result.outcome == outcome && result.iterations == last);
+    GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == (outcome == GPROJ_CONVERGED ? 2 : 5));
+    gproj_system_destroy(s);
+}
+
+GPROJT_TEST(no_verdict_before_schedules_end) {
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 8), 9, GPROJ_CONVERGED, 9);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 9), 9, GPROJ_STALLED, 0); /* it does not end in time */
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0, 0), 9, GPROJ_STALLED, 0);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 1, 1 << 30), INT32_MAX, GPROJ_CONVERGED, (1 << 30) + 1);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0.9, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_WISH, gprojt_schedule(1, 0.9, 0), 9, GPROJ_STALLED, 8); /* tried with each weight */
+    gprojt_check_wait(GPROJ_CONSTRAINT, gprojt_schedule(1, 0.9, 3), 9, GPROJ_CONVERGED, 4);
+    gprojt_check_wait(GPROJ_CONSTRAINT, gprojt_schedule(1, 0.9, 0), 9, GPROJ_STALLED, 0);
+}
+
 /* eps^2 that vanishes in floating point leaves a matrix of zeros. */
 GPROJT_TEST(not_positive_definite) {
     static const double x[2] = {1, 2};
@@ -515,6 +548,52 @@ GPROJT_TEST(a_larger_epsilon_where_no_length_is_good) {
         GPROJT_CHECK(watch.seen[n].merit <= before || before < 1e-15);
     }
     gproj_system_destroy(s);
+}
+
+/* A triangle in the plane that shall have edges of length 1, at (offset, offset), a little away from that. */
+static gproj_system *gprojt_triangle(double offset, uint64_t seed) {
+    static const double at[6] = {0.1, 0.2, 1.3, 0.1, 0.3, 1.1};
+    double x[6];
+    gproj_system *s;
+    int32_t k;
+    for (k = 0; k < 6; ++k) x[k] = offset + at[k] + 0.3 * gprojt_uniform(&seed);
+    s = gprojt_system(NULL, 6, 2, x);
+    gprojt_add_group(s, "lengths", GPROJ_CONSTRAINT, 1);
+    for (k = 0; k < 3; ++k) gprojt_add_distance(s, 0, 2 * k, 2 * (k + 1) % 6, 2, 1, k);
+    return s;
+}
+
+/* Far from the origin the terms of a length cancel, and its rounding is large beside what short steps change. */
+GPROJT_TEST(rounding_of_large_terms_damps_no_step) {
+    uint64_t seed;
+    for (seed = 1; seed <= 10; ++seed) {
+        gproj_system *s = gprojt_triangle(1e7, seed);
+        gproj_result result = gproj_system_solve(s, 20, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped == 0 && result.iterations <= 6);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Long after the minimum of constraints and wishes is reached, where a step changes the merit by less than its rounding,
+   steps are found at once and go on becoming shorter. */
+GPROJT_TEST(steps_at_a_minimum_are_not_damped) {
+    uint64_t seed;
+    for (seed = 1; seed <= 10; ++seed) {
+        gproj_system *s = gprojt_triangle(0, seed);
+        gproj_result result;
+        gprojt_watch watch;
+        gproj_solve_options options;
+        int32_t k;
+        gprojt_add_group(s, "wish", GPROJ_WISH, 0.3);
+        for (k = 0; k < 6; ++k) gprojt_add_linear(s, 1, k, 1, -0.3 * k, k);
+        gproj_system_set_schedule(s, 1, gprojt_schedule(0.3, 0, 50));
+        memset(&watch, 0, sizeof watch);
+        options = gprojt_watched(&watch);
+        result = gproj_system_solve(s, 60, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped == 0 && result.iterations <= 55);
+        GPROJT_CHECK(watch.seen[39].residual > 1e-3 && watch.seen[39].step < 1e-12);
+        gproj_system_destroy(s);
+    }
 }
 
 static gproji_course gprojt_course(const double c[5]) {
@@ -979,12 +1058,15 @@ int main(void) {
     GPROJT_RUN(values_that_are_no_numbers);
     GPROJT_RUN(rows_that_overflow);
     GPROJT_RUN(steps_that_overflow);
+    GPROJT_RUN(no_verdict_before_schedules_end);
     GPROJT_RUN(not_positive_definite);
     GPROJT_RUN(steps_that_raise_the_merit_are_damped);
     GPROJT_RUN(steps_are_lengthened_near_singular_points);
     GPROJT_RUN(steps_are_not_lengthened_without_need);
     GPROJT_RUN(wild_steps_are_shortened_to_the_smallest_merit);
     GPROJT_RUN(a_larger_epsilon_where_no_length_is_good);
+    GPROJT_RUN(rounding_of_large_terms_damps_no_step);
+    GPROJT_RUN(steps_at_a_minimum_are_not_damped);
     GPROJT_RUN(quartics_are_minimised);
     GPROJT_RUN(schedules);
     GPROJT_RUN(a_group_goes_and_comes_back);
