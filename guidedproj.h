@@ -7689,7 +7689,6 @@ typedef struct gproji_hinge {
     double w2, phi, h, q;
 } gproji_hinge;
 
-/* Steps by multipliers: see >>schur. `nodes` are the system's. */
 /* A node where multipliers meet, on its way into the front that eliminates the first of them. */
 typedef struct gproji_crossing {
     int64_t value; /* where in W its rows begin */
@@ -7697,6 +7696,7 @@ typedef struct gproji_crossing {
     int32_t size;  /* variables */
 } gproji_crossing;
 
+/* Steps by multipliers: see >>schur. `nodes` are the system's. */
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
