@@ -5812,9 +5812,9 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart, boo
 }
 
 enum {
-    GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
-    GPROJI_DISSECT_FORECAST = 1200,     /* per node; see gproji_forecast */
-    GPROJI_DISSECT_LEAST = 600,         /* nodes of a graph for which a forecast is made */
+    GPROJI_DISSECT_FLOPS = 35000,   /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200, /* per node; see gproji_forecast */
+    GPROJI_DISSECT_LEAST = 600,     /* nodes of a graph for which a forecast is made; half of them count once more */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
@@ -5856,7 +5856,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, g
     if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
         if (!gproji_condense(condensed, heap, an->graph)) return false;
         forecast = gproji_forecast(&condensed->rest);
-        if (forecast > (double)GPROJI_DISSECT_FORECAST * out->nodes) {
+        if (forecast > GPROJI_DISSECT_FORECAST * (out->nodes + 0.5 * GPROJI_DISSECT_LEAST)) {
             if (!gproji_dissected_order(an, condensed)) return false;
             gproji_count_factor(an, condensed->count, keep_order);
             if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
@@ -8599,7 +8599,7 @@ GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incide
     for (v = 0; v < in->node_count; ++v) {
         const uint32_t own = (uint32_t)v + 1, *row = in->node_row + in->node_start[v], *rows = row;
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
-        size_t most = filled; /* with all of the node's rows, as if they had nothing in common */
+        size_t most = filled + 1; /* with all of the node's rows, as if they had nothing in common; never none */
         for (; row < rows_end; ++row) most += start[*row + 1] - start[*row];
         if (most > graph->room) {
             void *room = graph->adjacent;
