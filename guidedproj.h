@@ -9698,9 +9698,11 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     mark = (int32_t *)gproji_take(&s->own, 3 * nodes, sizeof *mark);
     belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
     enough = mark && belongs;
-    elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
-    if (enough && gproji_schur_classify(s, limit, &elements, belongs))
-        enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+    if (enough) {
+        elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
+        if (gproji_schur_classify(s, limit, &elements, belongs))
+            enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+    }
     gproji_give(&s->own, mark, 3 * nodes, sizeof *mark);
     gproji_give(&s->own, belongs, rows, sizeof *belongs);
     if (!s->schur.on) gproji_schur_forget(s);
