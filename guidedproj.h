@@ -5856,7 +5856,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, g
     if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
         if (!gproji_condense(condensed, heap, an->graph)) return false;
         forecast = gproji_forecast(&condensed->rest);
-        if (forecast > GPROJI_DISSECT_FORECAST * (out->nodes + 0.5 * GPROJI_DISSECT_LEAST)) {
+        if (forecast > (double)GPROJI_DISSECT_FORECAST * (out->nodes + GPROJI_DISSECT_LEAST / 2)) {
             if (!gproji_dissected_order(an, condensed)) return false;
             gproji_count_factor(an, condensed->count, keep_order);
             if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
