@@ -2815,30 +2815,35 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
         gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
-/* See `add`; pieces with gaps: the rows of a piece are spread over a vector. */
-#define GPROJI_ADD_SPREAD(d, s, mask)                                                                                  \
-    _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), _mm512_maskz_expandloadu_pd((__mmask8)(mask), s)))
+/* See `add`; pieces with gaps: the rows of a piece are spread over a vector. Piece after piece in all columns, so that
+   what is known of a piece stays in registers. */
+#define GPROJI_ADD_AT(d, v) _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), v))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, const double *source,
                                              ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride) {
+    const __m512i lane = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+    const int32_t columns = piece->rows;
+    const double *from[8];
+    double *to[8];
     uint32_t mask = piece->mask;
-    int32_t i, k, r;
-    for (i = 0; i < piece->rows; ++i, mask &= mask - 1) {
-        double *column = target + __builtin_ctz(mask) * target_stride;
-        GPROJI_ADD_SPREAD(column + piece->to, source + piece->from + i, mask);
-        for (k = 1; k < count;) {
-            const int32_t run = piece[k].run;
-            const double *s = source + piece[k].from;
-            double *d = column + piece[k].to;
-            if (run < 4) { /* shorter ones are not worth a loop */
-                GPROJI_ADD_SPREAD(d, s, piece[k].mask);
-                ++k;
-                continue;
-            }
-            for (r = 0; r < 8 * run; r += 8)
-                _mm512_storeu_pd(d + r, _mm512_add_pd(_mm512_loadu_pd(d + r), _mm512_loadu_pd(s + r)));
-            k += run;
-        }
+    int32_t i, k, r, run;
+    for (i = 0; i < columns; ++i, mask &= mask - 1) { /* in the piece itself from the diagonal on */
+        from[i] = source;
+        to[i] = target + __builtin_ctz(mask) * target_stride;
+        GPROJI_ADD_AT(to[i] + piece->to, _mm512_maskz_expandloadu_pd((__mmask8)mask, source + piece->from + i));
         GPROJI_ADD_NEXT
+    }
+    for (k = 1; k < count; k += gproji_max(run, 1)) {
+        const ptrdiff_t s = piece[k].from, d = piece[k].to;
+        run = piece[k].run;
+        if (run == 0) {
+            const __mmask8 rows = (__mmask8)((1u << piece[k].rows) - 1), spread = (__mmask8)piece[k].mask;
+            const __m512i row = _mm512_maskz_expand_epi64(spread, lane);
+            for (i = 0; i < columns; ++i)
+                GPROJI_ADD_AT(to[i] + d, _mm512_maskz_permutexvar_pd(spread, row,
+                                                                     _mm512_maskz_loadu_pd(rows, from[i] + s)));
+        }
+        for (i = 0; run > 0 && i < columns; ++i)
+            for (r = 0; r < 8 * run; r += 8) GPROJI_ADD_AT(to[i] + d + r, _mm512_loadu_pd(from[i] + s + r));
     }
 }
 #endif
@@ -3057,6 +3062,15 @@ GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at)
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
+}
+
+/* All of these for the storage rows [from, to): column[at]. */
+GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t from, int32_t to, double **column) {
+    int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end), at = from;
+    double *now = at < to ? gproji_panel_column(panel, at) : NULL;
+    for (; at < end; now += panel->shape.stride - gproji_shape_first(panel->shape, at)) column[at++] = now;
+    if (from < end && end < to) now = gproji_panel_column(panel, at);
+    for (; at < to; now += panel->update_rows - gproji_strip_begin(at - pivot_end)) column[at++] = now;
 }
 
 /* Its stride: that of all columns of its block, or of its strip of the update matrix. */
@@ -9453,6 +9467,7 @@ enum {
     GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
     GPROJI_SCHUR_AHEAD = 8,         /* nodes whose values are on their way into the cache */
+    GPROJI_SCHUR_TABLE = 256,       /* fronts with no more storage rows have a table of their columns */
     GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
     GPROJI_LANES = 8,               /* elements that are worked on together */
     GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
@@ -10455,10 +10470,14 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
         gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
 
+/* The column of the front that belongs to storage row `at`; column: all of them, or NULL. */
+GPROJI_INLINE double *gproji_schur_column(const gproji_panel *panel, double *const *column, int32_t at) {
+    return column ? column[at] : gproji_panel_column(panel, at);
+}
+
 /* The column of W W' at a node that belongs to its j-th multiplier; at: the storage rows of all. */
 GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, const int32_t *at, int32_t count, int32_t j,
-                                             const gproji_panel *panel) {
-    double *column = gproji_panel_column(panel, at[j]);
+                                             double *column) {
     int32_t i, p;
     for (i = j; i < count; ++i) {
         double sum = 0;
@@ -10467,28 +10486,36 @@ GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, cons
     }
 }
 
-/* All four columns at a vertex of four quads, the most frequent node: without loops. */
-GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, const gproji_panel *panel) {
-    double v[12]; /* copies, which what is stored leaves alone */
-    int32_t to[4];
-    memcpy(v, w, sizeof v);
-    memcpy(to, at, sizeof to);
-    gproji_schur_load_column(v, 3, to, 4, 0, panel);
-    gproji_schur_load_column(v, 3, to, 4, 1, panel);
-    gproji_schur_load_column(v, 3, to, 4, 2, panel);
-    gproji_schur_load_column(v, 3, to, 4, 3, panel);
+/* All four columns at a vertex of four quads, the most frequent node: without loops, and all is read before anything is
+   stored. */
+GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, double *const *column) {
+    const double ax = w[0], ay = w[1], az = w[2], bx = w[3], by = w[4], bz = w[5];
+    const double cx = w[6], cy = w[7], cz = w[8], dx = w[9], dy = w[10], dz = w[11];
+    const int32_t a = at[0], b = at[1], c = at[2], d = at[3];
+    double *to_a = column[a], *to_b = column[b], *to_c = column[c], *to_d = column[d];
+    to_a[a] += ax * ax + ay * ay + az * az;
+    to_a[b] += ax * bx + ay * by + az * bz;
+    to_a[c] += ax * cx + ay * cy + az * cz;
+    to_a[d] += ax * dx + ay * dy + az * dz;
+    to_b[b] += bx * bx + by * by + bz * bz;
+    to_b[c] += bx * cx + by * cy + bz * cz;
+    to_b[d] += bx * dx + by * dy + bz * dz;
+    to_c[c] += cx * cx + cy * cy + cz * cz;
+    to_c[d] += cx * dx + cy * dy + cz * dz;
+    to_d[d] += dx * dx + dy * dy + dz * dz;
 }
 
 /* W W' at a node, in the columns that belong to the storage rows [from, to). */
 GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
-                                           const gproji_panel *panel, int32_t from, int32_t to) {
+                                           const gproji_panel *panel, double *const *column, int32_t from, int32_t to) {
     int32_t first = 0, end = count;
     while (first < end && at[first] < from) ++first;
     while (first < end && at[end - 1] >= to) --end;
-    if (size == 3 && count == 4 && end - first == 4)
-        gproji_schur_load_four(w, at, panel);
+    if (column && size == 3 && count == 4 && end - first == 4)
+        gproji_schur_load_four(w, at, column);
     else
-        for (; first < end; ++first) gproji_schur_load_column(w, size, at, count, first, panel);
+        for (; first < end; ++first)
+            gproji_schur_load_column(w, size, at, count, first, gproji_schur_column(panel, column, at[first]));
 }
 
 /* I + W W' of one front: see gproji_load. */
@@ -10498,17 +10525,19 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     const gproji_schur *d = &s->schur;
     const gproji_crossing *node = d->crossing + d->front_start[front], *end = d->crossing + d->front_start[front + 1];
     const int32_t *at = d->entry_at + d->front_entry[front];
+    double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
     int32_t j;
+    if (column) gproji_panel_columns(panel, gproji_max(from, panel->shift), to, column);
     for (; node < end; at += node++->count) {
         const double *w = d->value + node->value, *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
         GPROJI_PREFETCH(later + 8);
         if (node->size == 3)
-            gproji_schur_load_node(w, 3, at, node->count, panel, from, to);
+            gproji_schur_load_node(w, 3, at, node->count, panel, column, from, to);
         else
-            gproji_schur_load_node(w, node->size, at, node->count, panel, from, to);
+            gproji_schur_load_node(w, node->size, at, node->count, panel, column, from, to);
     }
-    for (j = 0; j < panel->w && from < panel->shape.end; ++j) *gproji_panel_at(panel, j + panel->shift, j) += 1;
+    for (j = gproji_max(from, panel->shift); j < panel->shape.end; ++j) gproji_schur_column(panel, column, j)[j] += 1;
 }
 
 /* w g_i, without auxiliary variables, where U will be. */
