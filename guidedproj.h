@@ -9751,45 +9751,43 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     return true;
 }
 
-/* Sorts the elements at each node by their elimination, and the nodes by the front of their first: `sequence`. */
-GPROJI_INTERNAL void gproji_schur_order(gproj_system *s, gproji_incidence *in, int32_t *sequence) {
+/* Where the rows of W at each node begin. */
+GPROJI_INTERNAL void gproji_schur_place_nodes(gproj_system *s) {
     gproji_schur *d = &s->schur;
-    const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t v, f;
-    int64_t a, b;
+    int32_t e, v;
+    int64_t l;
+    for (e = 0; e < d->elements; ++e)
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
+            d->entry_start[d->link_node[l] + 1] += d->first[e + 1] - d->first[e];
+    d->value_start[0] = 0;
     for (v = 0; v < s->node_count; ++v) {
-        int64_t begin = in->row_start[v], end = in->row_start[v + 1];
-        for (a = begin + 1; a < end; ++a) {
-            int32_t element = in->row_node[a];
-            for (b = a; b > begin && sy->place[in->row_node[b - 1]] > sy->place[element]; --b)
-                in->row_node[b] = in->row_node[b - 1];
-            in->row_node[b] = element;
-        }
-        if (begin < end) d->front_start[sy->front_of[sy->place[in->row_node[begin]]] + 2]++;
+        d->value_start[v + 1] = d->value_start[v] + d->entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
+        d->entry_start[v + 1] += d->entry_start[v];
     }
-    for (f = 0; f < sy->fronts; ++f) d->front_start[f + 2] += d->front_start[f + 1];
-    for (v = 0; v < s->node_count; ++v)
-        if (in->row_start[v] < in->row_start[v + 1])
-            sequence[d->front_start[sy->front_of[sy->place[in->row_node[in->row_start[v]]]] + 1]++] = v;
 }
 
-/* Where W has its blocks: node by node, in each the multipliers in the order of their elimination. */
-GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, const gproji_incidence *in) {
+/* Where W has its blocks: node by node, in each the multipliers in the order of their elimination. And the nodes by the
+   front of their first one: `sequence`. met: work, of each node. */
+GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, int32_t *sequence, int32_t *met) {
     gproji_schur *d = &s->schur;
-    int64_t entry = 0, value = 0, a, l;
-    int32_t v, i;
-    for (v = 0; v < s->node_count; ++v) {
-        int32_t size = s->node_first[v + 1] - s->node_first[v];
-        d->entry_start[v] = entry, d->value_start[v] = value;
-        for (a = in->row_start[v]; a < in->row_start[v + 1]; ++a) {
-            int32_t e = in->row_node[a];
-            for (l = d->link_start[e]; d->link_node[l] != v; ++l) continue;
-            d->link_value[l] = value;
-            value += (int64_t)(d->first[e + 1] - d->first[e]) * size;
-            for (i = d->first[e]; i < d->first[e + 1]; ++i) d->entry[entry++] = i;
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    int32_t f, k, i;
+    int64_t count = 0, l;
+    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    for (f = 0; f < sy->fronts; ++f) {
+        d->front_start[f] = count;
+        for (k = sy->front[f].first_place; k < sy->front[f].end_place; ++k) {
+            int32_t e = sy->order[k];
+            for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+                int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+                int32_t *entry = d->entry + d->entry_start[v];
+                if (met[v] == 0) sequence[count++] = v;
+                d->link_value[l] = d->value_start[v] + (int64_t)met[v] * size;
+                for (i = d->first[e]; i < d->first[e + 1]; ++i) entry[met[v]++] = i;
+            }
         }
     }
-    d->entry_start[v] = entry, d->value_start[v] = value;
+    d->front_start[sy->fronts] = count;
 }
 
 /* The nodes of each front, and the storage rows of their multipliers there. at: work, of each multiplier. */
@@ -9819,7 +9817,7 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     for (l = row->local; l < row[1].local; ++l) {
         int32_t variable = g->local_variable[l], node = s->node[variable];
         g->local_at[l] = at[node] + variable - s->node_first[node];
-        auxiliary = auxiliary || s->auxiliary[variable];
+        auxiliary = auxiliary || at[node] == 0;
     }
     return auxiliary;
 }
@@ -9907,12 +9905,11 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     }
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
-    d->entry_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+    d->entry_start = (int64_t *)gproji_pool_take_zeroed(pool, nodes + 1, sizeof(int64_t));
     d->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
     d->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
     d->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    d->front_start =
-        (int64_t *)gproji_pool_take_zeroed(pool, (int64_t)s->cholesky->symbolic.fronts + 2, sizeof(int64_t));
+    d->front_start = (int64_t *)gproji_pool_take(pool, (int64_t)s->cholesky->symbolic.fronts + 1, sizeof(int64_t));
     d->crossing = (gproji_crossing *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *d->crossing);
     d->front_entry = (int64_t *)gproji_pool_take(pool, s->cholesky->symbolic.fronts, sizeof(int64_t));
     d->value = (double *)gproji_pool_take(pool, values, sizeof(double));
@@ -9943,8 +9940,8 @@ GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidenc
     gproji_give_meetings(&s->own, &graph, (size_t)d->elements);
     if (code) return code;
     if (!gproji_schur_take(s)) return GPROJ_ERROR_MEMORY;
-    gproji_schur_order(s, in, sequence);
-    gproji_schur_place_links(s, in);
+    gproji_schur_place_nodes(s);
+    gproji_schur_place_links(s, sequence, at);
     gproji_schur_place_entries(s, sequence, at);
     gproji_schur_place_locals(s, at);
     return GPROJ_OK;
