@@ -20970,26 +20970,66 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     }
 }
 
-/* The rows of one vertex: y_e (x_i - x_j) summed over its edges with a force, and room for the weight's terms. */
-GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, gproj_term *term) {
+/* The edges of a vertex that have a force: spoke[2 k] is the force's variable, spoke[2 k + 1] the vertex at the other end.
+   Returns how many they are. */
+GPROJI_INTERNAL int32_t gproji_find_spokes(const gproj_form *form, int32_t vertex, int32_t *spoke) {
     const gproj_mesh *mesh = form->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+    do {
+        int32_t force = form->statics->force[h / 2];
+        if (force >= 0) {
+            spoke[2 * count] = force;
+            spoke[2 * count++ + 1] = mesh->origin[mesh->twin[h]];
+        }
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
+    return count;
+}
+
+/* A vertex's row for coordinate c: y_e (x_i - x_j) summed over its spokes. */
+GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
+                                          const int32_t *spoke, gproj_term *term) {
+    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k,
+            *local; /* y_e, x_i, x_j; then y_e and x_j of the other spokes */
+    for (k = 0; k < spokes; ++k) {
+        int32_t force = k > 0 ? 2 * k + 1 : 0;
+        gproji_set_term(&term[2 * k], force, 1, 1);
+        gproji_set_term(&term[2 * k + 1], force, 2 * k + 2, -1);
+    }
+    local = gproji_add_placed_row(form->system, form->statics->group, -1, 2 * spokes, term, locals, 0, vertex);
+    if (!local || spokes == 0) return;
+    for (k = 0; k < spokes; ++k) {
+        local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
+        local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
+    }
+    local[1] = 3 * vertex + c;
+}
+
+/* The third one's with room for the weight's terms, which may name more variables. */
+GPROJI_INTERNAL void gproji_add_weight_row(gproj_form *form, int32_t vertex, int32_t spokes, const int32_t *spoke,
+                                           gproj_term *term) {
     const gproji_statics *statics = form->statics;
-    int32_t c, k;
+    int32_t count = 0, k;
     int64_t l;
+    for (k = 0; k < spokes; ++k) {
+        gproji_set_term(&term[count++], spoke[2 * k], 3 * vertex + 2, 1);
+        gproji_set_term(&term[count++], spoke[2 * k], 3 * spoke[2 * k + 1] + 2, -1);
+    }
+    for (l = statics->load_start[vertex]; l < statics->load_start[vertex + 1]; ++l)
+        for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * statics->load_vertex[l] + k, -1, 0);
+    gproj_system_add_row(form->system, statics->group, count, term, 0, vertex);
+}
+
+/* The rows of one vertex. spoke, term: work. */
+GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
+    const gproji_statics *statics = form->statics;
+    int32_t spokes = gproji_find_spokes(form, vertex, spoke), c;
     for (c = 0; c < 3; ++c) {
-        int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
         if (!(statics->axes[vertex] >> c & 1)) continue;
-        do {
-            int32_t force = statics->force[h / 2];
-            if (force >= 0) {
-                gproji_set_term(&term[count++], force, 3 * vertex + c, 1);
-                gproji_set_term(&term[count++], force, 3 * mesh->origin[mesh->twin[h]] + c, -1);
-            }
-            h = mesh->next[mesh->twin[h]];
-        } while (h != start);
-        for (l = statics->load_start[vertex]; c == 2 && l < statics->load_start[vertex + 1]; ++l)
-            for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * statics->load_vertex[l] + k, -1, 0);
-        gproj_system_add_row(form->system, statics->group, count, term, 0, vertex);
+        if (c == 2 && statics->load_start[vertex] < statics->load_start[vertex + 1])
+            gproji_add_weight_row(form, vertex, spokes, spoke, term);
+        else
+            gproji_add_force_row(form, vertex, c, spokes, spoke, term);
     }
 }
 
@@ -21121,21 +21161,21 @@ GPROJI_INTERNAL bool gproji_take_weights(gproj_form *form, int32_t *mark) {
 GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
     gproji_statics *s = form->statics;
     int64_t most = 0, v;
-    size_t count;
+    size_t count, spokes = 2 * (size_t)form->ring_size;
     gproj_term *term;
+    int32_t *spoke;
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
     gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
                         12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v],
                         12 * (size_t)form->mesh->edge_count + 3 * (size_t)(v + s->load_start[v]));
-    count = 2 * (size_t)form->ring_size + 3 * (size_t)most;
+    count = spokes + 3 * (size_t)most;
+    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
-    if (!term) {
-        gproji_fail_memory(&form->error);
-        return;
-    }
+    if (!spoke || !term) gproji_fail_memory(&form->error);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
-        if (s->axes[v]) gproji_add_vertex_equilibrium(form, (int32_t)v, term);
+        if (s->axes[v]) gproji_add_vertex_equilibrium(form, (int32_t)v, spoke, term);
+    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
     gproji_give(&form->own, term, count, sizeof *term);
 }
 
