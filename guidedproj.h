@@ -5985,7 +5985,8 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
 enum {
     GPROJI_SOLVE_BATCH = 4,  /* right-hand sides solved together at most */
     GPROJI_FRESH = 1 << 12,  /* the update matrices of fronts with more values begin with the pivots' effect */
-    GPROJI_CACHED = 1 << 16, /* a factor with no more values than that stays in the L2 cache */
+    GPROJI_CACHED = 1 << 16, /* a front with no more values than that stays in the L2 cache */
+    GPROJI_NEAR = 1 << 18,   /* a factor with no more values than that is not worth fetching ahead */
     GPROJI_PREFETCHED = 8192 /* values of the next panel that are fetched ahead */
 };
 
@@ -6580,7 +6581,7 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
 }
 
 /* Is the factor too large for the cache? */
-GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_CACHED; }
+GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_NEAR; }
 
 /* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
    first entries. */
