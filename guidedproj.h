@@ -2928,8 +2928,9 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
    The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
    is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,  /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192, /* so many columns, if they are the last, are taken off an update matrix together */
+    GPROJI_CHUNK = 128,   /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,  /* so many columns, if they are the last, are taken off an update matrix together */
+    GPROJI_CLEARED = 240, /* values that are set to 0 together */
     GPROJI_TASK_COLUMNS = 48, /* columns that are one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
     GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
     GPROJI_ROW_BLOCK = 240    /* rows, or up to twice as many, that stay in the L2 cache with GPROJI_CHUNK columns */
@@ -3264,6 +3265,14 @@ GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from
     for (; first < add->pieces && add->piece[first].to < to; ++first) gproji_add_piece(add, first);
 }
 
+/* Sets values to 0, in pieces: for more than 2 KB some C libraries use an x86 instruction that takes long to begin, and
+   for which all that is added to these values must wait. */
+GPROJI_INTERNAL void gproji_clear(double *values, ptrdiff_t count) {
+    for (; count > GPROJI_CLEARED; count -= GPROJI_CLEARED, values += GPROJI_CLEARED)
+        memset(values, 0, GPROJI_CLEARED * sizeof *values);
+    memset(values, 0, (size_t)count * sizeof *values);
+}
+
 /* Sets the columns that belong to the storage rows [from, to) to 0. */
 GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
     int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
@@ -3271,13 +3280,13 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
     if (from < end) {
         ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
         ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
-        memset(panel->values + begin, 0, (size_t)(next - begin) * sizeof(double));
+        gproji_clear(panel->values + begin, next - begin);
     }
     from = gproji_max(from, pivot_end) - pivot_end, to -= pivot_end;
     if (from < to) {
         ptrdiff_t begin = gproji_update_offset(panel->update_rows, from) + gproji_strip_begin(from);
         ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
-        memset(panel->update + begin, 0, (size_t)(next - begin) * sizeof(double));
+        gproji_clear(panel->update + begin, next - begin);
     }
 }
 
