@@ -3065,20 +3065,21 @@ GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at)
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* All of these for the storage rows [from, to): column[at]. */
-GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t from, int32_t to, double **column) {
-    int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end), at = from;
-    double *now = at < to ? gproji_panel_column(panel, at) : NULL;
-    for (; at < end; now += panel->shape.stride - gproji_shape_first(panel->shape, at)) column[at++] = now;
-    if (from < end && end < to) now = gproji_panel_column(panel, at);
-    for (; at < to; now += panel->update_rows - gproji_strip_begin(at - pivot_end)) column[at++] = now;
-}
-
 /* Its stride: that of all columns of its block, or of its strip of the update matrix. */
 GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
     return gproji_update_stride(panel->update_rows, at - pivot_end);
+}
+
+/* The columns of all storage rows up to `to`, the end of a block: column[at]. */
+GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, double **column) {
+    int32_t at, i;
+    for (at = 0; at < to; at += GPROJI_BLOCK) {
+        double *first = gproji_panel_column(panel, at);
+        ptrdiff_t stride = gproji_column_stride(panel, at);
+        for (i = 0; i < GPROJI_BLOCK; ++i, first += stride) column[at + i] = first;
+    }
 }
 
 /* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
@@ -10534,7 +10535,7 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     const int32_t *at = d->entry_at + d->front_entry[front];
     double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
     int32_t j;
-    if (column) gproji_panel_columns(panel, gproji_max(from, panel->shift), to, column);
+    if (column) gproji_panel_columns(panel, to, column);
     for (; node < end; at += node++->count) {
         const double *w = d->value + node->value, *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
