@@ -8206,22 +8206,22 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
     return named;
 }
 
-/* Has the group room for one more row of so many terms and locals? */
-GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t terms, size_t locals) {
-    size_t wanted = (size_t)g->row_count + 2;
-    return g->term && g->local_variable && g->row_count < INT32_MAX - 1 && wanted <= g->row_capacity &&
+/* Has the group room for so many more rows, terms and locals? */
+GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
+    size_t wanted = (size_t)g->row_count + rows + 1;
+    return g->term && g->local_variable && wanted <= INT32_MAX && wanted <= g->row_capacity &&
            (!g->share || wanted <= g->share_capacity) && g->term_count + terms <= g->term_capacity &&
            g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->local_capacity &&
            gproji_local_count(g) + locals < UINT32_MAX;
 }
 
 /* Makes this room. */
-GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t terms, size_t locals) {
-    if (g->row_count == INT32_MAX - 1 || terms >= UINT32_MAX - g->term_count ||
+GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+    if (rows > (size_t)(INT32_MAX - 1 - g->row_count) || terms >= UINT32_MAX - g->term_count ||
         locals >= UINT32_MAX - gproji_local_count(g))
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
                     "group '%s' has too many rows or terms", g->name);
-    else if (!gproji_reserve_rows(s, g, 1, terms + 1, locals + 1)) /* also of a row without terms */
+    else if (!gproji_reserve_rows(s, g, rows, terms + 1, locals + 1)) /* also of a row without terms */
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
@@ -8303,8 +8303,8 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     }
     if (s->compiled) gproji_system_forget(s);
     for (; s->places < s->variable_count; ++s->places) s->place[s->places] = -1;
-    if (!gproji_has_room(g, (size_t)count, 2 * (size_t)count) &&
-        !gproji_make_room(s, g, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
+    if (!gproji_has_room(g, 1, (size_t)count, 2 * (size_t)count) &&
+        !gproji_make_room(s, g, 1, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
     row = gproji_start_row(g, (uint32_t)g->term_count, count, constant, element);
     local = g->local_variable + row->local;
@@ -8324,31 +8324,31 @@ GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t 
            memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
 }
 
-/* gproj_system_add_row for builders that know what is right: the terms name places among the locals, which the builder
-   writes where this returns, unless it is NULL: different variables of this system, in the order in which the terms name
-   them; if some of them have a block in common it is coupled already. (Copied from an array they would have to be read
-   again right after they were written.) The group is not global. like: a row of the group whose terms it shares if there
-   is one and they are the same. */
-GPROJI_INTERNAL int32_t *gproji_add_placed_row(gproj_system *s, int32_t group, int32_t like, int32_t count,
-                                               const gproj_term *terms, int32_t locals, double constant,
-                                               int32_t element) {
+/* gproj_system_add_row for builders that know what is right: some rows with the same terms. These name places among the
+   locals, which the builder writes where this returns, row after row, unless it is NULL: different variables of this
+   system, in the order in which the terms name them; if some of them have a block in common it is coupled already.
+   (Copied from an array they would have to be read again right after they were written.) The group is not global. like:
+   a row of the group whose terms they share if there is one and they are the same. */
+GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
+                                                int32_t count, const gproj_term *terms, int32_t locals, double constant,
+                                                int32_t element) {
     gproji_group *g;
-    gproji_row *row;
+    int32_t *local;
+    uint32_t term;
     bool common;
-    size_t own;
+    size_t own, all = (size_t)rows * (size_t)locals;
     if (!gproji_system_is_open(s)) return NULL;
     g = &s->group[group];
     if (s->compiled) gproji_system_forget(s);
     common = like >= 0 && gproji_has_terms(g, like, count, terms);
     own = common ? 0 : (size_t)count;
-    if (!gproji_has_room(g, own, (size_t)locals) && !gproji_make_room(s, g, own, (size_t)locals)) return NULL;
-    row = gproji_start_row(g, common ? g->row[like].term : (uint32_t)g->term_count, count, constant, element);
-    if (common)
-        g->common = true;
-    else
-        memcpy(g->term + row->term, terms, (size_t)count * sizeof *terms);
-    gproji_end_row(s, g, row, locals);
-    return g->local_variable + row->local;
+    if (!gproji_has_room(g, (size_t)rows, own, all) && !gproji_make_room(s, g, (size_t)rows, own, all)) return NULL;
+    term = common ? g->row[like].term : (uint32_t)g->term_count;
+    local = g->local_variable + g->row[g->row_count].local;
+    memcpy(g->term + term, terms, own * sizeof *terms);
+    g->common = g->common || common || rows > 1;
+    for (; rows > 0; --rows) gproji_end_row(s, g, gproji_start_row(g, term, count, constant, element), locals);
+    return local;
 }
 
 /* Gives each row its own terms. */
@@ -19338,13 +19338,13 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     gproji_set_auxiliary(s, n, 3);
     form->normal[face] = n;
     s->coupled[n] = 1;
-    local = gproji_add_placed_row(s, group, 0, 3, unit, 3, -1, face);
+    local = gproji_add_placed_rows(s, group, 0, 1, 3, unit, 3, -1, face);
     for (k = 0; k < 3 && local; ++k) local[k] = n + k;
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+    local = gproji_add_placed_rows(s, group, 1, mesh->face_degree[face], 6, edge, 9, 0, face);
+    for (c = 0; c < mesh->face_degree[face] && local; ++c, h = mesh->next[h], local += 9) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
         s->coupled[i] = 1;
-        local = gproji_add_placed_row(s, group, 1, 6, edge, 9, 0, face);
-        for (k = 0; k < 3 && local; ++k) {
+        for (k = 0; k < 3; ++k) {
             local[2 * k] = n + k;
             local[2 * k + 1] = i + k;
             local[6 + k] = j + k;
@@ -19619,13 +19619,12 @@ typedef struct gproji_difference {
    as many have them in common, where they follow each other. `term`: room for count + 1 terms. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
                                            gproj_term *term) {
-    int32_t k, i;
+    int32_t points = d->count + 1, last, k, i, *local;
     if (!gproji_system_has_group(form->system, group)) return;
-    for (i = 0; i <= d->count; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
-    for (k = 0; k < 3; ++k) {
-        int32_t last = form->system->group[group].row_count - 1, *local;
-        local = gproji_add_placed_row(form->system, group, last, d->count + 1, term, d->count + 1, 0, element);
-        if (!local) return;
+    last = form->system->group[group].row_count - 1;
+    for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
+    local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, element);
+    for (k = 0; k < 3 && local; ++k, local += points) {
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
     }
@@ -21007,7 +21006,7 @@ GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int3
         gproji_set_term(&term[2 * k], force, 1, 1);
         gproji_set_term(&term[2 * k + 1], force, 2 * k + 2, -1);
     }
-    local = gproji_add_placed_row(form->system, form->statics->group, -1, 2 * spokes, term, locals, 0, vertex);
+    local = gproji_add_placed_rows(form->system, form->statics->group, -1, 1, 2 * spokes, term, locals, 0, vertex);
     if (!local || spokes == 0) return;
     for (k = 0; k < spokes; ++k) {
         local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
