@@ -189,7 +189,8 @@ typedef struct gproj_allocator {
 
 /* Threads. `run` calls task(data, index) once for each index in 0..count-1, in any order, on any threads, and
    returns when all calls have returned. NULL: a plain loop. How work is cut into tasks depends on the problem
-   alone, and so do the results, bit for bit: neither the number of threads nor their speed matters. */
+   alone, and so do the results, bit for bit: neither the number of threads nor their speed matters. The same loops
+   come in every iteration: threads that get the same indices again have their data in the cache. */
 typedef void (*gproj_task)(void *data, int32_t index);
 typedef struct gproj_parallel {
     void (*run)(void *user, int32_t count, gproj_task task, void *data);
