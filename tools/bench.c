@@ -258,7 +258,7 @@ static bool bench_measure_both(const bench_mesh *mesh, bench_task task, const be
     bench_run *run = bench_begin_run(&bench_simd, options->samples);
     bool measured = false;
     double set_up = 0;
-    run->set_ups = mesh->vertex_count <= 15000 && !options->quick ? 9 : 3;
+    run->set_ups = mesh->vertex_count <= 50000 ? BENCH_SET_UPS : 3;
     run->form = bench_set_up(&bench_simd, mesh, task, 0, run->set_ups, &set_up);
     if (run->form) {
         result->ours = bench_simd.facts(run->form);
