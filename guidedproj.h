@@ -9931,7 +9931,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
     d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
-    d->work = (double *)gproji_pool_take(pool, d->chunks * d->most, sizeof(double));
+    d->work = gproji_take_aligned(pool, d->chunks * d->most);
     return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
            d->front_start && d->crossing && d->front_entry && d->value && d->root && d->side && d->share && d->metric &&
            d->turns && d->triangle && d->work;
