@@ -20997,11 +20997,11 @@ GPROJI_INTERNAL int32_t gproji_find_spokes(const gproj_form *form, int32_t verte
     return count;
 }
 
-/* A vertex's row for coordinate c: y_e (x_i - x_j) summed over its spokes. */
+/* A vertex's row for coordinate c: y_e (x_i - x_j) summed over its spokes. Its locals are y_e, x_i and x_j of the first
+   spoke, then y_e and x_j of the others. */
 GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
                                           const int32_t *spoke, gproj_term *term) {
-    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k,
-            *local; /* y_e, x_i, x_j; then y_e and x_j of the other spokes */
+    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k, *local;
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
