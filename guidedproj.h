@@ -9820,7 +9820,8 @@ GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, const int32_t *
     }
 }
 
-/* Where the locals of a row stand: `at` of their nodes, and which variable there. Returns whether some are auxiliary. */
+/* Where the locals of a row stand: `at` of their nodes, which is 0 for auxiliary ones alone among those of an element's
+   row, and which variable there. Returns whether there are nodes at 0. */
 GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
     gproji_group *g = &s->group[name.group];
     const gproji_row *row = &g->row[name.row];
@@ -20997,16 +20998,21 @@ GPROJI_INTERNAL int32_t gproji_find_spokes(const gproj_form *form, int32_t verte
     return count;
 }
 
-/* A vertex's row for coordinate c: y_e (x_i - x_j) summed over its spokes. Its locals are y_e, x_i and x_j of the first
-   spoke, then y_e and x_j of the others. */
-GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
-                                          const int32_t *spoke, gproj_term *term) {
-    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k, *local;
+/* The terms of a row y_e (x_i - x_j) summed over spokes, by places: y_e, x_i and x_j of the first one, then y_e and x_j of
+   the others. */
+GPROJI_INTERNAL void gproji_set_spoke_terms(int32_t spokes, gproj_term *term) {
+    int32_t k;
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
         gproji_set_term(&term[2 * k + 1], force, 2 * k + 2, -1);
     }
+}
+
+/* A vertex's row for coordinate c, with these terms. */
+GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
+                                          const int32_t *spoke, const gproj_term *term) {
+    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k, *local;
     local = gproji_add_placed_rows(form->system, form->statics->group, -1, 1, 2 * spokes, term, locals, 0, vertex);
     if (!local || spokes == 0) return;
     for (k = 0; k < spokes; ++k) {
@@ -21016,7 +21022,7 @@ GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int3
     local[1] = 3 * vertex + c;
 }
 
-/* The third one's with room for the weight's terms, which may name more variables. */
+/* The row for the third one with room for the weight's terms, which may name more variables. */
 GPROJI_INTERNAL void gproji_add_weight_row(gproj_form *form, int32_t vertex, int32_t spokes, const int32_t *spoke,
                                            gproj_term *term) {
     const gproji_statics *statics = form->statics;
@@ -21035,6 +21041,7 @@ GPROJI_INTERNAL void gproji_add_weight_row(gproj_form *form, int32_t vertex, int
 GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
     const gproji_statics *statics = form->statics;
     int32_t spokes = gproji_find_spokes(form, vertex, spoke), c;
+    gproji_set_spoke_terms(spokes, term); /* the weight's row, the last one, has others */
     for (c = 0; c < 3; ++c) {
         if (!(statics->axes[vertex] >> c & 1)) continue;
         if (c == 2 && statics->load_start[vertex] < statics->load_start[vertex + 1])

@@ -183,11 +183,14 @@ static bool bench_solves(bench_run *run, bool alone, int samples, double seconds
     return true;
 }
 
+/* How many of the samples there should be after so many of the rounds. */
+static int bench_share(int samples, int round, int rounds) { return (samples * round + rounds - 1) / rounds; }
+
 /* Rounds of ours alone and of CHOLMOD, so that a slow spell of the machine falls on both. */
 static bool bench_both(bench_run *run, int samples, double seconds) {
     int rounds = run->apart ? 2 : 1, i;
     for (i = 1; i <= rounds; ++i) {
-        int share = (samples * i + rounds - 1) / rounds;
+        int share = bench_share(samples, i, rounds);
         if (run->apart && !bench_solves(run, true, share, seconds / rounds)) return false;
         if (!bench_solves(run, false, share, seconds / rounds)) return false;
     }
@@ -308,7 +311,7 @@ static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *op
     without->form = bench_set_up(&bench_simd, mesh, BENCH_PLANARITY, 0, 1, &set_up);
     measured = run->form && without->form;
     for (i = 1; measured && i <= BENCH_TURNS; ++i) {
-        int share = (options->samples * i + BENCH_TURNS - 1) / BENCH_TURNS;
+        int share = bench_share(options->samples, i, BENCH_TURNS);
         measured = bench_solves(run, true, share, 0.1) && bench_solves(without, true, share, 0.1);
     }
     if (measured) {
