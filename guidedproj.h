@@ -6602,6 +6602,17 @@ GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     if (gproji_is_far(c)) gproji_prefetch_values(c->values + front->panel, size);
 }
 
+/* The same for its part of the right-hand sides. */
+GPROJI_INLINED void gproji_prefetch_given(const gproj_cholesky *c, int32_t f) {
+    const gproji_front *front = &c->symbolic.front[f];
+    const int32_t *permutation = c->permutation + front->first;
+    const double *b = c->given;
+    int32_t side, k;
+    if (!gproji_is_far(c)) return;
+    for (side = 0; side < c->sides; ++side, b += c->symbolic.columns)
+        for (k = 0; k < front->width; ++k) GPROJI_PREFETCH(b + permutation[k]);
+}
+
 /* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel) {
     const gproji_front *front = &c->symbolic.front[f];
@@ -6757,7 +6768,10 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, side, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
-        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
+        if (k + 1 < sy->task_start[group + 1]) {
+            gproji_prefetch_front(c, sy->schedule[k + 1]);
+            gproji_prefetch_given(c, sy->schedule[k + 1]);
+        }
         failed = gproji_factor_front(c, sy->schedule[k], parallel);
         for (side = 0; failed < 0 && side < c->sides; ++side)
             gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
