@@ -8401,8 +8401,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                                           double constant) {
     gproji_group *g;
     gproj_term *term;
-    uint32_t t, count;
-    bool finite;
+    uint32_t t, count, odd;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row))
@@ -8410,15 +8409,17 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            group);
     g = &s->group[group];
     count = g->row[row].terms;
-    finite = gproji_is_finite(constant);
-    for (t = 0; coefficients && t < count; ++t) finite = finite && gproji_is_finite(coefficients[t]);
-    if (!finite)
+    odd = !gproji_is_finite(constant);
+    for (t = 0; coefficients && t < count; ++t) odd += !gproji_is_finite(coefficients[t]);
+    if (odd > 0)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
     if (coefficients && row < g->closing) gproji_open_rows(s, g);
     term = g->term + g->row[row].term;
     for (t = 0; coefficients && t < count; ++t) term[t].a = coefficients[t];
+    if (coefficients && g->row[row].run && g->local_gradient)
+        memcpy(g->local_gradient + g->row[row].local, coefficients, count * sizeof *coefficients);
     g->row[row].constant = constant;
     s->changed = true;
     return GPROJ_OK;
@@ -8965,6 +8966,17 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     return done;
 }
 
+/* The gradients of runs, which are their coefficients, and follow them from now on (gproj_system_set_row). */
+GPROJI_INTERNAL void gproji_start_runs(gproji_group *g) {
+    int32_t r;
+    uint32_t t;
+    for (r = 0; g->has_wide && r < g->row_count; ++r) {
+        const gproji_row *row = &g->row[r];
+        double *gradient = g->local_gradient + row->local;
+        for (t = 0; row->run && t < row->terms; ++t) gradient[t] = g->term[row->term + t].a;
+    }
+}
+
 /* Step 5: what iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
@@ -8974,6 +8986,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
         g->local_gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_gradient);
         g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
         if (!g->local_gradient || !g->tally) return false;
+        gproji_start_runs(g);
     }
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
@@ -9091,28 +9104,24 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
     return phi;
 }
 
-/* The same for a run (see gproji_row): its value is summed up as gproji_dot does it. */
-GPROJI_INTERNAL double gproji_linearise_run(const gproji_group *g, const gproji_row *row, const double *x,
-                                            double *gradient, double *size) {
-    const gproj_term *term = g->term + row->term;
-    uint32_t t;
+/* The same for a run (see gproji_row), whose gradient is there: its value is summed up as gproji_dot does it. */
+GPROJI_INTERNAL double gproji_run_value(const gproji_group *g, const gproji_row *row, const double *x, double *size) {
+    const double *gradient = g->local_gradient + row->local;
     x += g->local_variable[row->local];
-    for (t = 0; t < row->terms; ++t) gradient[t] = term[t].a;
     *size = fabs(row->constant) + gproji_absolute_dot(gradient, x, row->terms);
     return row->constant + gproji_dot(gradient, x, row->terms);
 }
 
-/* phi and grad phi of a row; one without weight gets zeros. Rows of bounds act where they are violated, or where they did
+/* phi and grad phi of a row; one without weight gets zeros, unless it is a run. Rows of bounds act where they are violated, or where they did
    in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger than s->rounding, phi is added
    up with more digits. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     double *gradient = g->local_gradient + row->local, phi, size;
-    if (!row->run || !(row->weight > 0)) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
     row->phi = 0;
     if (!(row->weight > 0)) row->active = false;
     if (!(row->weight > 0)) return;
-    phi = row->run ? gproji_linearise_run(g, row, s->x, gradient, &size)
-                   : gproji_linearise_row(g, row, s->x, gradient, &size);
+    phi = row->run ? gproji_run_value(g, row, s->x, &size) : gproji_linearise_row(g, row, s->x, gradient, &size);
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
     row->phi = phi;
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
@@ -10768,11 +10777,11 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, which has no other's, to change their coefficients in place; for what they name see
+/* The terms of a row, which has no other's and is no run, to change their coefficients in place; for what they name see
    gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
-    GPROJ_ASSERT(!g->common);
+    GPROJ_ASSERT(!g->common && !g->row[row].run);
     *count = (int32_t)g->row[row].terms;
     return g->term + g->row[row].term;
 }
@@ -10875,15 +10884,17 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* By how much rounding may change the value of a linear row of a compiled group. Four sums: see gproji_dot. */
-GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, int32_t row, const double *x) {
-    const int32_t *variable = g->local_variable + g->row[row].local;
-    const gproj_term *term = g->term + g->row[row].term;
-    double sum[4] = {0, 0, 0, 0};
-    uint32_t t;
-    for (t = 0; t < g->row[row].terms; ++t)
-        if (term[t].j < 0) sum[t % 4] += fabs(term[t].a * x[variable[term[t].i]]);
-    return 16 * DBL_EPSILON * ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+/* By how much rounding may change the linear part of a row of a compiled group. */
+GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, const gproji_row *row, const double *x) {
+    const int32_t *variable = g->local_variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    double sum = 0;
+    if (row->run)
+        sum = gproji_absolute_dot(g->local_gradient + row->local, x + variable[0], row->terms);
+    else
+        for (; term < end; ++term)
+            if (term->j < 0) sum += fabs(term->a * x[variable[term->i]]);
+    return 16 * DBL_EPSILON * sum;
 }
 
 /* A pass over all variables, by several threads. */
@@ -10978,7 +10989,7 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * gproji_pass_over(s, 0, gproji_extent_task));
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], r, s->x));
+            tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], &s->group[i].row[r], s->x));
     return tolerance;
 }
 
@@ -20535,14 +20546,13 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     gproj_form *form = part->form;
     const double *x = gproj_system_values(system);
     double height = form->centre[2] * form->scale, area, constant, scale;
-    int32_t count, t;
-    gproj_term *term = gproji_row_terms(system, group, 0, &count);
+    size_t count = 3 * (size_t)form->mesh->vertex_count, k;
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     scale = 1 / gproji_fmax(area, 1e-12);
-    for (t = 0; t < count; ++t) term[t].a = part->gradient[t] *= scale;
+    for (k = 0; k < count; ++k) part->gradient[k] *= scale;
     /* summed up as the row's value is: their roundings are the same */
-    constant = scale * constant - gproji_dot(part->gradient, x, (size_t)count);
-    gproj_system_set_row(system, group, 0, NULL, constant);
+    constant = scale * constant - gproji_dot(part->gradient, x, count);
+    gproj_system_set_row(system, group, 0, part->gradient, constant);
 }
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
@@ -20710,16 +20720,18 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
     gproji_sum ahead = {0, 0};
+    double scale = 1 / part->unit;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
     ahead.high = gproji_cost(part->form, part, NULL);
-    for (t = 0; t < count; ++t) gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
+    for (t = 0; t < count; ++t) {
+        gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
+        part->gradient[t] *= scale;
+    }
     for (side = 0; side < 2; ++side) {
-        double scale = (side == 0 ? 1 : -1) / part->unit;
-        gproj_term *term;
+        double constant = scale * (gproji_sum_value(&ahead) - part->bound[side]);
+        for (t = 0; side == 1 && t < count; ++t) part->gradient[t] = -part->gradient[t];
         if (!gproji_has_bound(part->bound, side)) continue;
-        term = gproji_row_terms(system, group, row, &count);
-        for (t = 0; t < count; ++t) term[t].a = scale * part->gradient[t];
-        gproj_system_set_row(system, group, row++, NULL, scale * (gproji_sum_value(&ahead) - part->bound[side]));
+        gproj_system_set_row(system, group, row++, part->gradient, side == 0 ? constant : -constant);
     }
 }
 
