@@ -10473,7 +10473,7 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
     const gproji_schur *d = &s->schur;
     const int32_t *node_first = s->node_first;
     for (; e < end; ++e) {
-        int32_t first = d->first[e], left = d->first[e + 1] - first, j, k;
+        int32_t first = d->first[e], left = d->first[e + 1] - first, j;
         const int32_t *node = d->link_node + d->link_start[e], *last = d->link_node + d->link_start[e + 1];
         for (j = 0; j < left; ++j) {
             const int64_t *value = d->link_value + d->link_start[e];
@@ -10482,10 +10482,7 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
             for (; v < last; ++v, ++value) {
                 int32_t at = node_first[*v], size = node_first[*v + 1] - at;
                 const double *w = d->value + *value + (ptrdiff_t)j * size, *b = x + at;
-                if (size == 3)
-                    sum += w[0] * b[0] + w[1] * b[1] + w[2] * b[2];
-                else
-                    for (k = 0; k < size; ++k) sum += w[k] * b[k];
+                sum += size == 3 ? gproji_dot3(w, b) : gproji_dot(w, b, (size_t)size);
             }
             side[first + j] = sum;
         }
