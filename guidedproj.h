@@ -2506,8 +2506,10 @@ typedef struct gproji_kernels {
        column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
     /* One column block of the solutions of L y = b and L' x = y: z[0..block) become the unknowns, and go into, or
-       come from, the other rows up to `rows` (a multiple of block). */
+       come from, the other rows up to `rows` (a multiple of block). `forward_two`: so for z and y, in one pass. */
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
+    void (*forward_two)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z,
+                        double *y);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows from
        there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but
@@ -2723,6 +2725,12 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                 \
              ((sum_##j[1] + sum_##j[5]) + (sum_##j[3] + sum_##j[7]));
 
+/* The same with a second right-hand side y. */
+#define GPROJI_ZY_TAKE(j) GPROJI_Z_TAKE(j) double y_##j = y[j];
+#define GPROJI_ZY_SCALE(j) GPROJI_Z_SCALE(j) y_##j *= inverse[(j) - skip]; y[j] = y_##j;
+#define GPROJI_ZY_FORWARD(i, j) GPROJI_Z_FORWARD(i, j) y_##i -= y_##j * l_##j[i];
+#define GPROJI_ZY_SPREAD(j) GPROJI_Z_SPREAD(j) other -= GPROJI_LOAD(l_##j + r) * y_##j;
+
 /* See `forward` and `backward`. A column that does not exist is the first one once more, times 0. */
 #define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                            \
     GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                    \
@@ -2735,6 +2743,19 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
             lanes sum = GPROJI_LOAD(z + r);                                                                            \
             GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_Z_SPREAD)                                                        \
             GPROJI_STORE(z + r, sum);                                                                                  \
+        }                                                                                                              \
+    }                                                                                                                  \
+    GPROJI_KERNEL(kind) void gproji_forward_two_##kind(int32_t rows, const double *l, ptrdiff_t stride,                \
+                                                       const double *inverse, int32_t skip, double *z, double *y) {    \
+        GPROJI_BEGIN(L)                                                                                                \
+        int32_t r;                                                                                                     \
+        GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_ZY_TAKE)                                                             \
+        GPROJI_FORWARD_##B(GPROJI_ONE_ROW, GPROJI_ONE_PAIR, GPROJI_ZY_SCALE, GPROJI_ZY_FORWARD)                        \
+        for (r = B; r < rows; r += LANES) {                                                                            \
+            lanes sum = GPROJI_LOAD(z + r), other = GPROJI_LOAD(y + r);                                                \
+            GPROJI_COLUMNS_##B(GPROJI_ONE_ROW, GPROJI_ZY_SPREAD)                                                       \
+            GPROJI_STORE(z + r, sum);                                                                                  \
+            GPROJI_STORE(y + r, other);                                                                                \
         }                                                                                                              \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_backward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                   \
@@ -2813,7 +2834,7 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
     static const gproji_kernels gproji_kernels_##kind = {                                                              \
         name, B, TALL * L, L == 8, gproji_update_##kind, gproji_solve_##kind, gproji_factor_##kind,                    \
-        gproji_forward_##kind, gproji_backward_##kind, gproji_add_##kind};
+        gproji_forward_##kind, gproji_forward_two_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
 /* See `add`; pieces with gaps: the rows of a piece are spread over a vector. Piece after piece in all columns, so that
@@ -3366,14 +3387,17 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
 }
 
 /* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
-   what it takes from the rows below. */
-GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z) {
+   what it takes from the rows below. So for y, unless it is NULL. */
+GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, double *y) {
     int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
-        int32_t at = gproji_block_row(panel, start);
-        panel->kernels->forward(panel->rows - at, gproji_panel_at(panel, at, start),
-                                gproji_shape_stride(panel->shape, at), panel->inverse + start,
-                                start + panel->shift - at, z + at);
+        int32_t at = gproji_block_row(panel, start), rows = panel->rows - at, skip = start + panel->shift - at;
+        const double *l = gproji_panel_at(panel, at, start), *inverse = panel->inverse + start;
+        ptrdiff_t stride = gproji_shape_stride(panel->shape, at);
+        if (y)
+            panel->kernels->forward_two(rows, l, stride, inverse, skip, z + at, y + at);
+        else
+            panel->kernels->forward(rows, l, stride, inverse, skip, z + at);
     }
 }
 
@@ -6040,7 +6064,7 @@ struct gproj_cholesky {
     int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
     double *solution; /* columns * batch: right-hand sides in the order of L */
     double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
-    double *rows;     /* (tasks + 1) * symbolic.most_rows: one front's part of a right-hand side, for each group */
+    double *rows; /* (tasks + 1) * 2 * symbolic.most_rows: one front's part of two right-hand sides, for each group */
 };
 
 /* -- life -- */
@@ -6111,7 +6135,8 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.flops = sy->flops;
     info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
-           (sy->tasks + 1.0) * sy->most_rows + 2.0 * (double)cholesky->piece_start[sy->fronts]; /* a piece: 2 numbers */
+           (sy->tasks + 1.0) * 2 * sy->most_rows +
+           2.0 * (double)cholesky->piece_start[sy->fronts]; /* a piece: 2 numbers */
     info.work_bytes = gproji_size_of(8.0 * work);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -6503,7 +6528,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     int64_t groups = (int64_t)sy->tasks + 1;
     if (c->values) return true;
     c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
-    c->rows = gproji_take_aligned(&c->numeric, groups * sy->most_rows);
+    c->rows = gproji_take_aligned(&c->numeric, 2 * groups * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
@@ -6658,19 +6683,38 @@ GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
     return z + shift;
 }
 
-/* One front of L y = b; z: work. */
-GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
-    size_t column = (size_t)side * (size_t)c->symbolic.columns;
-    double *x = c->solution + column, *pivots = gproji_start_rows(front, z);
-    const double *b = c->given + column;
+/* The storage rows z of a front: its part of a right-hand side, and what its children take off. */
+GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
+    const double *b = c->given + (size_t)side * (size_t)c->symbolic.columns;
+    double *pivots = gproji_start_rows(front, z);
     const int32_t *permutation = c->permutation + front->first;
-    gproji_panel panel = gproji_front_panel(c, front);
     int32_t k;
     for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]];
     gproji_add_sides(c, front, side, z);
-    gproji_panel_forward(&panel, z);
+}
+
+/* The unknowns of a front, and what it takes off the rows below. */
+GPROJI_INTERNAL void gproji_leave_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
+                                        const double *z) {
+    const double *pivots = z + gproji_panel_shift(front->width);
+    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns;
     memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
     memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof(double));
+}
+
+/* One front of L y = b, for all right-hand sides, two at a time. z: work, 2 * most_rows. */
+GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, double *z) {
+    gproji_panel panel = gproji_front_panel(c, front);
+    double *y = z + c->symbolic.most_rows;
+    int32_t side;
+    for (side = 0; side < c->sides; side += 2) {
+        bool two = side + 1 < c->sides;
+        gproji_enter_front(c, front, side, z);
+        if (two) gproji_enter_front(c, front, side + 1, y);
+        gproji_panel_forward(&panel, z, two ? y : NULL);
+        gproji_leave_front(c, front, side, z);
+        if (two) gproji_leave_front(c, front, side + 1, y);
+    }
 }
 
 /* One front of L' x = y. */
@@ -6699,18 +6743,18 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
 GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
-    int32_t k, side;
+    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
+    int32_t k;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
         if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
-        for (side = 0; side < c->sides; ++side) gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
+        gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
     }
 }
 
 GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
+    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k, side;
     for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k) {
         if (k > sy->task_start[group]) gproji_prefetch_front(c, sy->schedule[k - 1]);
@@ -6764,17 +6808,16 @@ GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y
 GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    double *z = c->rows + (size_t)group * (size_t)sy->most_rows;
+    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
-    int32_t k, side, failed = -1;
+    int32_t k, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         if (k + 1 < sy->task_start[group + 1]) {
             gproji_prefetch_front(c, sy->schedule[k + 1]);
             gproji_prefetch_given(c, sy->schedule[k + 1]);
         }
         failed = gproji_factor_front(c, sy->schedule[k], parallel);
-        for (side = 0; failed < 0 && side < c->sides; ++side)
-            gproji_forward_front(c, &sy->front[sy->schedule[k]], side, z);
+        if (failed < 0) gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
     }
     c->failed[group] = failed;
 }

@@ -79,7 +79,7 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
     /* forward: [L1; L2] y = b on the pivots, b2 - L2 y below */
     for (i = 0; i < n; ++i) b[i] = 2.0 * gprojt_uniform(seed) - 1.0;
     for (i = 0; i < w; ++i) z[storage(w, i)] = b[i];
-    gproji_panel_forward(&job, z);
+    gproji_panel_forward(&job, z, NULL);
     for (j = 0; j < w; ++j) {
         b[j] /= a[at(j, j, n)];
         for (i = j + 1; i < w; ++i) b[i] -= a[at(i, j, n)] * b[j];
