@@ -2419,24 +2419,35 @@ GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* a'b; four sums, so that none has to wait for the one before. */
-GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
-    double sum[4] = {0, 0, 0, 0};
-    size_t i, k;
-    for (i = 0; i + 4 <= count; i += 4)
-        for (k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
-    for (; i < count; ++i) sum[0] += a[i] * b[i];
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/* The sum of so many parts; more than one, so that none has to wait for the one before. */
+enum {
+    GPROJI_PARTS = 16
+};
+GPROJI_INLINE double gproji_add_parts(double part[GPROJI_PARTS]) {
+    int32_t half, k;
+    for (half = GPROJI_PARTS / 2; half > 0; half /= 2)
+        for (k = 0; k < half; ++k) part[k] += part[k + half];
+    return part[0];
 }
 
-/* sum |a_i b_i|, in the same way. */
-GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, size_t count) {
-    double sum[4] = {0, 0, 0, 0};
+/* a'b */
+GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count) {
+    double part[GPROJI_PARTS] = {0};
     size_t i, k;
-    for (i = 0; i + 4 <= count; i += 4)
-        for (k = 0; k < 4; ++k) sum[k] += fabs(a[i + k] * b[i + k]);
-    for (; i < count; ++i) sum[0] += fabs(a[i] * b[i]);
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    for (i = 0; i + GPROJI_PARTS <= count; i += GPROJI_PARTS)
+        for (k = 0; k < GPROJI_PARTS; ++k) part[k] += a[i + k] * b[i + k];
+    for (k = 0; i + k < count; ++k) part[k] += a[i + k] * b[i + k];
+    return gproji_add_parts(part);
+}
+
+/* sum |a_i b_i| */
+GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, size_t count) {
+    double part[GPROJI_PARTS] = {0};
+    size_t i, k;
+    for (i = 0; i + GPROJI_PARTS <= count; i += GPROJI_PARTS)
+        for (k = 0; k < GPROJI_PARTS; ++k) part[k] += fabs(a[i + k] * b[i + k]);
+    for (k = 0; i + k < count; ++k) part[k] += fabs(a[i + k] * b[i + k]);
+    return gproji_add_parts(part);
 }
 
 /* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
@@ -9255,6 +9266,21 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
+/* out = scale * gradient; only the first n numbers count. */
+GPROJI_INTERNAL void gproji_row_spread(const gproji_group *g, const gproji_row *row, double scale, size_t n,
+                                       double *out) {
+    const double *gradient = g->local_gradient + row->local;
+    size_t first = (size_t)g->local_variable[row->local], end = first + (row[1].local - row->local), v;
+    if (!row->run) {
+        memset(out, 0, n * sizeof *out);
+        gproji_row_add(g, row, scale, out);
+        return;
+    }
+    memset(out, 0, first * sizeof *out);
+    for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
+    if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
+}
+
 /* gradient = sum w^2 phi grad phi over narrow rows that act: half the gradient of their part of the merit. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
@@ -9387,9 +9413,7 @@ GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
 }
 
 GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    double *column = gproji_wide_side(s, index);
-    memset(column, 0, (size_t)s->variable_count * sizeof *column);
-    gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
+    gproji_row_spread(g, row, sqrt(gproji_weight2(g, row)), (size_t)s->variable_count, gproji_wide_side(s, index));
 }
 
 /* w phi */
@@ -10616,9 +10640,7 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
 /* w g_i, without auxiliary variables, where U will be. */
 GPROJI_INTERNAL void gproji_schur_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                               int32_t index) {
-    double *column = gproji_wide_side(s, index);
-    memset(column, 0, (size_t)s->schur.kept * sizeof *column);
-    gproji_row_add(g, row, sqrt(gproji_weight2(g, row)), column);
+    gproji_row_spread(g, row, sqrt(gproji_weight2(g, row)), (size_t)s->schur.kept, gproji_wide_side(s, index));
 }
 
 /* From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
@@ -11110,6 +11132,7 @@ GPROJI_INTERNAL double gproji_row_products(const gproji_group *g, const gproji_r
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
     const int32_t *variable = g->local_variable + row->local;
     double sum = 0;
+    if (row->run) return 0;
     for (; term < end; ++term)
         if (term->j >= 0) sum += term->a * dx[variable[term->i]] * dx[variable[term->j]];
     return sum;
