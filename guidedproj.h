@@ -1552,6 +1552,12 @@ GPROJI_INLINE bool gproji_is_finite(double x) {
     memcpy(&bits, &x, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
+
+GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
+    size_t i, odd = 0;
+    for (i = 0; i < count; ++i) odd += !gproji_is_finite(x[i]);
+    return odd == 0;
+}
 /* ============================================================================================================
    >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
 
@@ -8455,7 +8461,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                                           double constant) {
     gproji_group *g;
     gproj_term *term;
-    uint32_t t, count, odd;
+    uint32_t t, count;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row))
@@ -8463,9 +8469,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            group);
     g = &s->group[group];
     count = g->row[row].terms;
-    odd = !gproji_is_finite(constant);
-    for (t = 0; coefficients && t < count; ++t) odd += !gproji_is_finite(coefficients[t]);
-    if (odd > 0)
+    if (!gproji_is_finite(constant) || (coefficients && !gproji_are_finite(coefficients, count)))
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
@@ -9270,12 +9274,14 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
 GPROJI_INTERNAL void gproji_row_spread(const gproji_group *g, const gproji_row *row, double scale, size_t n,
                                        double *out) {
     const double *gradient = g->local_gradient + row->local;
-    size_t first = (size_t)g->local_variable[row->local], end = first + (row[1].local - row->local), v;
+    size_t first, end, v;
     if (!row->run) {
         memset(out, 0, n * sizeof *out);
         gproji_row_add(g, row, scale, out);
         return;
     }
+    first = (size_t)g->local_variable[row->local];
+    end = first + (row[1].local - row->local);
     memset(out, 0, first * sizeof *out);
     for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
     if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
@@ -10534,6 +10540,14 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
 
+/* w'x at a node of any size; apart, so that it takes no registers from nodes of three variables. */
+GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, int32_t size) {
+    double sum = 0;
+    int32_t k;
+    for (k = 0; k < size; ++k) sum += w[k] * x[k];
+    return sum;
+}
+
 /* side = a + W x at the multipliers of some elements. */
 GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
                                         double *side) {
@@ -10548,8 +10562,8 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
             double sum = a ? a[first + j] : 0;
             for (; v < last; ++v, ++value) {
                 int32_t at = node_first[*v], size = node_first[*v + 1] - at;
-                const double *w = d->value + *value + (ptrdiff_t)j * size, *b = x + at;
-                sum += size == 3 ? gproji_dot3(w, b) : gproji_dot(w, b, (size_t)size);
+                const double *w = d->value + *value + (ptrdiff_t)j * size;
+                sum += size == 3 ? gproji_dot3(w, x + at) : gproji_schur_product(w, x + at, size);
             }
             side[first + j] = sum;
         }
