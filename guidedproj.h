@@ -16825,14 +16825,13 @@ GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double a
 }
 
 /* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
-   areas; `gradient` becomes the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
+   areas; `gradient` becomes six times the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
 GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
                                      double *area) {
-    size_t count = gradient ? 3 * (size_t)mesh->vertex_count : 0, k;
     double sum, all, apex[3];
     int32_t i;
     gproji_set3(position[0], position[1], -height, apex);
-    if (gradient) memset(gradient, 0, count * sizeof *gradient);
+    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
     sum = gproji_faces_volume(mesh, position, apex, gradient, &all);
     for (i = 0; i < mesh->loop_count; ++i) {
         int32_t start = mesh->loop_halfedge[i], h = start;
@@ -16841,7 +16840,6 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
             h = mesh->next[h];
         } while (h != start);
     }
-    for (k = 0; k < count; ++k) gradient[k] *= 1.0 / 6;
     if (area) *area = all;
     return sum / 6;
 }
@@ -20626,7 +20624,7 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     size_t count = 3 * (size_t)form->mesh->vertex_count, k;
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     scale = 1 / gproji_fmax(area, 1e-12);
-    for (k = 0; k < count; ++k) part->gradient[k] *= scale;
+    for (k = 0; k < count; ++k) part->gradient[k] *= scale / 6;
     /* summed up as the row's value is: their roundings are the same */
     constant = scale * constant - gproji_dot(part->gradient, x, count);
     gproj_system_set_row(system, group, 0, part->gradient, constant);
