@@ -15,7 +15,7 @@ enum {
     BENCH_SAMPLES_MAX = 400,
     BENCH_ITERATIONS = 6, /* of a solve; the first one gives no sample */
     BENCH_SET_UPS = 9,    /* at most */
-    BENCH_TURNS = 4,      /* of two forms that are compared */
+    BENCH_TURNS = 40,     /* of two forms that are compared */
     BENCH_CHOSEN = 32,    /* problems and sizes that may be named */
     BENCH_CASES = 256
 };
@@ -312,7 +312,7 @@ static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *op
     measured = run->form && without->form;
     for (i = 1; measured && i <= BENCH_TURNS; ++i) {
         int share = bench_share(options->samples, i, BENCH_TURNS);
-        measured = bench_solves(run, true, share, 0.1) && bench_solves(without, true, share, 0.1);
+        measured = bench_solves(run, true, share, 0.02) && bench_solves(without, true, share, 0.02);
     }
     if (measured) {
         result->ours = bench_simd.facts(run->form);
