@@ -6644,14 +6644,14 @@ GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
     if (gproji_is_far(c)) gproji_prefetch_values(c->values + front->panel, size);
 }
 
-/* The same for its part of the right-hand sides. */
-GPROJI_INLINED void gproji_prefetch_given(const gproj_cholesky *c, int32_t f) {
+/* The same, and its part of the right-hand sides. */
+GPROJI_INLINED void gproji_prefetch_forward(const gproj_cholesky *c, int32_t f) {
     const gproji_front *front = &c->symbolic.front[f];
     const int32_t *permutation = c->permutation + front->first;
     const double *b = c->given;
     int32_t side, k;
-    if (!gproji_is_far(c)) return;
-    for (side = 0; side < c->sides; ++side, b += c->symbolic.columns)
+    gproji_prefetch_front(c, f);
+    for (side = 0; gproji_is_far(c) && side < c->sides; ++side, b += c->symbolic.columns)
         for (k = 0; k < front->width; ++k) GPROJI_PREFETCH(b + permutation[k]);
 }
 
@@ -6763,7 +6763,7 @@ GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
-        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_front(c, sy->schedule[k + 1]);
+        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
         gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
     }
 }
@@ -6829,10 +6829,7 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
     const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
     int32_t k, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
-        if (k + 1 < sy->task_start[group + 1]) {
-            gproji_prefetch_front(c, sy->schedule[k + 1]);
-            gproji_prefetch_given(c, sy->schedule[k + 1]);
-        }
+        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
         failed = gproji_factor_front(c, sy->schedule[k], parallel);
         if (failed < 0) gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
     }
@@ -9170,9 +9167,9 @@ GPROJI_INTERNAL double gproji_run_value(const gproji_group *g, const gproji_row 
     return row->constant + gproji_dot(gradient, x, row->terms);
 }
 
-/* phi and grad phi of a row; one without weight gets zeros, unless it is a run. Rows of bounds act where they are violated, or where they did
-   in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger than s->rounding, phi is added
-   up with more digits. */
+/* phi and grad phi of a row; one without weight gets zeros, but a run keeps its gradient. Rows of bounds act where they are
+   violated, or where they did in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger
+   than s->rounding, phi is added up with more digits. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     double *gradient = g->local_gradient + row->local, phi, size;
     if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);

@@ -37,6 +37,23 @@ static int64_t place_of_row(gproji_shape shape, int32_t r, int32_t j) {
 }
 static int64_t place_of(gproji_shape shape, int32_t i, int32_t j) { return place_of_row(shape, i + shape.shift, j); }
 
+/* b becomes y, [L1; L2] y = b on the pivots. Returns the largest difference of z to it and, below, to - L2 y. */
+static double forward_error(int32_t n, int32_t w, const double *a, double *b, const double *z) {
+    double error = 0;
+    int32_t i, j;
+    for (j = 0; j < w; ++j) {
+        b[j] /= a[at(j, j, n)];
+        for (i = j + 1; i < w; ++i) b[i] -= a[at(i, j, n)] * b[j];
+        error = fmax(error, fabs(b[j] - z[storage(w, j)]));
+    }
+    for (i = w; i < n; ++i) {
+        double sum = 0;
+        for (j = 0; j < w; ++j) sum -= a[at(i, j, n)] * b[j];
+        error = fmax(error, fabs(sum - z[storage(w, i)]));
+    }
+    return error;
+}
+
 /* Factors a panel with w pivots and u rows below, forms the update matrix, solves with it: all against the loops. */
 static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u, uint64_t *seed) {
     int32_t n = w + u, update_rows = gproji_round_up(u, GPROJI_BLOCK), rows = storage(w, w) + update_rows, i, j;
@@ -48,7 +65,8 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
            *inverse = (double *)malloc((size_t)w * sizeof(double));
     double *update = (double *)malloc(update_size * sizeof(double));
     double *z = (double *)calloc((size_t)shape.stride, sizeof(double)),
-           *b = (double *)malloc((size_t)n * sizeof(double));
+           *y = (double *)calloc((size_t)shape.stride, sizeof(double));
+    double *b = (double *)malloc((size_t)n * sizeof(double)), *x = (double *)malloc((size_t)w * sizeof(double));
     double error = 0, bound = 1e-11;
     gproji_panel job;
     fill_spd(n, a, seed);
@@ -76,20 +94,17 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
             }
     }
     GPROJT_CHECK(u == 0 || update[update_size - 1] == 7.0);
-    /* forward: [L1; L2] y = b on the pivots, b2 - L2 y below */
+    /* forward: two right-hand sides at once, then one */
     for (i = 0; i < n; ++i) b[i] = 2.0 * gprojt_uniform(seed) - 1.0;
-    for (i = 0; i < w; ++i) z[storage(w, i)] = b[i];
+    for (i = 0; i < w; ++i) z[storage(w, i)] = b[w - 1 - i], y[storage(w, i)] = b[i];
+    gproji_panel_forward(&job, z, y);
+    for (i = 0; i < w; ++i) x[i] = b[w - 1 - i];
+    error = fmax(error, forward_error(n, w, a, x, z));
+    memset(z, 0, (size_t)shape.stride * sizeof *z);
+    for (i = 0; i < w; ++i) x[i] = z[storage(w, i)] = b[i];
     gproji_panel_forward(&job, z, NULL);
-    for (j = 0; j < w; ++j) {
-        b[j] /= a[at(j, j, n)];
-        for (i = j + 1; i < w; ++i) b[i] -= a[at(i, j, n)] * b[j];
-        error = fmax(error, fabs(b[j] - z[storage(w, j)]));
-    }
-    for (i = w; i < n; ++i) {
-        double sum = 0;
-        for (j = 0; j < w; ++j) sum -= a[at(i, j, n)] * b[j];
-        error = fmax(error, fabs(sum - z[storage(w, i)]));
-    }
+    error = fmax(error, forward_error(n, w, a, x, z));
+    error = fmax(error, forward_error(n, w, a, b, y));
     /* backward: L1' x = y - L2' x2 */
     for (i = w; i < n; ++i) z[storage(w, i)] = b[i];
     gproji_panel_backward(&job, u % 2 == 0, z);
@@ -100,7 +115,7 @@ static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u
     }
     if (!(error <= bound)) printf("  %s, w = %d, u = %d: error %g\n", kernels->name, (int)w, (int)u, error);
     GPROJT_CHECK(error <= bound);
-    free(a), free(panel), free(inverse), free(update), free(z), free(b);
+    free(a), free(panel), free(inverse), free(update), free(z), free(y), free(b), free(x);
 }
 
 /* The kernels of this processor, one kind after the other. */

@@ -796,6 +796,54 @@ static double gprojt_global_step(int32_t n, int32_t copies, double weight, doubl
     return difference / largest;
 }
 
+/* x_i = 0 and one global row, c'x = 1 in variables that follow each other, with `weight`. */
+static gproj_system *gprojt_flat_system(int32_t n, const double *c, double weight) {
+    gproj_system *s = gproj_system_create(NULL);
+    gproj_term *term = (gproj_term *)malloc((size_t)n * sizeof *term);
+    gproj_group group;
+    int32_t i;
+    memset(&group, 0, sizeof group);
+    group.name = "plane", group.global = true, group.schedule.weight = 1;
+    gproj_system_add_variables(s, n + 1, 1, NULL);
+    gprojt_add_group(s, "nought", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_group(s, &group);
+    for (i = 0; i <= n; ++i) gprojt_add_linear(s, 0, i, 1, 0, i);
+    for (i = 0; i < n; ++i) term[i] = gprojt_term(i + 1, -1, c[i]);
+    gproj_system_add_row(s, 1, n, term, -1, 0);
+    gproj_system_set_row_weight(s, 1, 0, weight);
+    free(term);
+    return s;
+}
+
+/* Solved as it is, and with other coefficients and weights after a first solve: the same. At the minimum of |x|^2 +
+   w^2 (c'x - 1)^2 stands x = w^2 c / (1 + w^2 c'c). */
+GPROJT_TEST(coefficients_of_global_rows_may_change) {
+    enum {
+        N = 700
+    };
+    static const double before[3] = {1, 0, 2}, weights[3] = {1, 0.5, 0};
+    double c[N], other[N], square = 0;
+    int32_t i, k, m;
+    uint64_t seed = 3;
+    for (i = 0; i < N; ++i) c[i] = gprojt_uniform(&seed) - 0.5, other[i] = gprojt_uniform(&seed), square += c[i] * c[i];
+    for (k = 0; k < 3; ++k)
+        for (m = 0; m < 3; ++m) {
+            gproj_system *s = gprojt_flat_system(N, other, before[k]);
+            double w2 = weights[m] * weights[m], error = 0;
+            gproj_system_solve(s, 20, NULL);
+            gproj_system_set_row_weight(s, 1, 0, 0);
+            gproj_system_set_row(s, 1, 0, c, -1);
+            gproj_system_solve(s, 2, NULL);
+            gproj_system_set_row_weight(s, 1, 0, weights[m]);
+            gproj_system_solve(s, 40, NULL);
+            for (i = 0; i < N; ++i)
+                error = fmax(error, fabs(gproj_system_values(s)[i + 1] - w2 * c[i] / (1 + w2 * square)));
+            GPROJT_CHECK(error < 1e-9);
+            GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-8);
+            gproj_system_destroy(s);
+        }
+}
+
 GPROJT_TEST(steps_with_global_rows_are_precise) {
     static const int32_t copies[4] = {1, 2, 3, 8}, sizes[3] = {10, 1000, 10000};
     static const double epsilons[3] = {1e-3, 1e-4, 1e-5}, weights[3] = {0.01, 0.5, 1e3};
@@ -996,6 +1044,7 @@ int main(void) {
     GPROJT_RUN(steps_with_wide_rows);
     GPROJT_RUN(steps_with_wide_rows_among_narrow_ones);
     GPROJT_RUN(steps_with_wide_rows_hold_their_equations);
+    GPROJT_RUN(coefficients_of_global_rows_may_change);
     GPROJT_RUN(steps_with_global_rows_are_precise);
     GPROJT_RUN(a_sphere_of_10000_dimensions);
     GPROJT_RUN(wide_rows_stay_out_of_the_matrix);
