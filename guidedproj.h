@@ -7715,7 +7715,7 @@ typedef struct gproji_row {
     double phi;    /* the value at the last evaluation */
     int32_t element;
     bool wide;   /* kept out of the matrix */
-    bool run;    /* of a wide row: its terms are linear, and their variables follow each other */
+    bool run;    /* a global row whose terms are linear, and their variables follow each other */
     bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
     bool waits;  /* a guard's that has not come near to acting: it has no multiplier */
 } gproji_row;
@@ -8382,10 +8382,8 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     local = g->local_variable + row->local;
     named = gproji_name_locals(s, count, terms, g->term + row->term, local);
     r = gproji_end_row(s, g, row, named);
-    if (row->wide)
-        row->run = gproji_is_run(count, terms);
-    else
-        gproji_couple_blocks(s, named, local);
+    row->run = g->global && gproji_is_run(count, terms);
+    if (!row->wide) gproji_couple_blocks(s, named, local);
     for (i = 0; i < named; ++i) s->place[local[i]] = -1;
     return r;
 }
@@ -8454,10 +8452,15 @@ GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
     s->schur.stale = true;
 }
 
+/* Of a run they are its gradient, too. */
+GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
+    g->term[row->term + t].a = a;
+    if (row->run && g->local_gradient) g->local_gradient[row->local + t] = a;
+}
+
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
                                           double constant) {
     gproji_group *g;
-    gproj_term *term;
     uint32_t t, count;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
@@ -8471,10 +8474,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
     if (coefficients && row < g->closing) gproji_open_rows(s, g);
-    term = g->term + g->row[row].term;
-    for (t = 0; coefficients && t < count; ++t) term[t].a = coefficients[t];
-    if (coefficients && g->row[row].run && g->local_gradient)
-        memcpy(g->local_gradient + g->row[row].local, coefficients, count * sizeof *coefficients);
+    for (t = 0; coefficients && t < count; ++t) gproji_set_coefficient(g, &g->row[row], t, coefficients[t]);
     g->row[row].constant = constant;
     s->changed = true;
     return GPROJ_OK;
@@ -9021,7 +9021,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     return done;
 }
 
-/* The gradients of runs, which are their coefficients, and follow them from now on (gproj_system_set_row). */
+/* The gradients of runs, which are their coefficients, and follow them from now on (gproji_set_coefficient). */
 GPROJI_INTERNAL void gproji_start_runs(gproji_group *g) {
     int32_t r;
     uint32_t t;
@@ -10784,7 +10784,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
 /* ============================================================================================================
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
-   error, parallel, system, schur.
+   error, parallel, vector, system, schur.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
@@ -10850,8 +10850,8 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, which has no other's and is no run, to change their coefficients in place; for what they name see
-   gproji_variable_of. */
+/* The terms of a row, which has no other's and is no run, to change their coefficients in place; for what they
+   name see gproji_variable_of. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     GPROJ_ASSERT(!g->common && !g->row[row].run);
@@ -22727,7 +22727,7 @@ GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproj_form *form
                 gproji_spoil(stream, "out of memory");
                 return;
             }
-            g->term[g->row[r].term + t].a = now;
+            gproji_set_coefficient(g, &g->row[r], t, now);
         }
 }
 
