@@ -15,7 +15,6 @@ enum {
     BENCH_SAMPLES_MAX = 400,
     BENCH_ITERATIONS = 6, /* of a solve; the first one gives no sample */
     BENCH_SET_UPS = 9,    /* at most */
-    BENCH_TURNS = 40,     /* of two forms that are compared */
     BENCH_CHOSEN = 32,    /* problems and sizes that may be named */
     BENCH_CASES = 256
 };
@@ -86,6 +85,10 @@ static double bench_median(double *value, int count) {
 static void bench_medians(bench_samples *samples, double seconds[BENCH_TIMES]) {
     int p;
     for (p = 0; p < BENCH_TIMES; ++p) seconds[p] = bench_median(samples->seconds[p], samples->count);
+}
+
+static double bench_median_whole(bench_samples *samples) {
+    return bench_median(samples->seconds[BENCH_WHOLE], samples->count);
 }
 
 /* -- one case -- */
@@ -234,14 +237,43 @@ static bench_run *bench_begin_run(const bench_solver *solver, int samples) {
 }
 
 /* The median time of an iteration of ours in another way; 0 where it cannot be had. */
-static double bench_whole(const bench_solver *solver, const bench_mesh *mesh, bench_task task, int32_t workers,
-                          int samples) {
+static double bench_whole(const bench_solver *solver, const bench_mesh *mesh, bench_task task, int samples) {
     bench_run *run = bench_begin_run(solver, samples);
-    double seconds[BENCH_TIMES] = {0}, set_up;
-    run->form = bench_set_up(solver, mesh, task, workers, 1, &set_up);
-    if (run->form && bench_solves(run, true, samples, 0.5)) bench_medians(&run->ours, seconds);
+    double whole = 0, set_up;
+    run->form = bench_set_up(solver, mesh, task, 0, 1, &set_up);
+    if (run->form && bench_solves(run, true, samples, 0.5)) whole = bench_median_whole(&run->ours);
     bench_end_run(run);
-    return seconds[BENCH_WHOLE];
+    return whole;
+}
+
+/* Two runs in turns of a solve or some, so that a slow spell of the machine falls on both. False where nothing can be
+   sampled. */
+static bool bench_turns(bench_run *run[2], int samples, double seconds) {
+    const bench_samples *wanted = &run[0]->ours;
+    double began = bench_wall();
+    while (wanted->count < samples ||
+           (bench_wall() - began < seconds && wanted->count + BENCH_ITERATIONS <= BENCH_SAMPLES_MAX)) {
+        int more = wanted->count + 1;
+        if (!bench_solves(run[0], true, more, 0.005) || !bench_solves(run[1], true, more, 0.005)) return false;
+    }
+    return true;
+}
+
+/* Begins and makes two runs of ours, in turns. */
+static bool bench_pair(bench_run *run[2], const bench_mesh *mesh, const bench_task task[2], const int32_t workers[2],
+                       int samples) {
+    double set_up;
+    int i;
+    for (i = 0; i < 2; ++i) {
+        run[i] = bench_begin_run(&bench_simd, samples);
+        run[i]->form = bench_set_up(&bench_simd, mesh, task[i], workers[i], 1, &set_up);
+    }
+    return run[0]->form && run[1]->form && bench_turns(run, samples, 4);
+}
+
+static void bench_end_pair(bench_run *run[2]) {
+    bench_end_run(run[0]);
+    bench_end_run(run[1]);
 }
 
 /* The median time of a factorisation without right-hand sides, after a solve; more samples where they take no time. */
@@ -288,41 +320,41 @@ static bool bench_measure_both(const bench_mesh *mesh, bench_task task, const be
     return measured;
 }
 
-/* The same system in other ways. */
-static void bench_measure_others(const bench_mesh *mesh, bench_task task, int samples, bench_result *result) {
-    if (mesh->vertex_count > 15000 && samples > 5) samples = 5; /* one solve */
-    result->cblas = bench_whole(&bench_cblas, mesh, task, 0, samples);
-    result->scalar = bench_whole(&bench_scalar, mesh, task, 0, samples);
-    if (mesh->vertex_count < 25000) return;
+/* The same system with one worker and with two. */
+static void bench_measure_workers(const bench_mesh *mesh, bench_task task, int samples, bench_result *result) {
+    static const int32_t workers[2] = {1, 2};
+    const bench_task tasks[2] = {task, task};
+    bench_run *run[2];
     bench_pin(false);
-    result->one_worker = bench_whole(&bench_simd, mesh, task, 1, samples);
-    result->two_workers = bench_whole(&bench_simd, mesh, task, 2, samples);
+    if (bench_pair(run, mesh, tasks, workers, samples)) {
+        result->one_worker = bench_median_whole(&run[0]->ours);
+        result->two_workers = bench_median_whole(&run[1]->ours);
+    }
+    bench_end_pair(run);
     bench_pin(true);
 }
 
-/* Ours with the volume and without, in turns. */
+/* The same system in other ways. */
+static void bench_measure_others(const bench_mesh *mesh, bench_task task, int samples, bench_result *result) {
+    if (mesh->vertex_count > 15000 && samples > 5) samples = 5; /* one solve */
+    result->cblas = bench_whole(&bench_cblas, mesh, task, samples);
+    result->scalar = bench_whole(&bench_scalar, mesh, task, samples);
+    if (mesh->vertex_count > 25000) bench_measure_workers(mesh, task, samples, result);
+}
+
+/* Ours with the volume and without. */
 static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *options, bench_result *result) {
-    bench_run *run = bench_begin_run(&bench_simd, options->samples);
-    bench_run *without = bench_begin_run(&bench_simd, options->samples);
-    double set_up, seconds[BENCH_TIMES];
-    bool measured;
-    int i;
-    run->form = bench_set_up(&bench_simd, mesh, BENCH_VOLUME, 0, 1, &set_up);
-    without->form = bench_set_up(&bench_simd, mesh, BENCH_PLANARITY, 0, 1, &set_up);
-    measured = run->form && without->form;
-    for (i = 1; measured && i <= BENCH_TURNS; ++i) {
-        int share = bench_share(options->samples, i, BENCH_TURNS);
-        measured = bench_solves(run, true, share, 0.02) && bench_solves(without, true, share, 0.02);
-    }
+    static const bench_task task[2] = {BENCH_VOLUME, BENCH_PLANARITY};
+    static const int32_t workers[2] = {0, 0};
+    bench_run *run[2];
+    bool measured = bench_pair(run, mesh, task, workers, options->samples);
     if (measured) {
-        result->ours = bench_simd.facts(run->form);
-        result->samples = run->ours.count;
-        bench_medians(&run->ours, result->our_seconds);
-        bench_medians(&without->ours, seconds);
-        result->without = seconds[BENCH_WHOLE];
+        result->ours = bench_simd.facts(run[0]->form);
+        result->samples = run[0]->ours.count;
+        bench_medians(&run[0]->ours, result->our_seconds);
+        result->without = bench_median_whole(&run[1]->ours);
     }
-    bench_end_run(run);
-    bench_end_run(without);
+    bench_end_pair(run);
     return measured;
 }
 

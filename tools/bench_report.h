@@ -353,7 +353,7 @@ static void bench_write_row(FILE *file, const bench_report *report, const char *
     fprintf(file, "| %s |", label);
     for (i = 0; i < count; ++i) {
         const bench_result *r = bench_find(report, problem, size[i]);
-        double v = r && bench_has_both(r) ? value(report, r) : 0;
+        double v = r && (bench_has_both(r) || r->without > 0) ? value(report, r) : 0;
         if (v > 0)
             fprintf(file, percent ? " %.0f %% |" : " %.2f |", percent ? 100 * v : v);
         else
@@ -398,6 +398,9 @@ static double bench_value_scalar(const bench_report *report, const bench_result 
 }
 static double bench_value_workers(const bench_report *report, const bench_result *r) {
     return (void)report, r->two_workers > 0 ? r->two_workers / r->one_worker : 0;
+}
+static double bench_value_global(const bench_report *report, const bench_result *r) {
+    return (void)report, r->our_seconds[BENCH_WHOLE] / r->without;
 }
 
 static void bench_write_heading(FILE *file, const bench_report *report, const char *first) {
@@ -449,6 +452,11 @@ static void bench_write_markdown(FILE *file, const bench_report *report) {
           file);
     bench_write_details(file, report, "Planar quads", "quad");
     bench_write_details(file, report, "Planar quads and fairness", "fairness");
+    if (bench_has(report, "volume")) {
+        fputs("\nA volume to be kept, one row with all vertices, beside planar quads on a closed mesh:\n\n", file);
+        bench_write_heading(file, report, "V");
+        bench_write_row(file, report, "time with the volume / without", "volume", false, bench_value_global);
+    }
     fputs("\nBy `make -C tools bench && tools/bench", file);
     for (i = 1; i < report->argc; ++i) fprintf(file, " %s", report->argv[i]);
     fputs(
