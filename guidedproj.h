@@ -5271,32 +5271,36 @@ typedef struct gproji_front {
     int32_t sibling;     /* next child of the same parent, or -1 */
 } gproji_front;
 
+enum {
+    GPROJI_STAGES = 2 /* of tasks; those of a stage need nothing of each other */
+};
+
 typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;       /* independent tasks; the fronts on top of them are one more group */
-    int32_t *order;      /* nodes: the node at each place */
-    int32_t *place;      /* nodes: the place of each node */
-    int32_t *column;     /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;   /* nodes: the front of each place */
-    gproji_front *front; /* fronts */
-    int32_t *row_node;   /* row nodes of all fronts: their places */
-    int32_t *row_at;     /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;   /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;   /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start; /* tasks + 2: where the groups begin in `schedule` */
-    int64_t values_size; /* doubles for all panels */
-    int64_t work_size;   /* doubles after them, for the update matrices that do not fit in between */
-    int64_t side_size;   /* `below` rows of all fronts */
+    int32_t tasks;                          /* tasks of all stages; the fronts on top of them are one more group */
+    int32_t stage_start[GPROJI_STAGES + 2]; /* the groups of each stage; that on top is one of its own */
+    int32_t *order;                         /* nodes: the node at each place */
+    int32_t *place;                         /* nodes: the place of each node */
+    int32_t *column;                        /* nodes + 1: the first column of L of the node at each place */
+    int32_t *front_of;                      /* nodes: the front of each place */
+    gproji_front *front;                    /* fronts */
+    int32_t *row_node;                      /* row nodes of all fronts: their places */
+    int32_t *row_at;                        /* for each of them, its first storage row in the front's panel */
+    int32_t *relative;                      /* for each of them, its first storage row in the parent's panel */
+    int32_t *schedule;                      /* fronts: those of task 0 in order, of task 1, ..., those on top */
+    int32_t *task_start;                    /* tasks + 2: where the groups begin in `schedule` */
+    int64_t values_size;                    /* doubles for all panels */
+    int64_t work_size;                      /* doubles after them, for the update matrices that do not fit in between */
+    int64_t side_size;                      /* `below` rows of all fronts */
     int64_t factor_entries, exact_entries;
     int32_t most_rows; /* storage rows of the largest panel */
     double flops;
 } gproji_symbolic;
 
 enum {
-    GPROJI_TASK_SHARE = 24, /* a task has at most about this part of all flops */
-    GPROJI_NODES_AHEAD = 8  /* see gproji_expect_neighbours */
+    GPROJI_NODES_AHEAD = 8 /* see gproji_expect_neighbours */
 };
 
 /* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
@@ -5706,36 +5710,51 @@ GPROJI_INTERNAL void gproji_front_sequence(gproji_analysis *an, int32_t *sequenc
     gproji_postorder(roots, parent, an->child, an->sibling, sequence);
 }
 
-/* Groups the fronts: whole subtrees with at most a share of all flops go into tasks, small ones together; what lies
-   above them is the last group. Small problems are one task. group: fronts entries. */
+/* The tasks of a stage: of the fronts without a group (-1) the whole subtrees with at most so many flops, small ones
+   together. flops: of each front's subtree. Returns how many tasks there are now. */
+GPROJI_INTERNAL int32_t gproji_make_stage(const gproji_symbolic *out, const int32_t *sequence, const double *flops,
+                                          double share, int32_t tasks, int32_t *group) {
+    double filled = 0;
+    int32_t k;
+    for (k = 0; k < out->fronts; ++k) {
+        int32_t f = sequence[k], parent = out->front[f].parent;
+        if (group[f] >= 0 || flops[f] > share) continue;
+        group[f] = tasks;
+        if (parent >= 0 && flops[parent] <= share) continue;
+        filled += flops[f]; /* a whole subtree is complete */
+        if (filled > share / 2) tasks++, filled = 0;
+    }
+    return tasks + (filled > 0);
+}
+
+/* Groups the fronts in stages. In each of them subtrees with at most a share of all flops are tasks; what is above the
+   last ones is the last group. Threads that work on one front together must pass it to each other, which pays for large
+   ones only; of smaller ones, those of the second stage, there are several. Small problems are one task. group: fronts
+   entries. */
 GPROJI_INTERNAL bool gproji_make_tasks(gproji_analysis *an, const int32_t *sequence, int32_t *group) {
     gproji_symbolic *out = an->out;
-    double *flops, sum = 0, filled = 0, share;
-    int32_t f, k, tasks = 0, *top = an->d;
+    double *flops, sum = 0, share[GPROJI_STAGES];
+    int32_t f, stage;
     flops = (double *)gproji_pool_take(&an->pool, out->fronts, sizeof(double));
     if (!flops) return false;
     for (f = 0; f < out->fronts; ++f) {
         flops[f] = gproji_front_flops(out->front[f].width, out->front[f].below);
         sum += flops[f];
+        group[f] = -1;
     }
-    share = sum > 2e7 ? sum / (double)GPROJI_TASK_SHARE : sum * 2;
     for (f = 0; f < out->fronts; ++f)
         if (out->front[f].parent >= 0) flops[out->front[f].parent] += flops[f];
-    for (f = 0; f < out->fronts; ++f) top[f] = flops[f] > share;
-    for (k = 0; k < out->fronts; ++k) {
-        int32_t parent;
-        f = sequence[k];
-        if (top[f]) continue;
-        group[f] = tasks;
-        parent = out->front[f].parent;
-        if (parent >= 0 && !top[parent]) continue;
-        filled += flops[f]; /* a whole subtree is complete */
-        if (filled > share / 2) tasks++, filled = 0;
+    share[0] = sum > 2e7 ? sum / 24 : sum * 2;
+    share[1] = gproji_fmin(sum / 4, 5e8);
+    out->tasks = 0;
+    for (stage = 0; stage < GPROJI_STAGES; ++stage) {
+        out->stage_start[stage] = out->tasks;
+        out->tasks = gproji_make_stage(out, sequence, flops, share[stage], out->tasks, group);
     }
-    if (filled > 0) tasks++;
+    out->stage_start[GPROJI_STAGES] = out->tasks;
+    out->stage_start[GPROJI_STAGES + 1] = out->tasks + 1;
     for (f = 0; f < out->fronts; ++f)
-        if (top[f]) group[f] = tasks;
-    out->tasks = tasks;
+        if (group[f] < 0) group[f] = out->tasks;
     return true;
 }
 
@@ -5767,7 +5786,7 @@ enum {
 /* Gives a front's children the first gap that is large enough; their `update` becomes the distance of their far ends.
    Fronts' groups: `group`. */
 GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *group, gproji_family *family) {
-    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, top, c;
+    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, stage, c;
     int64_t size = 0;
     for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
         size += gproji_update_entries(out->front[c].update_rows);
@@ -5780,9 +5799,9 @@ GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const 
     family[f].before = before, family[f].after = after;
     family[before].after = family[after].before = f;
     family[f].low = family[f].high = family[before].high;
-    for (top = 0; top < 2; ++top) /* children of tasks come before those on top */
+    for (stage = 0; stage <= GPROJI_STAGES; ++stage) /* in the order of the schedule */
         for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-            if ((group[c] == out->tasks) == top)
+            if (group[c] >= out->stage_start[stage] && group[c] < out->stage_start[stage + 1])
                 out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
 }
 
@@ -6025,9 +6044,10 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    in the cache; right-hand sides that are known then take part. A larger front's update matrix is not cleared: it begins
    with the pivots' effect, and what is added comes after that.
 
-   Threads: whole subtrees are tasks; the few large fronts above them come one after the other, and the work inside each
-   of them is cut into strips. Both depend on the matrix alone. A solution goes up and down the same tasks: a front adds
-   to its parent's part of a right-hand side, not to a common vector.
+   Threads: whole subtrees are tasks, and in a second stage what is above some of them; the few large fronts above these
+   come one after the other, and the work inside each of them is cut into strips. All that depends on the matrix alone. A
+   solution goes up and down the same tasks: a front adds to its parent's part of a right-hand side, not to a common
+   vector.
 
    A matrix in compressed columns is first compressed: columns with the same entries become one node. The system section
    gives its nodes itself and adds its values to each front when it is asked (gproji_load).
@@ -6076,11 +6096,13 @@ struct gproj_cholesky {
     const double *given; /* the right-hand sides; each front takes its part of them, */
     double *found;       /* and puts its part of the solutions here: both in the order of A */
 
-    double *values;   /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
-    double *inverse;  /* columns: the inverses of the diagonal of L */
-    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution; /* columns * batch: right-hand sides in the order of L */
-    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
+    double *values;      /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
+    double *inverse;     /* columns: the inverses of the diagonal of L */
+    int32_t first_group; /* of the stage at work, */
+    bool alone;          /* which has no other, so that threads may share its fronts' work */
+    int32_t *failed;     /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution;    /* columns * batch: right-hand sides in the order of L */
+    double *side;        /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
     double *rows; /* (tasks + 1) * 2 * symbolic.most_rows: one front's part of two right-hand sides, for each group */
 };
 
@@ -6757,9 +6779,10 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
 
 /* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
    right-hand sides. Tasks. */
-GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
+GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t index) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
+    int32_t group = c->first_group + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
@@ -6768,9 +6791,10 @@ GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t group) {
     }
 }
 
-GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
+GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t index) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
+    int32_t group = c->first_group + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k, side;
     for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k) {
@@ -6779,20 +6803,27 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t group) {
     }
 }
 
+/* Runs the tasks of a stage, or the group on top. `task` gets the cholesky, and its group's number in the stage. */
+GPROJI_INTERNAL void gproji_run_stage(gproj_cholesky *c, int32_t stage, gproj_task task) {
+    const int32_t *start = c->symbolic.stage_start + stage;
+    c->first_group = start[0];
+    c->alone = stage > 0 && start[1] - start[0] == 1;
+    gproji_for(&c->parallel, start[1] - start[0], task, c);
+}
+
 /* From L y = b, solved already, to x. */
 GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
-    const gproji_symbolic *sy = &c->symbolic;
+    int32_t stage;
     c->found = x;
-    gproji_backward_group(c, sy->tasks);
-    gproji_for(&c->parallel, sy->tasks, gproji_backward_group, c);
+    for (stage = GPROJI_STAGES; stage >= 0; --stage) gproji_run_stage(c, stage, gproji_backward_group);
 }
 
 /* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
 GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
+    int32_t stage;
     c->sides = count;
     c->given = b;
-    gproji_for(&c->parallel, c->symbolic.tasks, gproji_forward_group, c);
-    gproji_forward_group(c, c->symbolic.tasks);
+    for (stage = 0; stage <= GPROJI_STAGES; ++stage) gproji_run_stage(c, stage, gproji_forward_group);
 }
 
 /* Solves for up to c->batch right-hand sides. */
@@ -6822,11 +6853,12 @@ GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y
 /* -- all fronts -- */
 
 /* Eliminates the fronts of one group, a task's or those on top, and takes the right-hand sides along. */
-GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
+GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t index) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
+    int32_t group = c->first_group + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
-    const gproj_parallel *parallel = group == sy->tasks ? &c->parallel : NULL;
+    const gproj_parallel *parallel = c->alone ? &c->parallel : NULL;
     int32_t k, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
@@ -6841,19 +6873,17 @@ GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t group) {
 GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky *c, gproji_load load, void *user,
                                                                  int32_t sides, const double *b) {
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t g, failed = -1;
+    int32_t stage, g, failed = -1;
     GPROJ_ASSERT(c->analysed && c->values);
     c->factored = false;
     c->load = load;
     c->load_user = user;
     c->sides = sides;
     c->given = b;
-    gproji_for(&c->parallel, sy->tasks, gproji_factor_group, c);
-    for (g = 0; g < sy->tasks; ++g)
-        if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
-    if (failed < 0) {
-        gproji_factor_group(c, sy->tasks);
-        failed = c->failed[sy->tasks];
+    for (stage = 0; stage <= GPROJI_STAGES && failed < 0; ++stage) {
+        gproji_run_stage(c, stage, gproji_factor_group);
+        for (g = sy->stage_start[stage]; g < sy->stage_start[stage + 1]; ++g)
+            if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
     }
     c->failed_column = failed < 0 ? -1 : c->permutation[failed];
     c->factored = failed < 0;

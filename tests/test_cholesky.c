@@ -820,20 +820,27 @@ static void end_front(ownership *o, int32_t f) {
         change_owner(o, front[c].update, gproji_update_entries(front[c].update_rows), -c - 1, 0);
 }
 
-/* Goes through all fronts, the tasks one after the other or all side by side. */
-static void change_owners(ownership *o, bool concurrent) {
+/* The tasks from `first` on side by side. */
+static void change_owners_of(ownership *o, int32_t first, int32_t end) {
     const gproji_symbolic *sy = o->sy;
-    int32_t k, g, busy = concurrent;
+    int32_t k, g, busy = 1;
     for (k = 0; busy; ++k) {
         busy = 0;
-        for (g = 0; g < sy->tasks; ++g)
+        for (g = first; g < end; ++g)
             if (sy->task_start[g] + k < sy->task_start[g + 1]) {
                 begin_front(o, sy->schedule[sy->task_start[g] + k]);
                 busy = 1;
             }
-        for (g = 0; g < sy->tasks; ++g)
+        for (g = first; g < end; ++g)
             if (sy->task_start[g] + k < sy->task_start[g + 1]) end_front(o, sy->schedule[sy->task_start[g] + k]);
     }
+}
+
+/* Goes through all fronts, the tasks one after the other or all of a stage side by side. */
+static void change_owners(ownership *o, bool concurrent) {
+    const gproji_symbolic *sy = o->sy;
+    int32_t k;
+    for (k = 0; concurrent && k < GPROJI_STAGES; ++k) change_owners_of(o, sy->stage_start[k], sy->stage_start[k + 1]);
     for (k = concurrent ? sy->task_start[sy->tasks] : 0; k < sy->fronts; ++k) {
         begin_front(o, sy->schedule[k]);
         end_front(o, sy->schedule[k]);
@@ -845,9 +852,9 @@ static void change_owners(ownership *o, bool concurrent) {
    once. */
 GPROJT_TEST(cholesky_panels_and_updates_share_memory) {
     gproj_cholesky_options options = options_of(GPROJ_ORDERING_BEST);
-    int32_t number, concurrent;
+    int32_t number, concurrent, second = 0; /* tasks of the second stage */
     for (number = 0; number < 4 * MESH_KINDS; ++number) {
-        matrix m = (number & 1 ? planarity : laplacian)(number / 4, 40, 37);
+        matrix m = (number & 1 ? planarity : laplacian)(number / 4, 80, 75);
         options.disable_postorder = (number & 2) != 0;
         for (concurrent = 0; concurrent < 2; ++concurrent) {
             gproj_host host = gprojt_crew(concurrent);
@@ -857,6 +864,7 @@ GPROJT_TEST(cholesky_panels_and_updates_share_memory) {
             memset(&o, 0, sizeof o);
             GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, &options) == GPROJ_OK);
             o.sy = &c->symbolic;
+            second += o.sy->stage_start[2] - o.sy->stage_start[1];
             size = o.sy->values_size + o.sy->work_size;
             o.owner = (int32_t *)calloc((size_t)size, sizeof *o.owner);
             change_owners(&o, concurrent == 1);
@@ -867,6 +875,7 @@ GPROJT_TEST(cholesky_panels_and_updates_share_memory) {
         }
         matrix_free(&m);
     }
+    GPROJT_CHECK(second > 20);
 }
 
 /* -- errors -- */
