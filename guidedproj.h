@@ -5745,7 +5745,7 @@ GPROJI_INTERNAL bool gproji_make_tasks(gproji_analysis *an, const int32_t *seque
     for (f = 0; f < out->fronts; ++f)
         if (out->front[f].parent >= 0) flops[out->front[f].parent] += flops[f];
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
-    share[1] = gproji_fmin(sum / 4, 5e8);
+    share[1] = gproji_fmin(sum / 4, 5e8); /* some milliseconds */
     out->tasks = 0;
     for (stage = 0; stage < GPROJI_STAGES; ++stage) {
         out->stage_start[stage] = out->tasks;
@@ -6096,13 +6096,12 @@ struct gproj_cholesky {
     const double *given; /* the right-hand sides; each front takes its part of them, */
     double *found;       /* and puts its part of the solutions here: both in the order of A */
 
-    double *values;      /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
-    double *inverse;     /* columns: the inverses of the diagonal of L */
-    int32_t first_group; /* of the stage at work, */
-    bool alone;          /* which has no other, so that threads may share its fronts' work */
-    int32_t *failed;     /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution;    /* columns * batch: right-hand sides in the order of L */
-    double *side;        /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
+    double *values;   /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
+    double *inverse;  /* columns: the inverses of the diagonal of L */
+    int32_t stage;    /* at work */
+    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
+    double *solution; /* columns * batch: right-hand sides in the order of L */
+    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
     double *rows; /* (tasks + 1) * 2 * symbolic.most_rows: one front's part of two right-hand sides, for each group */
 };
 
@@ -6782,7 +6781,7 @@ GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji
 GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t index) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = c->first_group + index;
+    int32_t group = sy->stage_start[c->stage] + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
@@ -6794,7 +6793,7 @@ GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t index) {
 GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t index) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = c->first_group + index;
+    int32_t group = sy->stage_start[c->stage] + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
     int32_t k, side;
     for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k) {
@@ -6806,8 +6805,7 @@ GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t index) {
 /* Runs the tasks of a stage, or the group on top. `task` gets the cholesky, and its group's number in the stage. */
 GPROJI_INTERNAL void gproji_run_stage(gproj_cholesky *c, int32_t stage, gproj_task task) {
     const int32_t *start = c->symbolic.stage_start + stage;
-    c->first_group = start[0];
-    c->alone = stage > 0 && start[1] - start[0] == 1;
+    c->stage = stage;
     gproji_for(&c->parallel, start[1] - start[0], task, c);
 }
 
@@ -6856,9 +6854,10 @@ GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y
 GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t index) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = c->first_group + index;
+    int32_t group = sy->stage_start[c->stage] + index;
     double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
-    const gproj_parallel *parallel = c->alone ? &c->parallel : NULL;
+    bool alone = c->stage > 0 && sy->stage_start[c->stage + 1] - sy->stage_start[c->stage] == 1;
+    const gproj_parallel *parallel = alone ? &c->parallel : NULL; /* else all threads have groups of their own */
     int32_t k, failed = -1;
     for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
         if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
@@ -8482,7 +8481,7 @@ GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
     s->schur.stale = true;
 }
 
-/* Of a run they are its gradient, too. */
+/* Sets the t-th coefficient of a row; those of a run are its gradient, too. */
 GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
     g->term[row->term + t].a = a;
     if (row->run && g->local_gradient) g->local_gradient[row->local + t] = a;

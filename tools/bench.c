@@ -186,14 +186,11 @@ static bool bench_solves(bench_run *run, bool alone, int samples, double seconds
     return true;
 }
 
-/* How many of the samples there should be after so many of the rounds. */
-static int bench_share(int samples, int round, int rounds) { return (samples * round + rounds - 1) / rounds; }
-
 /* Rounds of ours alone and of CHOLMOD, so that a slow spell of the machine falls on both. */
 static bool bench_both(bench_run *run, int samples, double seconds) {
     int rounds = run->apart ? 2 : 1, i;
     for (i = 1; i <= rounds; ++i) {
-        int share = bench_share(samples, i, rounds);
+        int share = (samples * i + rounds - 1) / rounds;
         if (run->apart && !bench_solves(run, true, share, seconds / rounds)) return false;
         if (!bench_solves(run, false, share, seconds / rounds)) return false;
     }
