@@ -816,7 +816,7 @@ static gproj_system *gprojt_flat_system(int32_t n, const double *c, double weigh
 }
 
 /* At the minimum of |x|^2 + w^2 (c'x - 1)^2 stands x = w^2 c / (1 + w^2 c'c). */
-static double gprojt_flat_error(const gproj_system *s, int32_t n, const double *c, double weight) {
+static double gprojt_flat_error(gproj_system *s, int32_t n, const double *c, double weight) {
     double w2 = weight * weight, square = 0, error = 0;
     int32_t i;
     for (i = 0; i < n; ++i) square += c[i] * c[i];
