@@ -551,6 +551,19 @@ typedef struct gproj_solve_options {
     bool nearest;
 } gproj_solve_options;
 
+/* How often a mesh is spoiled, compared with its original. Constraints may hold exactly on a mesh that cannot be built. */
+typedef struct gproj_spoiled {
+    int32_t turned;          /* faces turned over: vectorial area against the original's */
+    int32_t crossed;         /* faces that cross themselves (bow-ties), and did not */
+    int32_t folded;          /* edges whose faces' normals make more than 120 degrees, and did not */
+    int32_t collapsed_edges; /* edges below 0.1 of their original length and 0.1 of the original mean length */
+    int32_t collapsed_faces; /* faces below 0.05 of their original area */
+    int32_t spikes;          /* edges above 5 times their original length and 3 times the original mean length */
+    int32_t total;           /* the sum of these */
+    gproj_place place;       /* the first element of the first kind that occurs; GPROJ_PLACE_NONE and -1: none does */
+    int32_t element;
+} gproj_spoiled;
+
 typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
@@ -563,9 +576,12 @@ typedef struct gproj_result {
     double optimality;
     int32_t worst_group; /* where that residual is; -1 where nothing must hold */
     int32_t worst_element;
+    /* Of a form, at the end of a solve: compared with the mesh at gproj_form_create, so that whatever moved it since then
+       counts. A result is usable where the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
+    gproj_spoiled spoiled;
     double seconds[GPROJ_PHASE_COUNT];
     char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; of a form also what else
-                                         has happened: edges that collapsed, a mesh that shrank */
+                                         has happened: how the mesh is spoiled, a mesh that shrank */
 } gproj_result;
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host);
@@ -965,6 +981,9 @@ typedef struct gproj_measures {
 /* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
    `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
+/* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original counts
+   as scaled by the least of their factors. Takes no memory. */
+GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 
@@ -11576,7 +11595,7 @@ GPROJI_INTERNAL gproj_result gproji_failed_result(const gproj_error *error) {
     gproj_result result;
     memset(&result, 0, sizeof result);
     result.outcome = GPROJ_FAILED;
-    result.worst_group = result.worst_element = -1;
+    result.worst_group = result.worst_element = result.spoiled.element = -1;
     gproji_format(result.message, sizeof result.message, "%s", error->message);
     return result;
 }
@@ -12057,6 +12076,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
     loop->best.residual = loop->best.merit = HUGE_VAL;
+    loop->result.spoiled.element = -1;
     gproji_error_clear(&refused);
     if (gproji_system_is_open(s) && gproji_options_are_valid(s, iterations, &loop->options, &refused) &&
         gproji_values_are_valid(s))
@@ -16485,29 +16505,35 @@ GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int
     return mesh->position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, int32_t face, double mean[3]) {
+/* The same with other positions. */
+GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
+    return position + 3 * (size_t)mesh->origin[halfedge];
+}
+
+GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3]) {
     int32_t h = mesh->face_halfedge[face], k;
     gproji_set3(0, 0, 0, mean);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_position(mesh, h), mean);
+        gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_at(mesh, position, h), mean);
 }
 
 /* The least-squares plane of a face: the mean of its vertices and a unit normal. Its directions are found one after the
    other, the longest first and then, from the points without their part along it, the one across: so a narrow face has
    its normal to rounding, too, where the eigenvectors of its scatter matrix would have half the digits. */
-GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, int32_t face, double mean[3], double normal[3]) {
+GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
+                                       double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
-    gproji_face_mean(mesh, face, mean);
+    gproji_face_mean(mesh, position, face, mean);
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         for (i = 0; i < 3; ++i)
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
     gproji_largest_eigenvector3(scatter, along);
     gproji_tangents3(along, u, v);
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         uu += gproji_dot3(d, u) * gproji_dot3(d, u);
         uv += gproji_dot3(d, u) * gproji_dot3(d, v);
         vv += gproji_dot3(d, v) * gproji_dot3(d, v);
@@ -16692,9 +16718,10 @@ GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
 }
 
 /* Do the segments of half-edges g and h cross properly, seen along the unit vector `axis`? */
-GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, int32_t g, int32_t h, const double axis[3]) {
-    const double *a = gproji_corner_position(mesh, g), *b = gproji_corner_position(mesh, mesh->next[g]);
-    const double *c = gproji_corner_position(mesh, h), *d = gproji_corner_position(mesh, mesh->next[h]);
+GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *position, int32_t g, int32_t h,
+                                        const double axis[3]) {
+    const double *a = gproji_corner_at(mesh, position, g), *b = gproji_corner_at(mesh, position, mesh->next[g]);
+    const double *c = gproji_corner_at(mesh, position, h), *d = gproji_corner_at(mesh, position, mesh->next[h]);
     double rounding = 1e-12 * gproji_distance3(a, b) * gproji_distance3(c, d);
     return gproji_are_opposite(gproji_seen_area(a, b, c, axis), gproji_seen_area(a, b, d, axis), rounding) &&
            gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
@@ -16702,24 +16729,25 @@ GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, int32_t g, int32
 
 /* Does a side of the face cross another, seen along the normal of its least-squares plane? Its vectorial area would not
    do: a symmetric bow-tie has none. */
-GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, int32_t face, const double axis[3]) {
+GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
+                                       const double axis[3]) {
     int32_t degree = mesh->face_degree[face], g = mesh->face_halfedge[face], h, i, j;
     for (i = 0; i + 2 < degree; ++i, g = mesh->next[g]) {
         h = mesh->next[mesh->next[g]];
         for (j = i + 2; j < degree; ++j, h = mesh->next[h])
-            if (mesh->next[h] != g && gproji_sides_cross(mesh, g, h, axis)) return true;
+            if (mesh->next[h] != g && gproji_sides_cross(mesh, position, g, h, axis)) return true;
     }
     return false;
 }
 
 /* Do the normals of an edge's two faces make more than 120 degrees? */
-GPROJI_INTERNAL bool gproji_is_folded(const gproj_mesh *mesh, int32_t edge) {
+GPROJI_INTERNAL bool gproji_is_folded(const gproj_mesh *mesh, const double *position, int32_t edge) {
     static const double none[3] = {0, 0, 0};
     int32_t left = mesh->face[2 * edge], right = mesh->face[2 * edge + 1];
     double a[3], b[3];
     if (left < 0 || right < 0) return false;
-    gproji_area_vector(mesh, mesh->position, left, a);
-    gproji_area_vector(mesh, mesh->position, right, b);
+    gproji_area_vector(mesh, position, left, a);
+    gproji_area_vector(mesh, position, right, b);
     return gproji_normalise3(a, none) && gproji_normalise3(b, none) && gproji_dot3(a, b) < -0.5;
 }
 
@@ -16732,7 +16760,7 @@ GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures
         if (length > m->max_edge) m->max_edge = length;
         m->length += length;
         m->collapsed_edges += length <= 1e-6 * m->mean_edge;
-        m->folded_edges += gproji_is_folded(mesh, e);
+        m->folded_edges += gproji_is_folded(mesh, mesh->position, e);
     }
 }
 
@@ -16743,7 +16771,7 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
     for (f = 0; f < mesh->face_count; ++f) {
         double area_vector[3], mean[3], normal[3], area, flatness;
         gproji_area_vector(mesh, mesh->position, f, area_vector);
-        gproji_face_plane(mesh, f, mean, normal);
+        gproji_face_plane(mesh, mesh->position, f, mean, normal);
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
         m->area += area;
@@ -16752,7 +16780,7 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
-        m->bow_tie_faces += gproji_is_bow_tie(mesh, f, normal);
+        m->bow_tie_faces += gproji_is_bow_tie(mesh, mesh->position, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
         if (flatness > m->planarity_max) {
             m->planarity_max = flatness;
@@ -16924,6 +16952,132 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
     }
     if (original) gproji_measure_change(mesh, original, &m);
     return m;
+}
+
+/* -- what is spoiled -- */
+
+/* Kinds of damage, in the order in which sentences tell them. */
+typedef enum gproji_damage {
+    GPROJI_DAMAGE_TURNED,
+    GPROJI_DAMAGE_CROSSED,
+    GPROJI_DAMAGE_FOLDED,
+    GPROJI_DAMAGE_EDGE,
+    GPROJI_DAMAGE_FACE,
+    GPROJI_DAMAGE_SPIKE,
+    GPROJI_DAMAGE_COUNT
+} gproji_damage;
+
+typedef struct gproji_damages {
+    int32_t count[GPROJI_DAMAGE_COUNT];
+    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge of each kind; -1: none */
+} gproji_damages;
+
+GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, int32_t element, bool spoiled) {
+    if (!spoiled) return;
+    if (d->count[kind]++ == 0) d->first[kind] = element;
+}
+
+/* Is a quad with this vectorial area clearly convex, and nearly flat? Then it does not cross itself, and needs no plane of
+   least squares to say so. */
+GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double *position, int32_t face,
+                                           const double area[3]) {
+    static const double flat = 1e-3; /* height over altitude; then it is convex as seen along the plane's normal, too */
+    double side[4][3], cross[3], longest = 0, least = HUGE_VAL;
+    int32_t h = mesh->face_halfedge[face], k;
+    if (mesh->face_degree[face] != 4) return false;
+    for (k = 0; k < 4; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_at(mesh, position, mesh->next[h]), gproji_corner_at(mesh, position, h), side[k]);
+        longest = gproji_fmax(longest, gproji_length3(side[k]));
+    }
+    for (k = 0; k < 4; ++k) { /* twice the areas of the corners' triangles, times that of the quad */
+        gproji_cross3(side[k], side[(k + 1) % 4], cross);
+        least = gproji_fmin(least, gproji_dot3(cross, area));
+    }
+    /* Both diagonals are orthogonal to the vectorial area: each side rises by the height between them. */
+    return fabs(gproji_dot3(side[0], area)) * longest < flat * least;
+}
+
+GPROJI_INTERNAL bool gproji_crosses_itself(const gproj_mesh *mesh, const double *position, int32_t face) {
+    double mean[3], normal[3];
+    gproji_face_plane(mesh, position, face, mean, normal);
+    return gproji_is_bow_tie(mesh, position, face, normal);
+}
+
+/* The least factor by which edges have grown, and at least 1: a mesh that is scaled up as a whole has no spikes. */
+GPROJI_INTERNAL double gproji_least_growth(const gproj_mesh *mesh, const double *position, const double *original) {
+    double least = HUGE_VAL;
+    int32_t e;
+    for (e = 0; e < mesh->edge_count && least > 1; ++e) {
+        int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
+        double before = gproji_distance3(original + 3 * (size_t)i, original + 3 * (size_t)j);
+        double now = gproji_distance3(position + 3 * (size_t)i, position + 3 * (size_t)j);
+        if (before > 0) least = gproji_fmin(least, now / before);
+    }
+    return least > 1 && least < HUGE_VAL ? least : 1;
+}
+
+/* Counts what is spoiled at these positions. Folds and crossings at the original are looked at only where there is one
+   now: nearly never. */
+GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *position, const double *original,
+                                         gproji_damages *d) {
+    double grown = gproji_least_growth(mesh, position, original), mean = grown * gproji_mean_edge(mesh, original);
+    int32_t i;
+    memset(d->count, 0, sizeof d->count);
+    for (i = 0; i < GPROJI_DAMAGE_COUNT; ++i) d->first[i] = -1;
+    for (i = 0; i < mesh->face_count; ++i) {
+        double before[3], now[3];
+        gproji_area_vector(mesh, original, i, before);
+        gproji_area_vector(mesh, position, i, now);
+        gproji_count_damage(d, GPROJI_DAMAGE_TURNED, i, gproji_dot3(before, now) < 0);
+        gproji_count_damage(d, GPROJI_DAMAGE_FACE, i,
+                            gproji_length3(now) < 0.05 * grown * grown * gproji_length3(before));
+        gproji_count_damage(d, GPROJI_DAMAGE_CROSSED, i,
+                            mesh->face_degree[i] > 3 && !gproji_is_convex_quad(mesh, position, i, now) &&
+                                gproji_crosses_itself(mesh, position, i) && !gproji_crosses_itself(mesh, original, i));
+    }
+    for (i = 0; i < mesh->edge_count; ++i) {
+        int32_t a = mesh->origin[2 * i], b = mesh->origin[2 * i + 1];
+        double before = grown * gproji_distance3(original + 3 * (size_t)a, original + 3 * (size_t)b);
+        double now = gproji_distance3(position + 3 * (size_t)a, position + 3 * (size_t)b);
+        gproji_count_damage(d, GPROJI_DAMAGE_EDGE, i, now < 0.1 * before && now < 0.1 * mean);
+        gproji_count_damage(d, GPROJI_DAMAGE_SPIKE, i, before > 0 && now > 5 * before && now > 3 * mean);
+        gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i,
+                            gproji_is_folded(mesh, position, i) && !gproji_is_folded(mesh, original, i));
+    }
+}
+
+/* Where damage of a kind is. */
+GPROJI_INTERNAL gproj_place gproji_damage_place(int32_t kind) {
+    bool edge = kind == GPROJI_DAMAGE_FOLDED || kind == GPROJI_DAMAGE_EDGE || kind == GPROJI_DAMAGE_SPIKE;
+    return edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_FACE;
+}
+
+GPROJI_INTERNAL gproj_spoiled gproji_spoiled_of(const gproji_damages *d) {
+    gproj_spoiled spoiled;
+    int32_t kind;
+    spoiled.turned = d->count[GPROJI_DAMAGE_TURNED];
+    spoiled.crossed = d->count[GPROJI_DAMAGE_CROSSED];
+    spoiled.folded = d->count[GPROJI_DAMAGE_FOLDED];
+    spoiled.collapsed_edges = d->count[GPROJI_DAMAGE_EDGE];
+    spoiled.collapsed_faces = d->count[GPROJI_DAMAGE_FACE];
+    spoiled.spikes = d->count[GPROJI_DAMAGE_SPIKE];
+    spoiled.total = 0;
+    spoiled.place = GPROJ_PLACE_NONE;
+    spoiled.element = -1;
+    for (kind = GPROJI_DAMAGE_COUNT - 1; kind >= 0; --kind) {
+        if (d->count[kind] == 0) continue;
+        spoiled.total += d->count[kind];
+        spoiled.place = gproji_damage_place(kind);
+        spoiled.element = d->first[kind];
+    }
+    return spoiled;
+}
+
+GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original) {
+    gproji_damages d;
+    memset(&d, 0, sizeof d);
+    if (mesh && original) gproji_find_damages(mesh, mesh->position, original, &d);
+    return gproji_spoiled_of(&d);
 }
 
 /* ============================================================================================================
@@ -19015,8 +19169,6 @@ typedef struct gproji_solve {
     gproji_loop loop;
     gproji_structure structure; /* of the system at the beginning */
     int32_t default_last;       /* see gproj_system */
-    int32_t collapsed;          /* edges, and the mean length of all, at the beginning */
-    double mean_edge;
 } gproji_solve;
 
 struct gproj_form {
@@ -22390,32 +22542,60 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
 
 /* -- what else the verdict must not hide -- */
 
-/* Edges without length at the system's x, and the mean length. */
-GPROJI_INTERNAL int32_t gproji_collapsed_edges(const gproj_form *form, double *mean) {
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    int32_t e, collapsed = 0;
-    *mean = 0;
-    for (e = 0; e < mesh->edge_count; ++e) {
-        double length = gproji_distance3(x + 3 * (size_t)mesh->origin[2 * e], x + 3 * (size_t)mesh->origin[2 * e + 1]);
-        collapsed += length <= 1e-6;
-        *mean += length / mesh->edge_count;
-    }
-    return collapsed;
+/* What has happened to so many faces or edges, as words behind their number. */
+GPROJI_INTERNAL const char *gproji_damage_words(int32_t kind, bool one) {
+    static const char *const words[GPROJI_DAMAGE_COUNT][2] = {
+        {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
+        {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
+        {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
+    return words[kind][one ? 0 : 1];
 }
 
-/* A mesh can satisfy everything and yet be spoiled: says so. `collapsed`, `mean`: what they were before. */
-GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, int32_t collapsed, double mean, gproj_result *result) {
-    size_t length = strlen(result->message);
-    double mean_now;
-    int32_t more = gproji_collapsed_edges(form, &mean_now) - collapsed;
-    if (result->outcome != GPROJ_CONVERGED) return;
-    if (mean_now < 0.2 * mean)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", mean_now / mean);
-    else if (more > 0)
-        gproji_format(result->message + length, sizeof result->message - length, "; but %d edge%s collapsed", more,
-                      more == 1 ? " has" : "s have");
+/* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
+GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
+    const char *between = "";
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
+        int32_t count = d->count[kind], at = d->first[kind];
+        size_t length = strlen(text);
+        if (count == 0) continue;
+        gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count,
+                      gproji_damage_words(kind, count == 1),
+                      count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
+        length = strlen(text);
+        if (gproji_damage_place(kind) == GPROJ_PLACE_EDGE)
+            gproji_format(text + length, size - length, ", vertices %d and %d)", mesh->origin[2 * at],
+                          mesh->origin[2 * at + 1]);
+        else
+            gproji_append(text, size, length, ")", 1);
+        between = ", ";
+    }
+}
+
+/* Counts what the whole work, from gproj_form_create on, has spoiled. A mesh can satisfy everything and yet be spoiled:
+   the verdict says so. */
+GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
+    static const char help[] =
+        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
+        "keep it whole";
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    size_t size = sizeof result->message, length = strlen(result->message);
+    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
+    gproji_damages d;
+    gproji_find_damages(mesh, x, form->original, &d);
+    result->spoiled = gproji_spoiled_of(&d);
+    if (result->outcome != GPROJ_CONVERGED &&
+        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
+        return; /* there is worse to tell */
+    if (shrunk < 0.2) {
+        gproji_format(result->message + length, size - length,
+                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+    } else if (result->spoiled.total > 0) {
+        length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
+        gproji_list_damages(mesh, &d, result->message, size);
+        gproji_append(result->message, size, strlen(result->message), help, sizeof help - 1);
+    }
 }
 
 /* -- a solve, at once or in frames -- */
@@ -22450,7 +22630,6 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
     gproji_set_guard(form, guided, options && options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
-    solve->collapsed = gproji_collapsed_edges(form, &solve->mean_edge);
     solve->default_last = gproji_guided_iterations(form, iterations);
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
@@ -22468,7 +22647,7 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (gproji_is_unbalanced(form, result)) gproji_tell_unbalanced(form, result);
-    gproji_tell_spoiled(form, form->solve.collapsed, form->solve.mean_edge, result);
+    gproji_tell_spoiled(form, result);
 }
 
 /* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
@@ -22544,7 +22723,7 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
    (coefficients, constants, weights), one byte for these.
 
-       8 bytes "gprojstB", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
+       8 bytes "gprojstD", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
 
    The fingerprint is a hash of what a form is made of: mesh, variables, rows with their terms' variables, but none of the
    numbers that the state has. A state is checked from its beginning to its end before any of it is read, so that what is
@@ -22831,8 +23010,6 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
         return GPROJI_PASS_NONE;
     }
     gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
-    gproji_pass_integer(stream, &solve.collapsed, 0, INT32_MAX);
-    gproji_pass_double(stream, &solve.mean_edge, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.time_budget, 0, DBL_MAX);
@@ -23041,7 +23218,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'C'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'D'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

@@ -406,12 +406,124 @@ GPROJT_TEST(meshes_without_extent) {
     }
 }
 
+/* -- spoiled meshes -- */
+
+/* A row of three unit squares in the plane z = 0: vertices 0..3 below, 4..7 above. */
+static gproj_mesh *gprojt_three_squares(void) {
+    gprojt_soup s;
+    int32_t i;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < 8; ++i) gprojt_add_vertex(&s, i % 4, i / 4, 0);
+    for (i = 0; i < 3; ++i) {
+        int32_t corner[4];
+        corner[0] = i, corner[1] = i + 1, corner[2] = i + 5, corner[3] = i + 4;
+        gprojt_add_face(&s, 4, corner);
+    }
+    return gprojt_mesh_of(s);
+}
+
+/* Where these vertices of the three squares go, and what is spoiled then. */
+typedef struct gprojt_damage {
+    int32_t count, vertex[4];
+    double to[4][3];
+    gproj_spoiled spoiled; /* the element: of a face */
+} gprojt_damage;
+
+static bool gprojt_same_spoiled(const gproj_spoiled *a, const gproj_spoiled *b) {
+    return a->turned == b->turned && a->crossed == b->crossed && a->folded == b->folded &&
+           a->collapsed_edges == b->collapsed_edges && a->collapsed_faces == b->collapsed_faces &&
+           a->spikes == b->spikes && a->total == b->total;
+}
+
+static const gprojt_damage gprojt_damages[] = {
+    /* as it was; a bend by 90 degrees */
+    {0, {0}, {{0}}, {0, 0, 0, 0, 0, 0, 0, GPROJ_PLACE_NONE, -1}},
+    {2, {3, 7}, {{2, 0, 1}, {2, 1, 1}}, {0, 0, 0, 0, 0, 0, 0, GPROJ_PLACE_NONE, -1}},
+    /* the last square is folded back by 135 degrees: its vectorial area points down, and edge 2-6 is a fold */
+    {2, {3, 7}, {{1.3, 0, 0.7}, {1.3, 1, 0.7}}, {1, 0, 1, 0, 0, 0, 2, GPROJ_PLACE_FACE, 2}},
+    /* its corners 3 and 7 change places, but not quite: a bow-tie, not turned, with an eighth of the area */
+    {2, {3, 7}, {{3, 0.7, 0}, {3, 0.4, 0}}, {0, 1, 0, 0, 0, 0, 1, GPROJ_PLACE_FACE, 2}},
+    /* a short edge; one that is a tenth of its length just not */
+    {2, {3, 7}, {{3, 0.46, 0}, {3, 0.54, 0}}, {0, 0, 0, 1, 0, 0, 1, GPROJ_PLACE_EDGE, -1}},
+    {2, {3, 7}, {{3, 0.4, 0}, {3, 0.52, 0}}, {0, 0, 0, 0, 0, 0, 0, GPROJ_PLACE_NONE, -1}},
+    /* a face with long sides and nearly no area */
+    {2, {3, 7}, {{2.04, 0, 0}, {2.04, 1, 0}}, {0, 0, 0, 2, 1, 0, 3, GPROJ_PLACE_EDGE, -1}},
+    /* spikes: two edges of length 6 */
+    {2, {3, 7}, {{8, 0, 0}, {8, 1, 0}}, {0, 0, 0, 0, 0, 2, 2, GPROJ_PLACE_EDGE, -1}}};
+
+GPROJT_TEST(each_kind_of_damage) {
+    gproj_mesh *mesh = gprojt_three_squares();
+    double original[24];
+    size_t i;
+    int32_t k;
+    memcpy(original, mesh->position, sizeof original);
+    for (i = 0; i < sizeof gprojt_damages / sizeof gprojt_damages[0]; ++i) {
+        const gprojt_damage *d = &gprojt_damages[i];
+        gproj_spoiled found;
+        for (k = 0; k < d->count; ++k) memcpy(mesh->position + 3 * d->vertex[k], d->to[k], sizeof d->to[k]);
+        found = gproj_measure_spoiled(mesh, original);
+        GPROJT_CHECK(gprojt_same_spoiled(&found, &d->spoiled) && found.place == d->spoiled.place);
+        GPROJT_CHECK((found.element >= 0) == (found.total > 0));
+        if (found.place == GPROJ_PLACE_FACE) GPROJT_CHECK(found.element == d->spoiled.element);
+        if (!gprojt_same_spoiled(&found, &d->spoiled))
+            printf("  case %d: %d turned, %d crossed, %d folded, %d and %d collapsed, %d spikes\n", (int)i, found.turned,
+                   found.crossed, found.folded, found.collapsed_edges, found.collapsed_faces, found.spikes);
+        memcpy(mesh->position, original, sizeof original);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
+/* What was so before does not count: crossed, folded and short from the beginning; neither does a change of scale. */
+GPROJT_TEST(old_damage_does_not_count) {
+    gproj_mesh *mesh = gprojt_three_squares();
+    static const size_t both[] = {2, 3, 4, 6};
+    double original[24];
+    gproj_spoiled found;
+    size_t i;
+    int32_t k;
+    for (i = 0; i < sizeof both / sizeof both[0]; ++i) {
+        const gprojt_damage *d = &gprojt_damages[both[i]];
+        for (k = 0; k < d->count; ++k) memcpy(mesh->position + 3 * d->vertex[k], d->to[k], sizeof d->to[k]);
+        memcpy(original, mesh->position, sizeof original);
+        for (k = 0; k < 24; ++k) mesh->position[k] += k % 3 == 0 ? 0.01 * mesh->position[k] : 0;
+        GPROJT_CHECK(gproj_measure_spoiled(mesh, original).total == 0);
+        for (k = 0; k < 24; ++k) mesh->position[k] = 20 * original[k];
+        GPROJT_CHECK(gproj_measure_spoiled(mesh, original).total == 0);
+    }
+    for (k = 0; k < 24; ++k) mesh->position[k] = 0; /* a point: all edges, all faces */
+    found = gproj_measure_spoiled(mesh, original);
+    GPROJT_CHECK(found.collapsed_faces == 3 && found.collapsed_edges >= mesh->edge_count - 2 && found.turned == 0);
+    GPROJT_CHECK(gproj_measure_spoiled(NULL, original).total == 0 && gproj_measure_spoiled(mesh, NULL).element == -1);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The short way for convex quads finds the bow-ties that gproj_measure finds. */
+GPROJT_TEST(crossed_faces_as_in_measure) {
+    uint64_t seed = 3;
+    int32_t crossed = 0, i, k;
+    for (i = 0; i < 2000; ++i) {
+        static const double square[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+        double x[12], shake = i % 4 ? 1 : 1e-3, high = i % 3 ? 1e-14 : 0.3;
+        gproj_mesh *mesh;
+        for (k = 0; k < 12; ++k)
+            x[k] = square[k] + (k % 3 == 2 ? high : shake * 1.2) * (2 * gprojt_uniform(&seed) - 1);
+        mesh = gprojt_polygon(4, x);
+        GPROJT_CHECK(gproj_measure_spoiled(mesh, square).crossed == gproj_measure(mesh, NULL, NULL).bow_tie_faces);
+        crossed += gproj_measure(mesh, NULL, NULL).bow_tie_faces;
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(crossed > 200 && crossed < 1500);
+}
+
 int main(void) {
     GPROJT_RUN(planarity_of_a_lifted_square);
     GPROJT_RUN(planarity_is_of_the_least_squares_plane);
     GPROJT_RUN(narrow_planar_faces);
     GPROJT_RUN(narrow_faces_that_are_not_planar);
     GPROJT_RUN(collapsed_edges);
+    GPROJT_RUN(each_kind_of_damage);
+    GPROJT_RUN(old_damage_does_not_count);
+    GPROJT_RUN(crossed_faces_as_in_measure);
     GPROJT_RUN(planarity_of_each_face);
     GPROJT_RUN(areas_and_edges);
     GPROJT_RUN(folded_edges);

@@ -302,9 +302,19 @@ GPROJT_TEST(spoiled_meshes_are_told) {
     pair[0] = end[0], pair[1] = end[1];
     gproj_add_targets(form, 2, pair, places, 1);
     result = gproj_solve(form, 5, NULL);
-    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && strstr(result.message, "; but 1 edge has collapsed"));
-    result = gproj_solve(form, 5, NULL); /* it was so before */
-    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "collapsed"));
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && strstr(result.message, "; but the mesh is spoiled: ") &&
+                 strstr(result.message, "1 edge collapsed (edge 0, vertices ") && result.spoiled.collapsed_edges == 1);
+    result = gproj_solve(form, 5, NULL); /* not in this solve, but in the whole work */
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.collapsed_edges == 1 &&
+                 strstr(result.message, "1 edge collapsed"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_noisy(0, 4, 0, 1); /* the caller moves a vertex, and the solve finds that all holds already */
+    form = gproj_form_create(mesh, NULL);
+    mesh->position[3 * pair[0]] += 9;
+    gproj_add_targets(form, 1, pair, mesh->position + 3 * (size_t)pair[0], 1);
+    result = gproj_solve(form, 5, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total > 0 && strstr(result.message, "is spoiled"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     mesh = gprojt_noisy(0, 4, 0, 1);
