@@ -466,8 +466,9 @@ GPROJT_TEST(each_kind_of_damage) {
         GPROJT_CHECK((found.element >= 0) == (found.total > 0));
         if (found.place == GPROJ_PLACE_FACE) GPROJT_CHECK(found.element == d->spoiled.element);
         if (!gprojt_same_spoiled(&found, &d->spoiled))
-            printf("  case %d: %d turned, %d crossed, %d folded, %d and %d collapsed, %d spikes\n", (int)i, found.turned,
-                   found.crossed, found.folded, found.collapsed_edges, found.collapsed_faces, found.spikes);
+            printf("  case %d: %d turned, %d crossed, %d folded, %d and %d collapsed, %d spikes\n", (int)i,
+                   found.turned, found.crossed, found.folded, found.collapsed_edges, found.collapsed_faces,
+                   found.spikes);
         memcpy(mesh->position, original, sizeof original);
     }
     gproj_mesh_destroy(mesh);
@@ -505,8 +506,7 @@ GPROJT_TEST(crossed_faces_as_in_measure) {
         static const double square[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
         double x[12], shake = i % 4 ? 1 : 1e-3, high = i % 3 ? 1e-14 : 0.3;
         gproj_mesh *mesh;
-        for (k = 0; k < 12; ++k)
-            x[k] = square[k] + (k % 3 == 2 ? high : shake * 1.2) * (2 * gprojt_uniform(&seed) - 1);
+        for (k = 0; k < 12; ++k) x[k] = square[k] + (k % 3 == 2 ? high : shake * 1.2) * (2 * gprojt_uniform(&seed) - 1);
         mesh = gprojt_polygon(4, x);
         GPROJT_CHECK(gproj_measure_spoiled(mesh, square).crossed == gproj_measure(mesh, NULL, NULL).bow_tie_faces);
         crossed += gproj_measure(mesh, NULL, NULL).bow_tie_faces;

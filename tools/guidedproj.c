@@ -143,7 +143,7 @@ typedef struct tool {
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
     const struct tool_colour *colour; /* what colours the faces of the picture; NULL: planarity */
-    bool nearest, view_given, quiet, help, version;
+    bool nearest, allow_spoiled, view_given, quiet, help, version;
     bool seen[MOST_OPTIONS];
 
     /* the work */
@@ -740,6 +740,11 @@ static const tool_option options[] = {
      set_positive, PLACE(epsilon)},
     {0, "time-limit", "SECONDS", false, "stop after the iteration that passes this", NULL, set_positive,
      PLACE(time_limit)},
+    {0, "allow-spoiled", "", false,
+     "exit status 0 where all holds, though faces turned over, crossed or collapsed, or edges folded, collapsed or "
+     "became "
+     "spikes (1 otherwise: see the sentence)",
+     NULL, set_flag, PLACE(allow_spoiled)},
     {0, "threads", "N", false, "work with N threads (1); 0: one per core. The result does not depend on it", NULL,
      set_threads, PLACE(threads)},
 
@@ -824,11 +829,13 @@ static void print_help(void) {
          "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
          "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 220,0,0,5\n\n"
          "exit status\n"
-         "  0 all that must hold holds to the tolerance   1 it does not (the output is\n"
-         "  written, the report says why)   2 wrong usage, or an output that cannot be\n"
-         "  written   3 input refused, or writing failed   4 out of memory. After 2, 3\n"
-         "  and 4 no output is touched. With --nearest 0 does not say that a minimum was\n"
-         "  reached: the sentence and the report do.");
+         "  0 all that must hold holds to the tolerance, and the mesh is not spoiled: no\n"
+         "  face turned over, no new bow-tie or fold, nothing collapsed, no spike, against\n"
+         "  where the work began   1 it is not so (the output is written, sentence and\n"
+         "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
+         "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
+         "  of memory. After 2, 3 and 4 no output is touched. With --nearest 0 does not\n"
+         "  say that a minimum was reached: the sentence and the report do.");
 }
 
 /* ---- the command line ---- */
@@ -1998,11 +2005,15 @@ static const char *outcome_name(gproj_outcome outcome) {
     }
 }
 
-/* What must hold does. How near a nearest mesh came is told by the sentence and the report. */
+/* Does what must hold do so? How near a nearest mesh came is told by the sentence and the report. */
+static bool is_exact(const tool *t) {
+    return t->result.outcome == GPROJ_CONVERGED ||
+           (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
+}
+
 static int verdict_code(const tool *t) {
-    bool holds = t->result.outcome == GPROJ_CONVERGED ||
-                 (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
-    return holds ? EXIT_REACHED : EXIT_NOT_REACHED;
+    bool sound = t->allow_spoiled || t->result.spoiled.total == 0;
+    return is_exact(t) && sound ? EXIT_REACHED : EXIT_NOT_REACHED;
 }
 
 /* How many faces have this many sides. */
@@ -2120,6 +2131,23 @@ static void report_iteration(json *j, tool *t, const tool_record *record) {
     json_close(j, '}');
 }
 
+static void report_spoiled(json *j, const gproj_spoiled *spoiled) {
+    json_open(j, "spoiled", '{');
+    json_integer(j, "total", spoiled->total);
+    json_integer(j, "turned_faces", spoiled->turned);
+    json_integer(j, "crossed_faces", spoiled->crossed);
+    json_integer(j, "folded_edges", spoiled->folded);
+    json_integer(j, "collapsed_edges", spoiled->collapsed_edges);
+    json_integer(j, "collapsed_faces", spoiled->collapsed_faces);
+    json_integer(j, "spikes", spoiled->spikes);
+    if (spoiled->total > 0) {
+        json_open(j, "first", '{');
+        json_integer(j, place_name(spoiled->place), spoiled->element);
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
 static void report_result(json *j, const tool *t) {
     const gproj_result *result = &t->result;
     json_open(j, "result", '{');
@@ -2139,6 +2167,7 @@ static void report_result(json *j, const tool *t) {
         json_integer(j, place_name(group.place), result->worst_element);
         json_close(j, '}');
     }
+    report_spoiled(j, &result->spoiled);
     json_close(j, '}');
 }
 
@@ -2458,6 +2487,8 @@ static void print_summary(const tool *t) {
     const gproj_measures *b = &t->before, *a = &t->after;
     print_mesh(t);
     printf("%s\n", t->result.message);
+    if (is_exact(t) && verdict_code(t) != EXIT_REACHED)
+        puts("note: exit status 1, for the mesh is spoiled; --allow-spoiled accepts it");
     printf("planarity     %.2e -> %.2e largest, %.2e -> %.2e mean (mean edge lengths)\n", b->planarity_max,
            a->planarity_max, b->planarity_mean, a->planarity_mean);
     if (t->equilibrium.given)

@@ -32,7 +32,7 @@ typedef struct gprojx_view {
 typedef struct gprojx_picture_options {
     const gprojx_view *view;     /* NULL: three-quarter view from the front, above and the right */
     const char *title, *caption; /* UTF-8 */
-    const double *original;      /* positions: faces that are turned over against them are marked */
+    const double *original;      /* positions: faces turned over against them, edges collapsed since are marked */
     const double *face_value;    /* face_count numbers; NULL: all faces in one colour */
     const double *face_before;   /* the same before a change, for the legend's histogram */
     const char *legend;          /* what the numbers are */
@@ -77,8 +77,10 @@ typedef struct gprojx_painter {
     double width, height, depth_low, depth_high, line, edge_most;
     gprojx_point *vertex; /* projected vertices */
     bool *turned;         /* of each face */
+    bool *crossed;        /* of each face: it crosses itself (a bow-tie) */
     bool *folded;         /* of each edge */
-    int32_t turned_count, folded_count;
+    bool *collapsed;      /* of each edge */
+    int32_t turned_count, crossed_count, folded_count, collapsed_count;
     gprojx_list point, item, link, arc, heap, ahead;
     int32_t *cell, columns, lines; /* grid: first link of each cell, or -1 */
     double cell_size;
@@ -675,13 +677,84 @@ static void gprojx_area_of(const gproj_mesh *mesh, const double *position, int32
     }
 }
 
-/* Faces turned over against the original, and edges with more than 120 degrees between the normals. */
+static void gprojx_cross(const double a[3], const double b[3], double out[3]) {
+    int k;
+    for (k = 0; k < 3; ++k) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* The side of a face from the origin of a half-edge. */
+static void gprojx_side(const gproj_mesh *mesh, int32_t h, double side[3]) {
+    const double *a = mesh->position + 3 * mesh->origin[h], *b = mesh->position + 3 * mesh->origin[mesh->next[h]];
+    int k;
+    for (k = 0; k < 3; ++k) side[k] = b[k] - a[k];
+}
+
+/* On which sides of the line through half-edge g, as seen along n, are the ends of half-edge h? Their product. */
+static double gprojx_sides(const gproj_mesh *mesh, int32_t g, int32_t h, const double n[3]) {
+    const double *o = mesh->position + 3 * mesh->origin[g];
+    int32_t end[2];
+    double line[3], across[3], product = 1;
+    int i, k;
+    gprojx_side(mesh, g, line);
+    gprojx_cross(n, line, across);
+    end[0] = mesh->origin[h], end[1] = mesh->origin[mesh->next[h]];
+    for (i = 0; i < 2; ++i) {
+        double d[3];
+        for (k = 0; k < 3; ++k) d[k] = mesh->position[3 * end[i] + k] - o[k];
+        product *= gprojx_dot(across, d) / (gprojx_dot(line, line) + 1e-300);
+    }
+    return product;
+}
+
+/* Does a face cross itself? Seen along the largest product of two of its sides: a bow-tie may have no vectorial area. */
+static bool gprojx_is_crossed(const gproj_mesh *mesh, int32_t face) {
+    int32_t first = mesh->face_halfedge[face], degree = mesh->face_degree[face], g, h, i, j;
+    double n[3] = {0, 0, 0}, a[3], b[3], c[3];
+    for (i = 0, g = first; i < degree; ++i, g = mesh->next[g])
+        for (j = i + 1, h = mesh->next[g]; j < degree; ++j, h = mesh->next[h]) {
+            gprojx_side(mesh, g, a), gprojx_side(mesh, h, b);
+            gprojx_cross(a, b, c);
+            if (gprojx_dot(c, c) > gprojx_dot(n, n)) memcpy(n, c, sizeof n);
+        }
+    for (i = 0, g = first; i + 2 < degree; ++i, g = mesh->next[g])
+        for (j = i + 2, h = mesh->next[mesh->next[g]]; j < degree; ++j, h = mesh->next[h])
+            if (mesh->next[h] != g && gprojx_sides(mesh, g, h, n) < 0 && gprojx_sides(mesh, h, g, n) < 0) return true;
+    return false;
+}
+
+static double gprojx_length(const double *position, const gproj_mesh *mesh, int32_t edge) {
+    const double *a = position + 3 * mesh->origin[2 * edge], *b = position + 3 * mesh->origin[2 * edge + 1];
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* Edges that have less than a tenth of their length and of the mean length in the original. */
+static void gprojx_find_collapsed(gprojx_painter *p) {
+    const double *original = p->options->original;
+    double mean = 0;
+    int32_t i;
+    for (i = 0; original && i < p->mesh->edge_count; ++i)
+        mean += gprojx_length(original, p->mesh, i) / p->mesh->edge_count;
+    for (i = 0; original && i < p->mesh->edge_count; ++i) {
+        double now = gprojx_length(p->mesh->position, p->mesh, i);
+        p->collapsed[i] = now < 0.1 * mean && now < 0.1 * gprojx_length(original, p->mesh, i);
+        p->collapsed_count += p->collapsed[i];
+    }
+}
+
+/* Faces turned over against the original or crossing themselves, edges with more than 120 degrees between the normals or
+   collapsed. */
 static bool gprojx_find_marks(gprojx_painter *p) {
     const gproj_mesh *mesh = p->mesh;
     int32_t i;
     p->turned = (bool *)calloc((size_t)mesh->face_count + 1, sizeof *p->turned);
+    p->crossed = (bool *)calloc((size_t)mesh->face_count + 1, sizeof *p->crossed);
     p->folded = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->folded);
-    if (!p->turned || !p->folded) return false;
+    p->collapsed = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->collapsed);
+    if (!p->turned || !p->crossed || !p->folded || !p->collapsed) return false;
+    for (i = 0; i < mesh->face_count; ++i) {
+        p->crossed[i] = gprojx_is_crossed(mesh, i);
+        p->crossed_count += p->crossed[i];
+    }
     for (i = 0; i < mesh->face_count && p->options->original; ++i) {
         double before[3], after[3];
         gprojx_area_of(mesh, p->options->original, i, before);
@@ -697,6 +770,7 @@ static bool gprojx_find_marks(gprojx_painter *p) {
         p->folded[i] = gprojx_angle_cosine(a, b) < -0.5;
         p->folded_count += p->folded[i];
     }
+    gprojx_find_collapsed(p);
     return true;
 }
 
@@ -760,13 +834,14 @@ static void gprojx_put_path(FILE *file, const gprojx_point *point, int32_t count
 
 /* The face's own colour, lit by a lamp above the eye's left shoulder, and paler far away. */
 static gprojx_colour gprojx_face_colour(const gprojx_painter *p, const gprojx_item *item) {
-    static const gprojx_colour plain = {178, 214, 218}, turned = {230, 110, 40}, white = {255, 255, 255},
-                               black = {10, 30, 78};
+    static const gprojx_colour plain = {178, 214, 218}, turned = {230, 110, 40}, crossed = {242, 194, 0},
+                               white = {255, 255, 255}, black = {10, 30, 78};
     static const double lamp[3] = {-0.40, 0.60, 0.69};
     const double *value = p->options->face_value;
     gprojx_colour colour = value ? gprojx_map(gprojx_scale_at(p->options, value[item->face])) : plain;
     double world[3], n[3], size, light, far = 0;
     if (p->turned[item->face]) colour = turned;
+    if (p->crossed[item->face]) colour = crossed;
     gprojx_area_of(p->mesh, p->mesh->position, item->face, world);
     n[0] = gprojx_dot(world, p->right), n[1] = gprojx_dot(world, p->up), n[2] = gprojx_dot(world, p->toward);
     size = sqrt(gprojx_dot(n, n));
@@ -955,6 +1030,12 @@ static void gprojx_put_legend(gprojx_painter *p) {
     if (p->folded_count > 0)
         gprojx_put_mark(p, p->width - 215, y - 14, 0, p->folded_count, "stroke=\"#d4002a\" stroke-width=\"2.5\"",
                         "folded edge", "folded edges");
+    if (p->crossed_count > 0)
+        gprojx_put_mark(p, p->width - 215, y - 36, 10, p->crossed_count, "fill=\"#f2c200\" stroke=\"#222\"",
+                        "bow-tie: crosses itself", "bow-ties: cross themselves");
+    if (p->collapsed_count > 0)
+        gprojx_put_mark(p, p->width - 215, y - 58, 10, p->collapsed_count, "fill=\"none\" stroke=\"#d4002a\"",
+                        "collapsed edge (ringed)", "collapsed edges (ringed)");
 }
 
 /* The mean length of an edge as seen gives the width of lines. */
@@ -1015,25 +1096,41 @@ static void gprojx_put_head(gprojx_painter *p) {
     fputs("<g class=\"m\">\n", p->file);
 }
 
-/* Folded edges and turned faces once more above all, so that none is hidden. `corner` has room for any face. */
+/* A face once more, above all. */
+static void gprojx_put_face_mark(gprojx_painter *p, int32_t face, const char *style, gprojx_point *corner) {
+    int32_t h = p->mesh->face_halfedge[face], k;
+    for (k = 0; k < p->mesh->face_degree[face]; ++k, h = p->mesh->next[h]) corner[k] = p->vertex[p->mesh->origin[h]];
+    fprintf(p->file, "<path %s", style);
+    gprojx_put_path(p->file, corner, p->mesh->face_degree[face], true);
+    fputs("/>\n", p->file);
+}
+
+/* Marked faces and edges once more above all, so that none is hidden. `corner` has room for any face. A collapsed edge is
+   too short to be seen: a ring stands around it. */
 static void gprojx_put_marks(gprojx_painter *p, gprojx_point *corner) {
-    int32_t i, k, h;
-    if (p->turned_count + p->folded_count == 0) return;
+    int32_t i, k;
+    if (p->turned_count + p->crossed_count + p->folded_count + p->collapsed_count == 0) return;
     fputs("<g fill=\"none\" stroke-opacity=\".6\" stroke-linejoin=\"round\">\n", p->file);
     for (i = 0; i < p->mesh->face_count; ++i) {
-        if (!p->turned[i]) continue;
-        for (h = p->mesh->face_halfedge[i], k = 0; k < p->mesh->face_degree[i]; ++k, h = p->mesh->next[h])
-            corner[k] = p->vertex[p->mesh->origin[h]];
-        fputs("<path stroke=\"#c2410c\" fill=\"#e66e28\" fill-opacity=\".25\"", p->file);
-        gprojx_put_path(p->file, corner, p->mesh->face_degree[i], true);
-        fputs("/>\n", p->file);
+        if (p->turned[i])
+            gprojx_put_face_mark(p, i, "stroke=\"#c2410c\" fill=\"#e66e28\" fill-opacity=\".25\"", corner);
+        if (p->crossed[i])
+            gprojx_put_face_mark(p, i, "stroke=\"#8a6d00\" fill=\"#f2c200\" fill-opacity=\".4\"", corner);
     }
     for (i = 0; i < p->mesh->edge_count; ++i) {
-        if (!p->folded[i]) continue;
+        if (!p->folded[i] && !p->collapsed[i]) continue;
         for (k = 0; k < 2; ++k) corner[k] = p->vertex[p->mesh->origin[2 * i + k]];
-        fputs("<path stroke=\"#d4002a\" stroke-dasharray=\"4 3\"", p->file);
-        gprojx_put_path(p->file, corner, 2, false);
-        fputs("/>\n", p->file);
+        if (p->folded[i]) {
+            fputs("<path stroke=\"#d4002a\" stroke-dasharray=\"4 3\"", p->file);
+            gprojx_put_path(p->file, corner, 2, false);
+            fputs("/>\n", p->file);
+        }
+        if (p->collapsed[i]) {
+            fputs("<circle stroke=\"#d4002a\" stroke-width=\"2\" r=\"7\"", p->file);
+            gprojx_put_attribute(p->file, "cx", (corner[0].x[0] + corner[1].x[0]) / 2);
+            gprojx_put_attribute(p->file, "cy", (corner[0].x[1] + corner[1].x[1]) / 2);
+            fputs("/>\n", p->file);
+        }
     }
     fputs("</g>\n", p->file);
 }
@@ -1076,7 +1173,8 @@ static gproj_code gprojx_picture(FILE *file, const gproj_mesh *mesh, const gproj
     painter.options = options ? options : &none;
     painter.file = file;
     code = gprojx_draw(&painter);
-    free(painter.vertex), free(painter.turned), free(painter.folded), free(painter.cell);
+    free(painter.vertex), free(painter.cell);
+    free(painter.turned), free(painter.crossed), free(painter.folded), free(painter.collapsed);
     free(painter.point.data), free(painter.item.data), free(painter.link.data), free(painter.arc.data);
     free(painter.heap.data), free(painter.ahead.data);
     return code;
