@@ -13275,6 +13275,15 @@ GPROJI_INTERNAL gproj_code gproji_off_vertex(gproji_reader *reader) {
     return gproji_push_vertex(reader, x, line);
 }
 
+/* Could the faces so far count vertices from 1: is this index one too large, and was none 0? */
+GPROJI_INTERNAL bool gproji_counts_from_one(const gproji_reader *reader, int64_t index) {
+    size_t c;
+    if (index != (int64_t)reader->vertex_count) return false;
+    for (c = 0; c < reader->face_vertex.count; ++c)
+        if (reader->face_vertex.data[c] == 0) return false;
+    return true;
+}
+
 /* degree, then the corners; colours behind them are passed over. */
 GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
     int64_t degree, index, k;
@@ -13287,9 +13296,13 @@ GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, 
         code = gproji_word_index(reader, false, &index);
         if (code) return code;
         if (index < 0 || index >= (int64_t)reader->vertex_count) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index %l, but the vertices are 0 to %l", reader->line, index,
-                               (int64_t)reader->vertex_count - 1);
+            return gproji_fail(
+                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index,
+                (int64_t)reader->vertex_count - 1,
+                gproji_counts_from_one(reader, index)
+                    ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
+                    : "");
         }
         code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
         if (code) return code;
@@ -13330,6 +13343,44 @@ GPROJI_INTERNAL gproj_code gproji_check_text(gproji_reader *reader) {
     }
     return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
                        "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text", reader->line);
+}
+
+/* Which other format this is, by the way that it begins; NULL: none that is known. */
+GPROJI_INTERNAL const char *gproji_foreign_format(const char *text, size_t size) {
+    static const struct {
+        const char *begins, *name;
+    } formats[] = {{"solid", "an STL"},
+                   {"ply", "a PLY"},
+                   {"glTF", "a glTF"},
+                   {"{", "a JSON (glTF, say)"},
+                   {"ISO-10303-21", "a STEP"},
+                   {"Kaydara FBX", "an FBX"},
+                   {"3D Geometry File", "a 3DM"},
+                   {"PK\003\004", "a zipped (3MF, say)"},
+                   {"BLENDER", "a Blender"},
+                   {"<?xml", "an XML (Collada, say)"}};
+    size_t i;
+    for (i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
+        size_t length = strlen(formats[i].begins);
+        if (size >= length && !memcmp(text, formats[i].begins, length)) return formats[i].name;
+    }
+    if (size >= 84) { /* binary STL: 80 bytes of anything, the number of triangles, 50 bytes each */
+        const unsigned char *n = (const unsigned char *)text + 80;
+        uint64_t triangles = n[0] | (uint64_t)n[1] << 8 | (uint64_t)n[2] << 16 | (uint64_t)n[3] << 24;
+        if (size == 84 + 50 * triangles) return "a binary STL";
+    }
+    return NULL;
+}
+
+/* Says of what could not be read as OBJ or OFF what it is, where that is known. */
+GPROJI_INTERNAL void gproji_tell_foreign(const char *text, size_t size, gproj_error *error) {
+    const char *name = gproji_foreign_format(text, size);
+    if (!name || !error || error->code != GPROJ_ERROR_SYNTAX) return;
+    gproji_error_clear(error);
+    gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                "this is %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, MeshLab or "
+                "assimp",
+                name);
 }
 
 /* By the first word: [ST][C][N]OFF or OBJ. */
@@ -13389,6 +13440,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, con
         code = format == GPROJ_FORMAT_OFF ? gproji_read_off(&reader) : gproji_read_obj(&reader);
     }
     if (!code) code = gproji_reader_build(&reader, object);
+    if (code) gproji_tell_foreign(text, size, error);
     gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
     gproji_ints_give(reader.heap, &reader.vertex_line);
     gproji_ints_give(reader.heap, &reader.face_line);

@@ -135,6 +135,9 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {"OFF\n3 1 0\n0 0 z\n1 0 0\n0 1 0\n3 0 1 2", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 3, "'z' is not a number"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3", GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 6,
      "index 3, but the vertices are 0 to 2"},
+    {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 1 2 3", GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 6,
+     "index 3, but the vertices are 0 to 2; they seem to be counted from 1"},
+    {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 1 2 4", GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 6, "vertices are 0 to 2"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1", GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 6, "index -1"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 q", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 6, "'q' is not"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6, "a face with 2 corners"},
@@ -162,6 +165,35 @@ GPROJT_TEST(refused_texts) {
         GPROJT_CHECK(counting.held == 0 && counting.wrong_sizes == 0);
         GPROJT_CHECK(!gproj_mesh_read(bad->text, strlen(bad->text), GPROJ_FORMAT_DETECT, NULL, NULL));
     }
+}
+
+/* What is neither OBJ nor OFF is told by name; what is OBJ, however it begins, is read. */
+GPROJT_TEST(other_formats) {
+    static const char *const texts[][2] = {{"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "an STL file"},
+                                           {"ply\nformat ascii 1.0\nelement vertex 3\n", "a PLY file"},
+                                           {"{\"asset\": {\"version\": \"2.0\"}}\n", "glTF"},
+                                           {"glTF\002", "a glTF file"},
+                                           {"ISO-10303-21;\nHEADER;\n#1=POINT();\n", "a STEP file"},
+                                           {"<?xml version=\"1.0\"?>\n<COLLADA>\n", "Collada"}};
+    static const char solid[] = "solid\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    char stl[84 + 2 * 50];
+    gproj_error error;
+    gproj_mesh *mesh;
+    size_t i;
+    for (i = 0; i < sizeof texts / sizeof texts[0]; ++i) {
+        mesh = gprojt_read_text(texts[i][0], &error);
+        GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, texts[i][1]) &&
+                     strstr(error.message, "write it as OBJ"));
+    }
+    memset(stl, 0, sizeof stl);
+    stl[80] = 2;
+    mesh = gproj_mesh_read(stl, sizeof stl, GPROJ_FORMAT_DETECT, NULL, &error);
+    GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "binary STL"));
+    mesh = gproj_mesh_read(stl, sizeof stl - 1, GPROJ_FORMAT_DETECT, NULL, &error);
+    GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 1, "a zero byte"));
+    mesh = gprojt_read_text(solid, &error);
+    GPROJT_CHECK(mesh && mesh->face_count == 1);
+    gproj_mesh_destroy(mesh);
 }
 
 GPROJT_TEST(refused_arguments) {
@@ -449,6 +481,7 @@ int main(void) {
     GPROJT_RUN(obj_dialects);
     GPROJT_RUN(obj_polylines);
     GPROJT_RUN(refused_texts);
+    GPROJT_RUN(other_formats);
     GPROJT_RUN(refused_arguments);
     GPROJT_RUN(round_trips);
     GPROJT_RUN(writer_failures);
