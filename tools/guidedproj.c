@@ -49,6 +49,8 @@ enum {
     MOST_DRAGS = 50 /* and releases, for one --move */
 };
 
+static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
+
 typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
     bool given;
     double weight, decay;
@@ -121,6 +123,7 @@ typedef struct tool {
     tool_sides sides;
     tool_subdivision subdivision;
     double lift; /* 0: none */
+    double weld; /* in mean edge lengths; 0: vertices at the same place stay apart */
     tool_weight planar, circular, conical, planar_boundary, straight_boundary, orthogonal_boundary, lifting, closeness,
         fairness, boundary_fairness, tangential, gauss, parallelograms, equal_areas;
     tool_weight equal_lengths;
@@ -152,6 +155,7 @@ typedef struct tool {
     gproj_mesh *mesh, *reference_mesh, *probe; /* probe: a copy for measures of intermediate shapes */
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
+    int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
     gproj_surface *surface;
     gproj_curve **curve;
     int32_t curve_count;
@@ -285,6 +289,23 @@ static int edit_distance(const char *a, size_t size, const char *b) {
             d[i][j] = best;
         }
     return d[rows][columns];
+}
+
+enum {
+    HINT_SIZE = 48
+};
+
+/* "; did you mean WORD?" where one of the words, which end with NULL, is like this one; else "". */
+static const char *did_you_mean(const char *text, size_t size, const char *const *words, char hint[HINT_SIZE]) {
+    int best = 3; /* edits that are no typing error any more */
+    hint[0] = 0;
+    for (; *words; ++words) {
+        int distance = edit_distance(text, size, *words);
+        if (distance >= best || 2 * distance > (int)size) continue;
+        best = distance;
+        snprintf(hint, HINT_SIZE, "; did you mean %s?", *words);
+    }
+    return hint;
 }
 
 /* ---- readers of values: `place` is the option's member of the tool ---- */
@@ -461,6 +482,13 @@ static bool set_lift(tool *t, void *place, const char *name, const char *value) 
     return fail(t, EXIT_USAGE, "--%s %s: expected a height, not 0, of at most 1e50", name, value);
 }
 
+static bool set_weld(tool *t, void *place, const char *name, const char *value) {
+    double *weld = (double *)place;
+    *weld = SAME_PLACE;
+    if (!value || (read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1)) return true;
+    return fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, above 0 and at most 1", name, value);
+}
+
 static bool set_threads(tool *t, void *place, const char *name, const char *value) {
     int32_t *threads = (int32_t *)place;
     if (!read_integer(value, strlen(value), 0, MOST_THREADS, threads))
@@ -604,13 +632,16 @@ static const tool_colour colours[] = {
 };
 
 static bool set_colour(tool *t, void *place, const char *name, const char *value) {
+    static const char *const words[] = {"planarity", "area", "parallelogram", "bend", NULL};
+    char hint[HINT_SIZE];
     size_t i;
     for (i = 0; i < sizeof colours / sizeof colours[0]; ++i)
         if (strcmp(value, colours[i].name) == 0) {
             *(const tool_colour **)place = &colours[i];
             return true;
         }
-    return fail(t, EXIT_USAGE, "--%s %s: expected planarity, area, parallelogram or bend", name, value);
+    return fail(t, EXIT_USAGE, "--%s %s: expected planarity, area, parallelogram or bend%s", name, value,
+                did_you_mean(value, strlen(value), words, hint));
 }
 
 /* ---- the table of options ---- */
@@ -643,6 +674,11 @@ static const tool_option options[] = {
      "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
      "triangle four (Loop). The cage's vertices keep their numbers",
      NULL, set_subdivision, PLACE(subdivision)},
+    {0, "weld", "[=TOL]", false,
+     "boundary vertices at the same place, within TOL mean edge lengths (1e-6), become one: seams are closed. Vertices "
+     "are "
+     "numbered anew, and polylines left out",
+     NULL, set_weld, PLACE(weld)},
     {0, "lift", "HEIGHT", false,
      "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly", NULL, set_lift,
      PLACE(lift)},
@@ -918,6 +954,16 @@ static bool anything_wished(const tool *t) {
            t->equal_areas.weight > 0 || t->force_fairness.weight > 0;
 }
 
+/* The first given option that means nothing without forces; NULL: none. */
+static const char *first_about_forces(const tool *t) {
+    static const char *const names[] = {"compressive", "tensile", "stress", "supports",       "density",
+                                        "area-load",   "snow",    "loads",  "force-fairness", "forces"};
+    size_t i;
+    for (i = 0; i < sizeof names / sizeof names[0]; ++i)
+        if (t->seen[find_option(names[i], strlen(names[i])) - options]) return names[i];
+    return NULL;
+}
+
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
@@ -943,11 +989,11 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
-    if (!t->equilibrium.given && (t->compressive.given || t->tensile.given || t->stress.given || t->supports.text ||
-                                  t->loads_given || t->force_fairness.given || t->output[OUTPUT_FORCES].path))
+    if (!t->equilibrium.given && first_about_forces(t))
         return fail(t, EXIT_USAGE,
-                    "--compressive, --tensile, --stress, --supports, --density, --area-load, --snow, --loads, "
-                    "--force-fairness and --forces are about forces: add --equilibrium");
+                    "--%s is about forces: add --equilibrium (the edges then bear their own weight, or what --density, "
+                    "--area-load, --snow and --loads say; supports are at the boundary, or where --supports says)",
+                    first_about_forces(t));
     if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
     if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
@@ -1073,6 +1119,17 @@ static bool prepare_outputs(tool *t) {
     return true;
 }
 
+/* The ending of files that other programs can convert; "" for others. */
+static const char *foreign_ending(const char *path) {
+    static const char *const endings[] = {".stl", ".ply", ".gltf", ".glb", ".step", ".stp", ".iges", ".igs",
+                                          ".fbx", ".dae", ".3ds",  ".3mf", ".3dm",  ".dxf", ".dwg",  ".skp",
+                                          ".ifc", ".x3d", ".wrl",  ".usd", ".usdz", ".vtk", ".blend"};
+    size_t i;
+    for (i = 0; i < sizeof endings / sizeof endings[0]; ++i)
+        if (has_ending(path, endings[i])) return endings[i];
+    return "";
+}
+
 static gproj_mesh *load(tool *t, const char *path, size_t size) {
     gproj_error error;
     gproj_mesh *mesh;
@@ -1080,6 +1137,11 @@ static gproj_mesh *load(tool *t, const char *path, size_t size) {
     if (!copy) return NULL;
     memcpy(copy, path, size);
     mesh = gproj_mesh_load(copy, &t->host, &error);
+    if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
+        fail(t, EXIT_REFUSED,
+             "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
+             "MeshLab or assimp (%s)",
+             copy, foreign_ending(copy), error.message);
     if (!mesh) fail_library(t, copy, &error);
     free(copy);
     return mesh;
@@ -1249,6 +1311,108 @@ static bool lift(tool *t) {
     return t->exit_code == 0;
 }
 
+/* ---- seams ---- */
+
+typedef struct tool_projected { /* a boundary vertex, along a line that no usual mesh is orthogonal to */
+    double along;
+    int32_t vertex;
+} tool_projected;
+
+static int compare_projected(const void *a, const void *b) {
+    const tool_projected *p = (const tool_projected *)a, *q = (const tool_projected *)b;
+    if (p->along < q->along || p->along > q->along) return p->along < q->along ? -1 : 1;
+    return p->vertex < q->vertex ? -1 : 1;
+}
+
+/* The smallest vertex that this one is the same as. */
+static int32_t same_as(int32_t *same, int32_t vertex) {
+    while (same[vertex] != vertex) vertex = same[vertex] = same[same[vertex]];
+    return vertex;
+}
+
+static bool are_joined(const gproj_mesh *mesh, int32_t a, int32_t b) {
+    int32_t start = mesh->vertex_halfedge[a], h = start;
+    do {
+        if (mesh->origin[mesh->twin[h]] == b) return true;
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    return false;
+}
+
+/* Finds boundary vertices within `distance` of each other that no edge joins. same, vertex_count entries: of each vertex
+   the smallest one at its place. Returns how many are not that; -1 without memory. */
+static int32_t find_seams(tool *t, double distance, int32_t *same) {
+    static const double direction[3] = {0.5466, 0.6131, 0.5704}; /* a little longer than 1 */
+    const gproj_mesh *mesh = t->mesh;
+    tool_projected *list = (tool_projected *)take(t, (size_t)mesh->vertex_count, sizeof *list);
+    int32_t count = 0, merged = 0, i, j;
+    if (!list) return -1;
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        const double *p = mesh->position + 3 * (size_t)i;
+        same[i] = i;
+        if (mesh->vertex_halfedge[i] < 0 || !gproj_mesh_is_boundary_vertex(mesh, i)) continue;
+        list[count].along = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
+        list[count++].vertex = i;
+    }
+    qsort(list, (size_t)count, sizeof *list, compare_projected);
+    for (i = 0; i < count; ++i)
+        for (j = i - 1; j >= 0 && list[i].along - list[j].along <= 1.1 * distance; --j) {
+            int32_t a = list[i].vertex, b = list[j].vertex, r, s;
+            const double *p = mesh->position + 3 * (size_t)a, *q = mesh->position + 3 * (size_t)b;
+            if (hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]) > distance || are_joined(mesh, a, b)) continue;
+            r = same_as(same, a), s = same_as(same, b);
+            same[r > s ? r : s] = r > s ? s : r;
+        }
+    for (i = 0; i < mesh->vertex_count; ++i) merged += same_as(same, i) != i;
+    free(list);
+    return merged;
+}
+
+/* The mesh with vertices that are the same made one; `merged` of them go. */
+static bool weld(tool *t, int32_t *same, int32_t merged) {
+    gproj_mesh *old = t->mesh;
+    size_t vertices = (size_t)old->vertex_count, at = 0;
+    double *position = (double *)take(t, 3 * vertices, sizeof *position);
+    int32_t *number = (int32_t *)take(t, vertices, sizeof *number);
+    int32_t *corner = (int32_t *)take(t, (size_t)old->halfedge_count, sizeof *corner), count = 0, i, k;
+    gproj_error error;
+    for (i = 0; position && number && corner && i < old->vertex_count; ++i) {
+        if (same_as(same, i) != i) continue;
+        memcpy(position + 3 * (size_t)count, old->position + 3 * (size_t)i, 3 * sizeof *position);
+        number[i] = count++;
+    }
+    for (i = 0; position && number && corner && i < old->face_count; ++i) {
+        int32_t h = old->face_halfedge[i];
+        for (k = 0; k < old->face_degree[i]; ++k, h = old->next[h])
+            corner[at++] = number[same_as(same, old->origin[h])];
+    }
+    if (t->exit_code == 0) {
+        t->mesh = gproj_mesh_create(count, position, old->face_count, old->face_degree, corner, &t->host, &error);
+        if (!t->mesh && error.code == GPROJ_ERROR_MEMORY)
+            fail_memory(t);
+        else if (!t->mesh)
+            fail(t, EXIT_REFUSED, "%s: after --weld: %s", t->input, error.message);
+        gproj_mesh_destroy(old);
+        t->welded = merged;
+    }
+    free(position), free(number), free(corner);
+    return t->exit_code == 0;
+}
+
+/* Merges boundary vertices at the same place with --weld; else counts them. */
+static bool treat_seams(tool *t) {
+    int32_t *same = (int32_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *same);
+    double edge = gproj_mesh_mean_edge_length(t->mesh);
+    int32_t merged = same ? find_seams(t, (t->weld > 0 ? t->weld : SAME_PLACE) * edge, same) : -1;
+    bool good = merged >= 0;
+    if (good && t->weld > 0 && merged > 0)
+        good = weld(t, same, merged);
+    else if (good)
+        t->seams = merged;
+    free(same);
+    return good;
+}
+
 /* The mesh from which the work begins. */
 static bool make_mesh(tool *t) {
     if (t->fill) {
@@ -1257,6 +1421,7 @@ static bool make_mesh(tool *t) {
         t->mesh = load(t, t->input, strlen(t->input));
         if (!t->mesh) return false;
         if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
+        if (!treat_seams(t)) return false;
     }
     if (t->subdivision.levels > 0 && !subdivide(t)) return false;
     return fabs(t->lift) <= 0 || lift(t);
@@ -1321,8 +1486,17 @@ static bool mark_list(tool *t, const char *text, const char *where, int exit_cod
     return true;
 }
 
+/* Fails where the value of an option is neither a word nor a file. `what`: what it may be. */
+static bool must_exist(tool *t, const char *option, const char *name, const char *what, const char *const *words) {
+    char hint[HINT_SIZE];
+    if (access(name, F_OK) == 0) return true;
+    return fail(t, strpbrk(name, "./") ? EXIT_REFUSED : EXIT_USAGE, "%s %s: there is no such file; expected %s%s",
+                option, name, what, did_you_mean(name, strlen(name), words, hint));
+}
+
 /* The vertices that the value of an option names. */
 static bool mark_vertices(tool *t, const char *option, const tool_word *word, bool *mark) {
+    static const char *const words[] = {"boundary", "corners", NULL};
     bool boundary = same_word(word->text, word->length, "boundary"),
          corners = same_word(word->text, word->length, "corners");
     char *name = (char *)take(t, word->length + 1, 1), *text;
@@ -1336,7 +1510,9 @@ static bool mark_vertices(tool *t, const char *option, const tool_word *word, bo
     } else if (strspn(name, "0123456789,- ") == word->length) {
         good = mark_list(t, name, option, EXIT_USAGE, mark);
     } else {
-        text = load_file(t, name, NULL);
+        good = must_exist(t, option, name,
+                          "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
+        text = good ? load_file(t, name, NULL) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
         free(text);
     }
@@ -1424,7 +1600,13 @@ static bool add_gliding(tool *t, const tool_word *word) {
         }
         good = add_curves(t, t->mesh, true, t->input);
     } else {
-        gproj_mesh *mesh = load(t, word->text, word->length);
+        static const char *const words[] = {"boundary", NULL};
+        char *name = (char *)take(t, word->length + 1, 1);
+        gproj_mesh *mesh = NULL;
+        if (name) memcpy(name, word->text, word->length);
+        if (name && must_exist(t, "--glide", name, "boundary, or an OBJ file with polylines", words))
+            mesh = load(t, word->text, word->length);
+        free(name);
         good = mesh && add_curves(t, mesh, false, word->text);
         gproj_mesh_destroy(mesh);
     }
@@ -2439,6 +2621,14 @@ static void print_mesh(const tool *t) {
            mesh->loop_count == 1 ? "" : "s");
     if (mesh->reoriented_count > 0)
         printf("note: %ld faces were turned round to agree with their neighbours\n", (long)mesh->reoriented_count);
+    if (t->welded > 0)
+        printf("note: %ld boundary vertices were merged with others at the same place; vertices are numbered anew\n",
+               (long)t->welded);
+    if (t->seams > 0)
+        printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their sides "
+               "may "
+               "come apart; --weld closes them\n",
+               (long)t->seams);
     if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
 }
 
