@@ -1124,8 +1124,8 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 /* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
    c_k on the axis of the circle with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are
    variables that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k.
-   A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (collapsed_edges of
-   gproj_measure). */
+   A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled
+   counts them). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
 /* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
    a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting

@@ -23,6 +23,9 @@ for source in "$root"/examples/*.c; do
         clean "$name does not print what is expected (< expected, > printed)" "$(diff "$expected" "$work/$name.txt")"
     fi
 done
+# examples/roof.obj, the mesh to try, is what planarize writes (but for the last digits of other maths libraries).
+clean 'examples/roof.obj is not the roof of planarize.c' "$(paste "$work/roof.obj" "$root/examples/roof.obj" | awk '
+    { half = NF / 2; for (k = 1; k <= half; ++k) { d = $k - $(k + half); if ($1 != $(1 + half) || d * d > 1e-20) { print; next } } }')"
 for expected in "$root"/tests/expected/*.txt; do
     [ -f "$expected" ] || continue
     [ -f "$root/examples/$(basename "$expected" .txt).c" ] && pass || fail "$expected belongs to no example"

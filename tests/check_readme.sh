@@ -1,7 +1,7 @@
 #!/bin/bash
 # check_readme.sh - what the documents show works: the C programs in the header's manual and in README.md compile
-# without a warning and run; the README's make commands exist, its tools/guidedproj commands succeed, and the files it
-# names are there.
+# without a warning and run; the README's make commands exist, its shell blocks and the examples of --help run as they are
+# printed, in sh and (where it is installed) in zsh, and the files it names are there.
 #
 # A program in the manual begins at a line "#define GUIDEDPROJ_IMPLEMENTATION" and ends at the "}" in the same column. In
 # the README it is a fenced block ```c with a main. Meshes that a program loads are put there for it to find.
@@ -45,19 +45,27 @@ shell = "\n".join(code for language, code in fences if language in ("", "sh", "b
 commands = re.findall(r"^\s*(?:\$ )?(?:.*(?:&&|;)\s*)?(make\b[^#;&|\n]*)", shell, re.M)
 commands += re.findall(r"`(make [^`\n]+)`", readme)
 open(f"{out}/make.list", "w").write("".join(c.strip() + "\n" for c in dict.fromkeys(commands)))
-# Commands of the tool are run in a folder that looks like the repository.
-os.mkdir(f"{out}/clone")
-for name in os.listdir(root): os.symlink(os.path.join(root, name), f"{out}/clone/{name}")
-joined = shell.replace("\\\n", " ")
-tool = re.findall(r"^\s*(?:\$ )?(?:.*(?:&&|;)\s*)?(?:\./)?tools/guidedproj\b([^#;&|\n]*)", joined, re.M)
-for arguments in tool:
-    for name in arguments.split()[:1]:
-        if re.search(r"\.obj$", name) and "/" not in name: write_mesh(f"{out}/clone/{name}")
-open(f"{out}/tool.list", "w").write("".join(arguments.strip() + "\n" for arguments in tool))
+# Shell blocks are run in a folder that looks like the repository: one command a line of the list.
+os.makedirs(f"{out}/clone/tools")
+for name in os.listdir(root):
+    if name != "tools": os.symlink(os.path.join(root, name), f"{out}/clone/{name}")
+for name in os.listdir(os.path.join(root, "tools")):
+    if name != "guidedproj": os.symlink(os.path.join(root, "tools", name), f"{out}/clone/tools/{name}")
+help = open(f"{out}/help.txt").read()
+examples = re.search(r"^examples\n(.*?)^$", help + "\n\n", re.M | re.S)
+shown = shell + "\n" + (examples.group(1) if examples else "")
+commands = [c.strip() for c in re.sub(r"\\\n\s*", " ", shown).split("\n") if c.strip() and not c.strip().startswith("#")]
+open(f"{out}/shell.list", "w").write("".join(c + "\n" for c in commands))
+# What zsh would take for a pattern, or for the path of a command, must stand in quotes.
+bare = [(c, re.sub(r"'[^']*'|\"[^\"]*\"", "", c)) for c in commands]
+open(f"{out}/glob.list", "w").write("".join(c + "\n" for c, b in bare if re.search(r"[*?\[\]{}~^]|\s=", b)))
 # Relative links and pictures must exist.
 links = [l for l in re.findall(r"\]\(([^)#\s]+)[^)]*\)|src=\"([^\"]+)\"", readme) for l in l if l and ":" not in l]
 open(f"{out}/links.list", "w").write("".join(l + "\n" for l in links if not os.path.exists(os.path.join(root, l))))
 END
+tool=$(realpath "${GPROJ_TOOL:-build/tool}")
+touch "$work/help.txt"
+[ ! -x "$tool" ] || "$tool" --help >"$work/help.txt"
 python3 "$work/readme.py" "$root" "$work" || fail 'readme.py'
 for where in manual readme; do
     found=0
@@ -89,17 +97,29 @@ if [ -f "$root/README.md" ]; then
         answer=$(cd "$root" && MAKEFLAGS='' eval "make -n ${command#make }" 2>&1 >/dev/null) && answer=''
         clean "README.md: $command" "$answer"
     done <"$work/make.list"
-    tool=$(realpath "${GPROJ_TOOL:-build/tool}")
-    while read -r arguments; do
-        if [ ! -x "$tool" ]; then
-            skip "README.md: tools/guidedproj $arguments: no tool"
-        elif (cd "$work/clone" && eval "timeout 120 '$tool' $arguments" >"$work/tool.txt" 2>&1 </dev/null); then
-            pass
-        else
-            fail "README.md: tools/guidedproj $arguments: exit code $?"
-            head -n 20 "$work/tool.txt"
+    # A make that only says what it would do; the tool is the one that was built for the tests.
+    mkdir "$work/bin"
+    printf '#!/bin/sh\nexec %s -n "$@"\n' "$(command -v make)" >"$work/bin/make"
+    chmod +x "$work/bin/make"
+    [ ! -x "$tool" ] || ln -s "$tool" "$work/clone/tools/guidedproj"
+    [ "$(grep -c 'guidedproj ' "$work/shell.list")" -ge 8 ] && pass || fail 'README.md and --help show too few commands'
+    clean 'README.md, --help: patterns without quotes' "$(cat "$work/glob.list")"
+    for shell in sh zsh; do
+        if [ ! -x "$tool" ] || ! have $shell; then
+            skip "README.md, --help: the commands in $shell: no $shell or no tool"
+            continue
         fi
-    done <"$work/tool.list"
+        cp -R "$work/clone" "$work/$shell"
+        while IFS= read -r command; do
+            if (cd "$work/$shell" && MAKEFLAGS='' PATH="$work/bin:$work/clone/tools:$PATH" \
+                timeout 120 $shell -c "$command" >"$work/shell.txt" 2>&1 </dev/null); then
+                pass
+            else
+                fail "$shell, exit code $?: $command"
+                grep -v '^iteration' "$work/shell.txt" | head -n 20
+            fi
+        done <"$work/shell.list"
+    done
     clean 'README.md: files that do not exist' "$(cat "$work/links.list")"
 else
     fail 'no README.md'

@@ -863,7 +863,7 @@ static void print_help(void) {
          "  guidedproj roof.obj -o flat.obj --planar --picture flat.svg\n"
          "  guidedproj roof.obj -o fair.obj --planar --glide boundary \\\n"
          "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
-         "  guidedproj roof.obj -o lifted.obj --planar --fix boundary --move 220,0,0,5\n\n"
+         "  guidedproj roof.obj -o lifted.obj --planar --fix corners --move 220,0,0,5\n\n"
          "exit status\n"
          "  0 all that must hold holds to the tolerance, and the mesh is not spoiled: no\n"
          "  face turned over, no new bow-tie or fold, nothing collapsed, no spike, against\n"
