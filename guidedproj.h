@@ -22370,7 +22370,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 
 /* ============================================================================================================
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
-   memory, error, vector, system, loop, measure, form, catalogue, statics, guard. */
+   memory, error, vector, system, loop, mesh, measure, form, catalogue, statics, guard. */
 
 /* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
