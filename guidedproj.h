@@ -17033,7 +17033,9 @@ GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, 
    least squares to say so. */
 GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double *position, int32_t face,
                                            const double area[3]) {
-    static const double flat = 1e-3; /* height over altitude; then it is convex as seen along the plane's normal, too */
+    /* Height over least altitude: the plane's normal then leans by at most 1.5 flat, which takes at most 3 flat^2 of a
+       corner's area. */
+    static const double flat = 0.1;
     double side[4][3], cross[3], longest = 0, least = HUGE_VAL;
     int32_t h = mesh->face_halfedge[face], k;
     if (mesh->face_degree[face] != 4) return false;
