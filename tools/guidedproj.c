@@ -349,7 +349,7 @@ static bool set_wish(tool *t, void *place, const char *name, const char *value) 
     return fail(
         t, EXIT_USAGE,
         "--%s %s: expected W[*DECAY][:N] with a weight W of 0 or larger, a DECAY above 0 and at most 1, and a last "
-        "iteration N of 1 or larger (as in 0.2*0.9:6)",
+        "iteration N of 1 or larger (as in '0.2*0.9:6')",
         name, value);
 }
 
@@ -2692,10 +2692,10 @@ static void print_summary(const tool *t) {
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
     print_asked(t);
-    printf("faces         %ld turned over, %ld -> %ld bow-ties\n", (long)a->turned_faces, (long)b->bow_tie_faces,
-           (long)a->bow_tie_faces);
-    printf("edges         %ld -> %ld folded, %ld -> %ld collapsed\n", (long)b->folded_edges, (long)a->folded_edges,
-           (long)b->collapsed_edges, (long)a->collapsed_edges);
+    printf("faces         %ld turned over, %ld -> %ld bow-ties, %ld collapsed\n", (long)a->turned_faces,
+           (long)b->bow_tie_faces, (long)a->bow_tie_faces, (long)t->result.spoiled.collapsed_faces);
+    printf("edges         %ld -> %ld folded, %ld collapsed, %ld spikes\n", (long)b->folded_edges, (long)a->folded_edges,
+           (long)t->result.spoiled.collapsed_edges, (long)t->result.spoiled.spikes);
     printf("seconds       %.3f, of these %.3f for %ld iteration%s\n", now(NULL) - t->start, t->solve_seconds,
            (long)t->result.iterations, t->result.iterations == 1 ? "" : "s");
 }
