@@ -399,7 +399,7 @@ run soup.obj -o apart.obj --planar
 run soup.obj -o welded.obj --planar --weld
 [ $status -eq 0 ] && grep -q '175 boundary vertices were merged' out.txt && [ "$(counts welded.obj)" = "81 64" ] &&
     grep -q '144 edges.*1 boundary loop' out.txt && pass || fail "--weld: exit $status, $(counts welded.obj)"
-awk '$1 == "v" && int(n++ / 4) % 2 { $2 += 1e-4 } { print }' soup.obj >torn.obj # every other face
+awk '$1 == "v" { if (int(n / 4) % 2) $2 += 1e-4; n++ } { print }' soup.obj >torn.obj # every other face
 run torn.obj -o welded.obj --fix 0 --closeness 0 --weld
 [ $status -eq 0 ] && [ "$(counts welded.obj)" != "81 64" ] && pass || fail "--weld joins what is 1e-4 apart"
 run torn.obj -o welded.obj --fix 0 --closeness 0 --weld=1e-3
