@@ -22648,7 +22648,8 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     } else if (result->spoiled.total > 0) {
         length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
         gproji_list_damages(mesh, &d, result->message, size);
-        gproji_append(result->message, size, strlen(result->message), help, sizeof help - 1);
+        length = strlen(result->message);
+        if (length + sizeof help <= size) gproji_append(result->message, size, length, help, sizeof help - 1);
     }
 }
 
