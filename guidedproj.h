@@ -498,12 +498,12 @@ typedef enum gproj_phase {
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
 } gproj_phase;
 
-#define GPROJ_OUTCOMES(X)                                                                        \
-    X(CONVERGED, "all constraints hold to the tolerance")                                        \
-    X(ITERATION_LIMIT, "the iterations ran out before all constraints held")                     \
-    X(STALLED, "no step makes the constraints hold better: they conflict, or this is a minimum") \
-    X(CANCELLED, "cancelled by the caller")                                                      \
-    X(TIME_OUT, "the time budget ran out")                                                       \
+#define GPROJ_OUTCOMES(X)                                                    \
+    X(CONVERGED, "all constraints hold to the tolerance")                    \
+    X(ITERATION_LIMIT, "the iterations ran out before all constraints held") \
+    X(STALLED, "no step makes the constraints hold better")                  \
+    X(CANCELLED, "cancelled by the caller")                                  \
+    X(TIME_OUT, "the time budget ran out")                                   \
     X(FAILED, "not started or broken off by an error")
 
 typedef enum gproj_outcome {
@@ -533,7 +533,8 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
-       roundings of the largest |x|, and in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|. */
+       roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
+       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces); never more than 1e-8. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
                            less where steps fall short near the end) */
@@ -10834,6 +10835,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    piecewise of degree 4 with a continuous slope. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
+static const double gproji_tolerance_most = 1e-8; /* of what rounding allows */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.01;
 enum {
@@ -11082,17 +11084,81 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* The caller's tolerance, or what rounding allows at this x. */
+/* Is the row x_i + c, which holds exactly at a number, however large? */
+GPROJI_INTERNAL bool gproji_is_place(const gproji_group *g, const gproji_row *row) {
+    const gproj_term *term = g->term + row->term;
+    return row->terms == 1 && term->j < 0 && fabs(term->a) == 1;
+}
+
+/* max |x| of the variables of rows that must hold; `all` where none must. */
+GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
+    double largest = 0;
+    int64_t l;
+    int32_t i, r;
+    bool none = true;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            none = false;
+            for (l = row->local; !gproji_is_place(g, row) && l < row[1].local; ++l)
+                largest = gproji_fmax(largest, fabs(s->x[g->local_variable[l]]));
+        }
+    }
+    return none ? all : largest;
+}
+
+/* The caller's tolerance, or what rounding allows at this x. A variable far away that no row has raises nothing; it is
+   looked for only where it would. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     gproj_system *s = loop->system;
-    double tolerance;
+    double tolerance, extent;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * gproji_pass_over(s, 0, gproji_extent_task));
+    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
             tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], &s->group[i].row[r], s->x));
-    return tolerance;
+    return gproji_fmin(tolerance, gproji_tolerance_most);
+}
+
+/* What rounding of the variables may change in an evaluated row: 4 roundings of sum_k |dphi/dx_k x_k|. */
+GPROJI_INTERNAL double gproji_row_noise(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
+    double sum = 0;
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local_gradient[l] * s->x[g->local_variable[l]]);
+    return 4 * DBL_EPSILON * sum;
+}
+
+/* The largest noise of the evaluated rows that are above the tolerance. Infinite where one of them is above its own noise,
+   too: that is no matter of rounding. */
+GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
+    const gproj_system *s = loop->system;
+    double largest = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            double phi = fabs(gproji_counted(g, g->row[r].phi)), noise;
+            if (phi <= loop->tolerance) continue;
+            noise = gproji_row_noise(s, g, &g->row[r]);
+            if (!(phi <= noise)) return HUGE_VAL;
+            largest = gproji_fmax(largest, noise);
+        }
+    }
+    return largest;
+}
+
+/* Large forces have large roundings, which max |x| does not tell: raises an automatic tolerance where it is these that keep
+   rows from holding. Only a residual between the tolerance and its upper limit costs a look at the rows. */
+GPROJI_INTERNAL void gproji_raise_tolerance(gproji_loop *loop) {
+    double residual = loop->standing.residual, noise;
+    if (loop->options.tolerance > 0 || residual <= loop->tolerance || !(residual <= gproji_tolerance_most)) return;
+    noise = gproji_noise_above(loop);
+    if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_tolerance_most);
 }
 
 /* Gradients and standing at the current x, of the rows as they are. */
@@ -11101,6 +11167,7 @@ GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     loop->system->rounding = loop->tolerance;
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
+    gproji_raise_tolerance(loop);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
@@ -11541,15 +11608,87 @@ GPROJI_INTERNAL int32_t gproji_second_group(const gproji_loop *loop) {
     return second;
 }
 
+/* The wish with the most energy that acts to the end; -1: none, or it fades by itself. */
+GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
+    double most = 0;
+    int32_t wish = -1, g, k;
+    for (g = 0; g < s->group_count; ++g) {
+        const gproji_group *group = &s->group[g];
+        bool decays = group->schedule.decay > 0 && group->schedule.decay < 1;
+        double energy = 0;
+        if (group->kind != GPROJ_WISH || !gproji_group_counts(group) || decays) continue;
+        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally[k].sum;
+        if (!(energy > most)) continue;
+        most = energy;
+        wish = g;
+    }
+    return wish;
+}
+
+/* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad phi,
+   cancel there. */
+GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
+    double size = 0, sum = 0;
+    int64_t l;
+    int32_t i, r, v;
+    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            double pull = gproji_weight2(g, row) * gproji_counted(g, row->phi);
+            gproji_row_add(g, row, pull, s->gradient);
+            for (l = row->local; l < row[1].local; ++l) {
+                double part = pull * g->local_gradient[l];
+                size += part * part;
+            }
+        }
+    }
+    for (v = 0; v < s->variable_count; ++v) sum += s->gradient[v] * s->gradient[v];
+    return sum <= 0.01 * size;
+}
+
+/* What is in the way of constraints that do not hold, and what to do. */
+GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
+    gproj_system *s = loop->system;
+    bool stalled = loop->result.outcome == GPROJ_STALLED;
+    double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
+    double weight = g->weight * g->row[loop->standing.row].weight;
+    int32_t second = gproji_second_group(loop), wish = gproji_lasting_wish(s);
+    bool guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0, balanced;
+    more[0] = 0;
+    if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
+    balanced = guided && gproji_constraints_balance(s);
+    if (!(loop->standing.residual <= DBL_MAX))
+        gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
+    else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
+        gproji_format(more, size,
+                      "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
+    else if (weight < epsilon)
+        gproji_format(more, size,
+                      "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1", weight,
+                      g->name, epsilon);
+    else if (guided && !balanced)
+        gproji_format(more, size,
+                      "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
+                      s->group[wish].name);
+    else if (!stalled && !balanced)
+        gproji_format(more, size, "; allow more iterations, or ask for less");
+    else if (second >= 0)
+        gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+    else
+        gproji_format(more, size, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less",
+                      g->name);
+}
+
 /* The verdict in a sentence: what happened, where it is worst, what fights, what to do. */
 GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
     const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
     const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
-    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
-    int32_t second = gproji_second_group(loop);
-    char fight[3 * GPROJ_NAME_SIZE], element[GPROJ_NAME_SIZE];
+    const char *plural = r->iterations == 1 ? "" : "s";
+    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
@@ -11559,11 +11698,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
                       "there is nothing that must hold; %d iteration%s towards the wishes", r->iterations, plural);
         return;
     }
-    if (r->outcome == GPROJ_ITERATION_LIMIT) more = "; allow more iterations, or ask for less";
-    if (r->outcome == GPROJ_STALLED && second >= 0) {
-        gproji_format(fight, sizeof fight, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
-        more = fight;
-    }
+    gproji_advise(loop, g, more, sizeof more);
     element[0] = 0;
     if (g->place != GPROJ_PLACE_NONE)
         gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
@@ -12121,6 +12256,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
         s->solving = s->sliding = false;
         loop->spent += loop->lap - loop->started;
+        if (loop->result.outcome == GPROJ_CONVERGED) gproji_values_are_valid(s);
     }
     if (s->error.code != GPROJ_OK) {
         loop->result = gproji_failed_result(&s->error);
@@ -12896,13 +13032,28 @@ GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face,
     if (face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
 }
 
-/* The mean edge length with other positions; 0 without edges. */
+/* The mean edge length with other positions, measured in a unit of `unit`. */
+GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double *position, double unit) {
+    double sum = 0, d[3];
+    int32_t h, k;
+    for (h = 0; h < mesh->halfedge_count; h += 2) {
+        gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
+        for (k = 0; k < 3; ++k) d[k] /= unit;
+        sum += gproji_length3(d);
+    }
+    return sum * unit / mesh->edge_count;
+}
+
+/* The mean edge length with other positions; 0 without edges. Edges whose squares would underflow are measured in a smaller
+   unit, a power of 2. */
 GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
     double sum = 0;
     int32_t h;
     for (h = 0; h < mesh->halfedge_count; h += 2)
         sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
-    return mesh->edge_count ? sum / mesh->edge_count : 0;
+    if (mesh->edge_count == 0) return 0;
+    sum /= mesh->edge_count;
+    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, ldexp(1, -700)) : sum;
 }
 
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
@@ -19101,20 +19252,22 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_destroy_object(form, sizeof *form);
 }
 
-/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. */
+/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. Vertices without edges count only where
+   there are no others: one far away would take the digits of all coordinates. */
 GPROJI_INTERNAL void gproji_form_measure_units(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     double edge = gproj_mesh_mean_edge_length(mesh), low, high;
-    int32_t v, k;
+    int32_t first = mesh->edge_count ? mesh->origin[0] : 0, v, k;
     for (k = 0; k < 3; ++k) {
-        low = high = mesh->vertex_count ? mesh->position[k] : 0;
-        for (v = 1; v < mesh->vertex_count; ++v) {
+        low = high = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            if (mesh->edge_count && mesh->vertex_halfedge[v] < 0) continue;
             low = gproji_fmin(low, mesh->position[3 * (size_t)v + (size_t)k]);
             high = gproji_fmax(high, mesh->position[3 * (size_t)v + (size_t)k]);
         }
         form->centre[k] = low + (high - low) / 2;
     }
-    form->scale = edge > 0 ? 1 / edge : 1;
+    form->scale = edge > 1e-305 ? 1 / edge : 1;
 }
 
 GPROJI_INTERNAL void gproji_to_internal(const gproj_form *form, const double position[3], double out[3]) {
@@ -19134,14 +19287,18 @@ GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
     return largest;
 }
 
-/* Refuses coordinates that are not finite: the caller may have written them. */
+/* Refuses coordinates that are not finite, or so large that their products would not be, in the mesh's units or in the
+   form's: the caller may have written them. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
-    int32_t i;
+    int32_t i, k;
+    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
-        const double *p = form->mesh->position + 3 * (size_t)i;
-        if (gproji_is_finite(p[0]) && gproji_is_finite(p[1]) && gproji_is_finite(p[2])) continue;
+        double p[3];
+        gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
+        for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
+        if (k == 3) continue;
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                    "a coordinate of vertex %d is not a finite number", i);
+                    "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
         return false;
     }
     return true;
@@ -19165,6 +19322,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
         return gproji_fail_memory(&form->error);
     if (!gproji_positions_are_finite(form)) return form->error.code;
     gproji_form_measure_units(form);
+    if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
@@ -19392,6 +19550,7 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
         return -1;
     }
+    if (part && gproji_check_positions(count, positions, "target", &form->error)) return -1;
     return gproji_add_points(form, part, "targets", GPROJ_CONSTRAINT, positions, weight);
 }
 
@@ -19404,6 +19563,7 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
     if (!part || !positions)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "group %d has no targets, or there are no positions", group);
+    if (gproji_check_positions(part->count, positions, "target", &form->error)) return form->error.code;
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_to_internal(form, positions + 3 * (size_t)i, p);
