@@ -534,7 +534,8 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
        roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
-       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces); never more than 1e-8. */
+       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most 1e-11,
+       the others 1e-8. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
                            less where steps fall short near the end) */
@@ -966,6 +967,9 @@ typedef struct gproj_measures {
 /* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
    `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
+/* The planarity of faces alone, a part of the time of all measures: returns planarity_max. `planarity` (as above) and
+   `mean`, planarity_mean, may be NULL. */
+GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 
@@ -10835,7 +10839,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    piecewise of degree 4 with a continuous slope. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
-static const double gproji_tolerance_most = 1e-8; /* of what rounding allows */
+static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by max |x| */
+static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.01;
 enum {
@@ -11156,9 +11161,9 @@ GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
    rows from holding. Only a residual between the tolerance and its upper limit costs a look at the rows. */
 GPROJI_INTERNAL void gproji_raise_tolerance(gproji_loop *loop) {
     double residual = loop->standing.residual, noise;
-    if (loop->options.tolerance > 0 || residual <= loop->tolerance || !(residual <= gproji_tolerance_most)) return;
+    if (loop->options.tolerance > 0 || residual <= loop->tolerance || !(residual <= gproji_noise_most)) return;
     noise = gproji_noise_above(loop);
-    if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_tolerance_most);
+    if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
 }
 
 /* Gradients and standing at the current x, of the rows as they are. */
@@ -16618,11 +16623,14 @@ GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_
     }
 }
 
-/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
+/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). Sweeps square what is left beside the
+   diagonal, so 4 or 5 are usual until it is below all rounding. */
 GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
     int32_t sweep, largest = 0, k;
     for (sweep = 0; sweep < 12; ++sweep) {
+        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
+        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
         gproji_jacobi_rotate(m, v, 0, 1);
         gproji_jacobi_rotate(m, v, 0, 2);
         gproji_jacobi_rotate(m, v, 1, 2);
@@ -16813,6 +16821,24 @@ GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t 
         h = gproji_rotate(mesh, h);
     } while (h != start);
     return most - least;
+}
+
+/* |w1 - w2 + w3 - w4| for the angles of the four faces around an interior vertex: 0 where they touch a cone, but anything
+   where the vertex is flat, though its normals say nothing of it. 0 at other vertices. */
+GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
+    double a[3], b[3], cross[3], sum = 0;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
+    if (start < 0 || mesh->face[start] < 0 || gproj_mesh_valence(mesh, vertex) != 4) return 0;
+    do {
+        int32_t next = gproji_rotate(mesh, h);
+        gproji_sub3(gproji_corner_position(mesh, h ^ 1), gproji_corner_position(mesh, h), a);
+        gproji_sub3(gproji_corner_position(mesh, next ^ 1), gproji_corner_position(mesh, h), b);
+        gproji_cross3(a, b, cross);
+        sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
+        sign = -sign;
+        h = next;
+    } while (h != start);
+    return fabs(sum);
 }
 
 /* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
@@ -17059,6 +17085,24 @@ GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double 
         gproji_area_vector(mesh, mesh->position, f, now);
         m->turned_faces += gproji_dot3(before, now) < 0;
     }
+}
+
+GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean) {
+    double unit = mesh ? gproji_mean_edge(mesh, mesh->position) : 0, largest = 0, sum = 0;
+    int32_t f;
+    if (!(unit > 0)) unit = 1;
+    for (f = 0; mesh && f < mesh->face_count; ++f) {
+        double flatness = 0, middle[3], normal[3];
+        if (mesh->face_degree[f] > 3) {
+            gproji_face_plane(mesh, f, middle, normal);
+            flatness = gproji_face_planarity(mesh, f, middle, normal) / unit;
+        }
+        largest = gproji_fmax(largest, flatness);
+        sum += flatness / mesh->face_count;
+        if (planarity) planarity[f] = flatness;
+    }
+    if (mean) *mean = sum;
+    return largest;
 }
 
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
@@ -22578,6 +22622,44 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, int32_t collaps
                       more == 1 ? " has" : "s have");
 }
 
+/* Circularity alone puts the corners of each face on a sphere: says so where faces are not planar. */
+GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
+    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
+    size_t length = strlen(result->message);
+    int32_t f, face = -1, count = 0;
+    for (f = 0; form->axis && unit > 0 && f < mesh->face_count; ++f) {
+        double off;
+        if (form->axis[f] < 0) continue;
+        gproji_face_plane(mesh, f, mean, normal);
+        off = gproji_face_planarity(mesh, f, mean, normal) / unit;
+        count += off > 1e-6;
+        if (off > worst) worst = off, face = f;
+    }
+    if (face >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
+                      "lengths): add planarity for circles",
+                      count, count == 1 ? " is" : "s are", face, worst);
+}
+
+/* The rows of a cone hold with any angles where the normals around a vertex are coplanar: says so where the angles do not
+   add up. */
+GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
+    double worst = 1e-6;
+    size_t length = strlen(result->message);
+    int32_t v, vertex = -1, count = 0;
+    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v) {
+        double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
+        count += off > 1e-6;
+        if (off > worst) worst = off, vertex = v;
+    }
+    if (vertex >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
+                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
+}
+
 /* -- a solve, at once or in frames -- */
 
 /* A result that says what is wrong with a call and leaves the form as it is. */
@@ -22629,6 +22711,9 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (gproji_is_unbalanced(form, result)) gproji_tell_unbalanced(form, result);
     gproji_tell_spoiled(form, form->solve.collapsed, form->solve.mean_edge, result);
+    if (result->outcome != GPROJ_CONVERGED) return;
+    if (gproji_has_group_on(form, "circularity")) gproji_tell_spheres(form, result);
+    if (gproji_has_group_on(form, "conicality")) gproji_tell_flat_cones(form, result);
 }
 
 /* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */

@@ -1692,6 +1692,24 @@ GPROJT_TEST(edges_below_all_squares) {
     for (i = 0; i < 3; ++i) gproj_mesh_destroy(mesh[i]);
 }
 
+/* Circularity without planarity gives spheres, and the verdict says it; with planarity, or on triangles, there is nothing to
+   say. */
+GPROJT_TEST(spheres_are_no_circles) {
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(i == 2 ? 1 : 0, 5, 0.1, 6);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        if (i == 1) gproj_add_planarity(form, 1);
+        gproj_add_circularity(form, 1);
+        result = gproj_solve(form, 40, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK((strstr(result.message, " so the corners are on spheres only") != NULL) == (i == 0));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- refusals -- */
 
 enum {
@@ -2058,6 +2076,7 @@ int main(void) {
     GPROJT_RUN(positions_beyond_all_measures);
     GPROJT_RUN(positions_beyond_the_units);
     GPROJT_RUN(a_stray_vertex);
+    GPROJT_RUN(spheres_are_no_circles);
     GPROJT_RUN(edges_below_all_squares);
     GPROJT_RUN(no_form_and_no_mesh);
     GPROJT_RUN(own_rows_units_and_cancelling);

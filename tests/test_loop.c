@@ -816,8 +816,9 @@ GPROJT_TEST(tolerance_knows_large_terms) {
         gprojt_add_linear(s, 0, 0, a, -a / 3, 0);
         gprojt_add_linear(s, 0, 0, 1.1 * a, -1.1 * a / 3, 0);
         result = gproj_system_solve(s, 30, NULL);
-        GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (result.residual <= 1e-8));
-        GPROJT_CHECK(result.tolerance >= 1e-13 && result.tolerance <= 4 * DBL_EPSILON * a);
+        GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (result.residual <= 1e-11));
+        GPROJT_CHECK(result.tolerance >= 1e-13 && result.tolerance <= 1e-11);
+        GPROJT_CHECK(result.tolerance == 1e-13 || result.tolerance <= 4 * DBL_EPSILON * a);
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED || strstr(result.message, "; rounding of such large numbers"));
         gproj_system_set_row(s, 0, 1, NULL, -1.1 * a / 3 + 1e-9 * a); /* what is more than rounding is told from it */
         GPROJT_CHECK(gproj_system_solve(s, 30, NULL).outcome == GPROJ_STALLED);
