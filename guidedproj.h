@@ -375,14 +375,15 @@ typedef struct gproj_least_squares {
     const int32_t *row;   /* of each entry, in any order; entries of the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
-    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: no bound for this variable */
+    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
     const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
     double damping;       /* >= 0, in the units of the entries of A; makes the solution unique */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
     GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
-    GPROJ_LEAST_SQUARES_LIMIT,  /* factorisations or digits ran out; x is the best point met, see kkt */
+    GPROJ_LEAST_SQUARES_LIMIT, /* factorisations or digits ran out: x is the best point met, see kkt, which may be small
+                                   where large entries cancel and what is left is less than their rounding */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
     GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_least_squares_outcome;
@@ -395,7 +396,7 @@ typedef struct gproj_least_squares_result {
     /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2 x
        is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
        divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
-       is nearest to 0. */
+       is nearest to 0; both in units of the variables in which the columns of A have length 1. */
     double kkt;
     gproj_memory memory; /* without that of the factorisation: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
@@ -7004,6 +7005,8 @@ enum {
 
 /* Bounds and numbers beyond it are none. Its powers and products stay finite. */
 #define GPROJI_SQUARES_HUGE 1e50
+/* Stands for a bound that is none, and is beyond all values of a variable. */
+#define GPROJI_SQUARES_NONE DBL_MAX
 
 enum {
     GPROJI_VARIABLE_FREE,
@@ -7043,6 +7046,7 @@ typedef struct gproji_squares {
     /* columns: */
     double *lower, *upper;
     double *diagonal; /* of A'A + damping^2 I; the largest where it is 0 */
+    double *unit;     /* 1 / sqrt(diagonal): gradients times it are of columns of length 1 */
     double *barrier;  /* what the method adds to the diagonal */
     double *gradient; /* at the last point of gproji_squares_gradient */
     double *x;        /* the interior point */
@@ -7052,7 +7056,7 @@ typedef struct gproji_squares {
     double *misfit;    /* A x - b */
     double *magnitude; /* |A||x| + |b| */
 
-    double noise; /* rounding errors of the last gradient */
+    double noise; /* rounding errors of the last gradient, in these units */
     double scale; /* of kkt */
     double best_kkt;
 
@@ -7112,7 +7116,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return p->columns > 0 ? gproji_squares_check_entries(p, error) : GPROJ_OK;
 }
 
-/* A bound as a number that is never infinite: `none`, -HUGE or HUGE, where there is no bound. False for NaN and for a
+/* A bound as a number that is never infinite: `none`, -NONE or NONE, where there is no bound. False for NaN and for a
    bound on the wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
 GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
     uint64_t bits;
@@ -7129,15 +7133,15 @@ GPROJI_INTERNAL void gproji_squares_set_bounds(gproji_squares *s) {
     int32_t j;
     s->pairs = 0;
     for (j = 0; j < s->columns && s->code == GPROJ_OK; ++j) {
-        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_HUGE, &s->lower[j]);
-        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_HUGE, &s->upper[j]) && good;
+        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
+        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
         if (!good || s->lower[j] > s->upper[j])
             s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
                                   "least squares: variable %d has no number between its bounds", j);
         s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
-        if (s->lower[j] > -GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
-        if (s->upper[j] < GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
+        if (s->lower[j] > -GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
+        if (s->upper[j] < GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
     }
 }
 
@@ -7200,6 +7204,7 @@ GPROJI_INTERNAL void gproji_squares_set_diagonal(gproji_squares *s) {
     if (!(largest > DBL_MIN)) largest = 1;
     for (j = 0; j < s->columns; ++j)
         if (!(s->diagonal[j] > 1e-60 * largest)) s->diagonal[j] = largest;
+    for (j = 0; j < s->columns; ++j) s->unit[j] = 1 / sqrt(s->diagonal[j]);
 }
 
 /* A'A and the analysis of its pattern. */
@@ -7275,7 +7280,8 @@ GPROJI_INTERNAL void gproji_squares_misfit(gproji_squares *s, const double *x) {
         }
 }
 
-/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values. */
+/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values, for columns of
+   length 1: a column of small entries must not drown beside one of large ones. */
 GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *x) {
     const gproj_least_squares *p = s->problem;
     double largest = 0;
@@ -7289,18 +7295,18 @@ GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *
             size += fabs(p->value[e]) * s->magnitude[p->row[e]];
         }
         s->gradient[j] = sum;
-        largest = gproji_fmax(largest, size);
+        largest = gproji_fmax(largest, s->unit[j] * size);
     }
     s->noise = 16 * DBL_EPSILON * largest;
     return largest;
 }
 
-/* What the gradient at variable j lacks to that of a solution, x being within the bounds. */
+/* What the gradient at variable j lacks to that of a solution, x being within the bounds; for a column of length 1. */
 GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t j, double x) {
     double g = s->gradient[j];
     if (x <= s->lower[j] && g >= 0) return 0;
     if (x >= s->upper[j] && g <= 0) return 0;
-    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : fabs(g);
+    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : s->unit[j] * fabs(g);
 }
 
 /* Judges trial, which is within the bounds, and keeps it if it is the best so far. True: it is a solution. */
@@ -7319,13 +7325,13 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
 
 /* -- Newton steps and exchanges -- */
 
-/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there. */
+/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there, in units. */
 GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
     double largest = 0;
     int32_t j;
     for (j = 0; j < s->columns; ++j) {
         s->step[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
-        largest = gproji_fmax(largest, fabs(s->step[j]));
+        largest = gproji_fmax(largest, s->unit[j] * fabs(s->step[j]));
     }
     gproj_cholesky_solve(s->cholesky, 1, s->step, s->step);
     return largest;
@@ -7352,7 +7358,7 @@ GPROJI_INTERNAL int32_t gproji_squares_exchange(gproji_squares *s) {
     int32_t count = 0, j;
     for (j = 0; j < s->columns; ++j) {
         unsigned char old = s->state[j];
-        double g = s->gradient[j];
+        double g = s->unit[j] * s->gradient[j];
         if (old == GPROJI_VARIABLE_FREE && s->trial[j] < s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
         if (old == GPROJI_VARIABLE_FREE && s->trial[j] > s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
         if (old == GPROJI_VARIABLE_LOWER && g < -s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
@@ -7402,7 +7408,7 @@ GPROJI_INTERNAL double gproji_squares_slack(const gproji_squares *s, int32_t pai
 GPROJI_INTERNAL void gproji_squares_move_inside(gproji_squares *s, double shift) {
     int32_t j;
     for (j = 0; j < s->columns; ++j) {
-        bool below = s->lower[j] > -GPROJI_SQUARES_HUGE, above = s->upper[j] < GPROJI_SQUARES_HUGE;
+        bool below = s->lower[j] > -GPROJI_SQUARES_NONE, above = s->upper[j] < GPROJI_SQUARES_NONE;
         double margin = shift / sqrt(s->diagonal[j]);
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (below && above) {
@@ -7459,7 +7465,7 @@ GPROJI_INTERNAL double gproji_squares_imbalance(gproji_squares *s) {
     gproji_squares_gradient(s, s->x);
     for (c = 0; c < s->pairs; ++c) s->gradient[s->variable[c]] -= s->sign[c] * s->dual[c];
     for (j = 0; j < s->columns; ++j)
-        if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, fabs(s->gradient[j]));
+        if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, s->unit[j] * fabs(s->gradient[j]));
     return largest / s->scale;
 }
 
@@ -7594,7 +7600,7 @@ GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
 GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
     int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
-    double *space, **part[18];
+    double *space, **part[19];
     int32_t k, count = 0;
     s->row_start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
     s->row_column = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
@@ -7602,12 +7608,13 @@ GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
     s->start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
     s->variable = (int32_t *)gproji_pool_take(&s->pool, 2 * n, sizeof(int32_t));
     s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
-    space = (double *)gproji_pool_take(&s->pool, 11 * n + 14 * n + 2 * m, sizeof(double));
+    space = (double *)gproji_pool_take(&s->pool, 12 * n + 14 * n + 2 * m, sizeof(double));
     if (!s->row_start || !s->row_column || !s->row_value || !s->start || !s->variable || !s->state || !space)
         return false;
     part[count++] = &s->lower, part[count++] = &s->upper, part[count++] = &s->diagonal, part[count++] = &s->barrier;
     part[count++] = &s->gradient, part[count++] = &s->x, part[count++] = &s->trial, part[count++] = &s->step;
     part[count++] = &s->best, part[count++] = &s->direction.x, part[count++] = &s->other.x;
+    part[count++] = &s->unit;
     for (k = 0; k < count; ++k, at += n) *part[k] = space + at;
     part[0] = &s->sign, part[1] = &s->slack, part[2] = &s->dual, part[3] = &s->direction.target;
     part[4] = &s->direction.dual, part[5] = &s->other.target, part[6] = &s->other.dual;
@@ -7657,6 +7664,60 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     gproji_squares_iterate(s);
 }
 
+/* What the gradient of each variable at `best` does not tell, in `step` and for columns of length 1: rounding of its sum, or
+   twice what it lacks to 0; -1 where the variable is fixed, or held for sure by its bound. Leaves misfit and magnitude there.
+   Returns max |x|, for such columns. */
+GPROJI_INTERNAL double gproji_squares_noise(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    double extent = 0;
+    int32_t j;
+    int64_t e;
+    gproji_squares_gradient(s, s->best);
+    for (j = 0; j < s->columns; ++j) {
+        bool held = s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
+        extent = gproji_fmax(extent, fabs(s->best[j]) / s->unit[j]);
+        s->step[j] = -1;
+        if (s->lower[j] >= s->upper[j] || (held && s->unit[j] * fabs(s->gradient[j]) > s->noise)) continue;
+        s->step[j] = 0;
+        for (e = p->start[j]; e < p->start[j + 1]; ++e)
+            s->step[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
+        s->step[j] = s->unit[j] * gproji_fmax(s->step[j], 2 * fabs(s->gradient[j]));
+    }
+    return extent;
+}
+
+/* Does row i, clearly not solved, say nothing in the gradients of the variables that it could move, because other rows round
+   by more there, or its entries of the same place cancel? Then nobody knows whether it could be solved better. Entries that
+   are rounding beside others of the row do not count, nor do variables that it would move by little of the largest. */
+GPROJI_INTERNAL bool gproji_squares_drowns(const gproji_squares *s, int32_t i, double extent) {
+    static const double clear = 1e-7; /* of the magnitude of a row's terms, and of the largest variable */
+    int64_t e = s->row_start[i], end = s->row_start[i + 1];
+    double largest = 0, part = 0, noise = 0, misfit = fabs(s->misfit[i]);
+    if (!(misfit > clear * s->magnitude[i])) return false;
+    for (; e < end; ++e) largest = gproji_fmax(largest, fabs(s->row_value[e]));
+    for (e = s->row_start[i]; e < end;) {
+        int32_t j = s->row_column[e];
+        double sum = 0, size = 0;
+        for (; e < end && s->row_column[e] == j; ++e) sum += s->row_value[e], size += fabs(s->row_value[e]);
+        if (s->step[j] < 0 || !(size > 1e-12 * largest) || !(misfit > clear * extent * s->unit[j] * fabs(sum)))
+            continue;
+        part = gproji_fmax(part, s->unit[j] * fabs(sum) * misfit);
+        noise = gproji_fmax(noise, s->step[j]);
+    }
+    return part < noise;
+}
+
+/* Is best a solution, as far as rounding can tell? */
+GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
+    double extent;
+    int32_t i;
+    if (!(s->best_kkt <= 1e-9)) return false;
+    extent = gproji_squares_noise(s);
+    for (i = 0; s->columns > 0 && i < s->problem->rows; ++i)
+        if (gproji_squares_drowns(s, i, extent)) return false;
+    return true;
+}
+
 GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_squares_result *result) {
     double sum = 0;
     int32_t i, j;
@@ -7664,7 +7725,7 @@ GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_square
     gproji_squares_misfit(s, s->best);
     for (i = 0; i < s->problem->rows; ++i) sum += s->misfit[i] * s->misfit[i];
     for (j = 0; j < s->columns; ++j) result->at_bounds += s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
-    result->outcome = s->best_kkt <= 1e-9 ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
+    result->outcome = gproji_squares_is_certain(s) ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
     result->factorisations = s->factorisations;
     result->residual = sqrt(sum);
     result->kkt = s->best_kkt;
