@@ -1669,6 +1669,21 @@ GPROJT_TEST(a_stray_vertex) {
     gproj_mesh_destroy(mesh[1]);
 }
 
+/* One such edge among others. */
+GPROJT_TEST(an_edge_below_all_squares) {
+    static const double lengths[3] = {1e-100, 1e-170, 1e-310};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6);
+        const int32_t *end = mesh->origin + 10;
+        memset(mesh->position + 3 * end[0], 0, 3 * sizeof(double));
+        memset(mesh->position + 3 * end[1], 0, 3 * sizeof(double));
+        mesh->position[3 * end[1] + 1] = lengths[i];
+        gprojt_try_everything(mesh);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Edges whose squares underflow: the same shape as in other units. */
 GPROJT_TEST(edges_below_all_squares) {
     static const double scales[3] = {1, 1e-200, 1e-290};
@@ -2078,6 +2093,7 @@ int main(void) {
     GPROJT_RUN(a_stray_vertex);
     GPROJT_RUN(spheres_are_no_circles);
     GPROJT_RUN(edges_below_all_squares);
+    GPROJT_RUN(an_edge_below_all_squares);
     GPROJT_RUN(no_form_and_no_mesh);
     GPROJT_RUN(own_rows_units_and_cancelling);
     GPROJT_RUN(verdict_names_what_fights);
