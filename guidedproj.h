@@ -1075,7 +1075,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so. */
+/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do positions
+   that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -22431,7 +22432,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 
 /* ============================================================================================================
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
-   memory, error, vector, system, loop, measure, form, catalogue, statics, guard. */
+   memory, error, vector, system, loop, mesh, measure, form, catalogue, statics, guard. */
 
 /* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
