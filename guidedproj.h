@@ -13112,7 +13112,7 @@ GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double 
 }
 
 /* The mean edge length with other positions; 0 without edges. Edges whose squares would underflow are measured in a smaller
-   unit, a power of 2. */
+   unit. */
 GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
     double sum = 0;
     int32_t h;
@@ -13120,7 +13120,7 @@ GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *po
         sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
     if (mesh->edge_count == 0) return 0;
     sum /= mesh->edge_count;
-    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, ldexp(1, -700)) : sum;
+    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, 1e-210) : sum;
 }
 
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
