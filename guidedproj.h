@@ -375,14 +375,15 @@ typedef struct gproj_least_squares {
     const int32_t *row;   /* of each entry, in any order; entries of the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
-    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: no bound for this variable */
+    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
     const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
     double damping;       /* >= 0, in the units of the entries of A; makes the solution unique */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
     GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
-    GPROJ_LEAST_SQUARES_LIMIT,  /* factorisations or digits ran out; x is the best point met, see kkt */
+    GPROJ_LEAST_SQUARES_LIMIT, /* factorisations or digits ran out: x is the best point met, see kkt, which may be small
+                                   where large entries cancel and what is left is less than their rounding */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
     GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_least_squares_outcome;
@@ -395,7 +396,7 @@ typedef struct gproj_least_squares_result {
     /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2 x
        is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
        divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
-       is nearest to 0. */
+       is nearest to 0; both in units of the variables in which the columns of A have length 1. */
     double kkt;
     gproj_memory memory; /* without that of the factorisation: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
@@ -498,12 +499,12 @@ typedef enum gproj_phase {
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
 } gproj_phase;
 
-#define GPROJ_OUTCOMES(X)                                                                        \
-    X(CONVERGED, "all constraints hold to the tolerance")                                        \
-    X(ITERATION_LIMIT, "the iterations ran out before all constraints held")                     \
-    X(STALLED, "no step makes the constraints hold better: they conflict, or this is a minimum") \
-    X(CANCELLED, "cancelled by the caller")                                                      \
-    X(TIME_OUT, "the time budget ran out")                                                       \
+#define GPROJ_OUTCOMES(X)                                                    \
+    X(CONVERGED, "all constraints hold to the tolerance")                    \
+    X(ITERATION_LIMIT, "the iterations ran out before all constraints held") \
+    X(STALLED, "no step makes the constraints hold better")                  \
+    X(CANCELLED, "cancelled by the caller")                                  \
+    X(TIME_OUT, "the time budget ran out")                                   \
     X(FAILED, "not started or broken off by an error")
 
 typedef enum gproj_outcome {
@@ -533,7 +534,9 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
-       roundings of the largest |x|, and in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|. */
+       roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
+       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most 1e-11,
+       the others 1e-8. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
                            less where steps fall short near the end) */
@@ -984,6 +987,9 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
 /* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original counts
    as scaled by the least of their factors. Takes no memory. */
 GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original);
+/* The planarity of faces alone, a part of the time of all measures: returns planarity_max. `planarity` (as above) and
+   `mean`, planarity_mean, may be NULL. */
+GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 
@@ -1088,7 +1094,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so. */
+/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do positions
+   that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -7018,6 +7025,8 @@ enum {
 
 /* Bounds and numbers beyond it are none. Its powers and products stay finite. */
 #define GPROJI_SQUARES_HUGE 1e50
+/* Stands for a bound that is none, and is beyond all values of a variable. */
+#define GPROJI_SQUARES_NONE DBL_MAX
 
 enum {
     GPROJI_VARIABLE_FREE,
@@ -7057,6 +7066,7 @@ typedef struct gproji_squares {
     /* columns: */
     double *lower, *upper;
     double *diagonal; /* of A'A + damping^2 I; the largest where it is 0 */
+    double *unit;     /* 1 / sqrt(diagonal): gradients times it are of columns of length 1 */
     double *barrier;  /* what the method adds to the diagonal */
     double *gradient; /* at the last point of gproji_squares_gradient */
     double *x;        /* the interior point */
@@ -7066,7 +7076,7 @@ typedef struct gproji_squares {
     double *misfit;    /* A x - b */
     double *magnitude; /* |A||x| + |b| */
 
-    double noise; /* rounding errors of the last gradient */
+    double noise; /* rounding errors of the last gradient, in these units */
     double scale; /* of kkt */
     double best_kkt;
 
@@ -7126,7 +7136,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return p->columns > 0 ? gproji_squares_check_entries(p, error) : GPROJ_OK;
 }
 
-/* A bound as a number that is never infinite: `none`, -HUGE or HUGE, where there is no bound. False for NaN and for a
+/* A bound as a number that is never infinite: `none`, -NONE or NONE, where there is no bound. False for NaN and for a
    bound on the wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
 GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
     uint64_t bits;
@@ -7143,15 +7153,15 @@ GPROJI_INTERNAL void gproji_squares_set_bounds(gproji_squares *s) {
     int32_t j;
     s->pairs = 0;
     for (j = 0; j < s->columns && s->code == GPROJ_OK; ++j) {
-        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_HUGE, &s->lower[j]);
-        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_HUGE, &s->upper[j]) && good;
+        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
+        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
         if (!good || s->lower[j] > s->upper[j])
             s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
                                   "least squares: variable %d has no number between its bounds", j);
         s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
-        if (s->lower[j] > -GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
-        if (s->upper[j] < GPROJI_SQUARES_HUGE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
+        if (s->lower[j] > -GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
+        if (s->upper[j] < GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
     }
 }
 
@@ -7214,6 +7224,7 @@ GPROJI_INTERNAL void gproji_squares_set_diagonal(gproji_squares *s) {
     if (!(largest > DBL_MIN)) largest = 1;
     for (j = 0; j < s->columns; ++j)
         if (!(s->diagonal[j] > 1e-60 * largest)) s->diagonal[j] = largest;
+    for (j = 0; j < s->columns; ++j) s->unit[j] = 1 / sqrt(s->diagonal[j]);
 }
 
 /* A'A and the analysis of its pattern. */
@@ -7289,7 +7300,8 @@ GPROJI_INTERNAL void gproji_squares_misfit(gproji_squares *s, const double *x) {
         }
 }
 
-/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values. */
+/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values, for columns of
+   length 1: a column of small entries must not drown beside one of large ones. */
 GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *x) {
     const gproj_least_squares *p = s->problem;
     double largest = 0;
@@ -7303,18 +7315,18 @@ GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *
             size += fabs(p->value[e]) * s->magnitude[p->row[e]];
         }
         s->gradient[j] = sum;
-        largest = gproji_fmax(largest, size);
+        largest = gproji_fmax(largest, s->unit[j] * size);
     }
     s->noise = 16 * DBL_EPSILON * largest;
     return largest;
 }
 
-/* What the gradient at variable j lacks to that of a solution, x being within the bounds. */
+/* What the gradient at variable j lacks to that of a solution, x being within the bounds; for a column of length 1. */
 GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t j, double x) {
     double g = s->gradient[j];
     if (x <= s->lower[j] && g >= 0) return 0;
     if (x >= s->upper[j] && g <= 0) return 0;
-    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : fabs(g);
+    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : s->unit[j] * fabs(g);
 }
 
 /* Judges trial, which is within the bounds, and keeps it if it is the best so far. True: it is a solution. */
@@ -7333,13 +7345,13 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
 
 /* -- Newton steps and exchanges -- */
 
-/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there. */
+/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there, in units. */
 GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
     double largest = 0;
     int32_t j;
     for (j = 0; j < s->columns; ++j) {
         s->step[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
-        largest = gproji_fmax(largest, fabs(s->step[j]));
+        largest = gproji_fmax(largest, s->unit[j] * fabs(s->step[j]));
     }
     gproj_cholesky_solve(s->cholesky, 1, s->step, s->step);
     return largest;
@@ -7366,7 +7378,7 @@ GPROJI_INTERNAL int32_t gproji_squares_exchange(gproji_squares *s) {
     int32_t count = 0, j;
     for (j = 0; j < s->columns; ++j) {
         unsigned char old = s->state[j];
-        double g = s->gradient[j];
+        double g = s->unit[j] * s->gradient[j];
         if (old == GPROJI_VARIABLE_FREE && s->trial[j] < s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
         if (old == GPROJI_VARIABLE_FREE && s->trial[j] > s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
         if (old == GPROJI_VARIABLE_LOWER && g < -s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
@@ -7416,7 +7428,7 @@ GPROJI_INTERNAL double gproji_squares_slack(const gproji_squares *s, int32_t pai
 GPROJI_INTERNAL void gproji_squares_move_inside(gproji_squares *s, double shift) {
     int32_t j;
     for (j = 0; j < s->columns; ++j) {
-        bool below = s->lower[j] > -GPROJI_SQUARES_HUGE, above = s->upper[j] < GPROJI_SQUARES_HUGE;
+        bool below = s->lower[j] > -GPROJI_SQUARES_NONE, above = s->upper[j] < GPROJI_SQUARES_NONE;
         double margin = shift / sqrt(s->diagonal[j]);
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (below && above) {
@@ -7473,7 +7485,7 @@ GPROJI_INTERNAL double gproji_squares_imbalance(gproji_squares *s) {
     gproji_squares_gradient(s, s->x);
     for (c = 0; c < s->pairs; ++c) s->gradient[s->variable[c]] -= s->sign[c] * s->dual[c];
     for (j = 0; j < s->columns; ++j)
-        if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, fabs(s->gradient[j]));
+        if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, s->unit[j] * fabs(s->gradient[j]));
     return largest / s->scale;
 }
 
@@ -7608,7 +7620,7 @@ GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
 GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
     int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
-    double *space, **part[18];
+    double *space, **part[19];
     int32_t k, count = 0;
     s->row_start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
     s->row_column = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
@@ -7616,12 +7628,13 @@ GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
     s->start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
     s->variable = (int32_t *)gproji_pool_take(&s->pool, 2 * n, sizeof(int32_t));
     s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
-    space = (double *)gproji_pool_take(&s->pool, 11 * n + 14 * n + 2 * m, sizeof(double));
+    space = (double *)gproji_pool_take(&s->pool, 12 * n + 14 * n + 2 * m, sizeof(double));
     if (!s->row_start || !s->row_column || !s->row_value || !s->start || !s->variable || !s->state || !space)
         return false;
     part[count++] = &s->lower, part[count++] = &s->upper, part[count++] = &s->diagonal, part[count++] = &s->barrier;
     part[count++] = &s->gradient, part[count++] = &s->x, part[count++] = &s->trial, part[count++] = &s->step;
     part[count++] = &s->best, part[count++] = &s->direction.x, part[count++] = &s->other.x;
+    part[count++] = &s->unit;
     for (k = 0; k < count; ++k, at += n) *part[k] = space + at;
     part[0] = &s->sign, part[1] = &s->slack, part[2] = &s->dual, part[3] = &s->direction.target;
     part[4] = &s->direction.dual, part[5] = &s->other.target, part[6] = &s->other.dual;
@@ -7671,6 +7684,60 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     gproji_squares_iterate(s);
 }
 
+/* What the gradient of each variable at `best` does not tell, in `step` and for columns of length 1: rounding of its sum, or
+   twice what it lacks to 0; -1 where the variable is fixed, or held for sure by its bound. Leaves misfit and magnitude there.
+   Returns max |x|, for such columns. */
+GPROJI_INTERNAL double gproji_squares_noise(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    double extent = 0;
+    int32_t j;
+    int64_t e;
+    gproji_squares_gradient(s, s->best);
+    for (j = 0; j < s->columns; ++j) {
+        bool held = s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
+        extent = gproji_fmax(extent, fabs(s->best[j]) / s->unit[j]);
+        s->step[j] = -1;
+        if (s->lower[j] >= s->upper[j] || (held && s->unit[j] * fabs(s->gradient[j]) > s->noise)) continue;
+        s->step[j] = 0;
+        for (e = p->start[j]; e < p->start[j + 1]; ++e)
+            s->step[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
+        s->step[j] = s->unit[j] * gproji_fmax(s->step[j], 2 * fabs(s->gradient[j]));
+    }
+    return extent;
+}
+
+/* Does row i, clearly not solved, say nothing in the gradients of the variables that it could move, because other rows round
+   by more there, or its entries of the same place cancel? Then nobody knows whether it could be solved better. Entries that
+   are rounding beside others of the row do not count, nor do variables that it would move by little of the largest. */
+GPROJI_INTERNAL bool gproji_squares_drowns(const gproji_squares *s, int32_t i, double extent) {
+    static const double clear = 1e-7; /* of the magnitude of a row's terms, and of the largest variable */
+    int64_t e = s->row_start[i], end = s->row_start[i + 1];
+    double largest = 0, part = 0, noise = 0, misfit = fabs(s->misfit[i]);
+    if (!(misfit > clear * s->magnitude[i])) return false;
+    for (; e < end; ++e) largest = gproji_fmax(largest, fabs(s->row_value[e]));
+    for (e = s->row_start[i]; e < end;) {
+        int32_t j = s->row_column[e];
+        double sum = 0, size = 0;
+        for (; e < end && s->row_column[e] == j; ++e) sum += s->row_value[e], size += fabs(s->row_value[e]);
+        if (s->step[j] < 0 || !(size > 1e-12 * largest) || !(misfit > clear * extent * s->unit[j] * fabs(sum)))
+            continue;
+        part = gproji_fmax(part, s->unit[j] * fabs(sum) * misfit);
+        noise = gproji_fmax(noise, s->step[j]);
+    }
+    return part < noise;
+}
+
+/* Is best a solution, as far as rounding can tell? */
+GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
+    double extent;
+    int32_t i;
+    if (!(s->best_kkt <= 1e-9)) return false;
+    extent = gproji_squares_noise(s);
+    for (i = 0; s->columns > 0 && i < s->problem->rows; ++i)
+        if (gproji_squares_drowns(s, i, extent)) return false;
+    return true;
+}
+
 GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_squares_result *result) {
     double sum = 0;
     int32_t i, j;
@@ -7678,7 +7745,7 @@ GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_square
     gproji_squares_misfit(s, s->best);
     for (i = 0; i < s->problem->rows; ++i) sum += s->misfit[i] * s->misfit[i];
     for (j = 0; j < s->columns; ++j) result->at_bounds += s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
-    result->outcome = s->best_kkt <= 1e-9 ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
+    result->outcome = gproji_squares_is_certain(s) ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
     result->factorisations = s->factorisations;
     result->residual = sqrt(sum);
     result->kkt = s->best_kkt;
@@ -10853,6 +10920,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    piecewise of degree 4 with a continuous slope. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
+static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by max |x| */
+static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.01;
 enum {
@@ -11101,17 +11170,81 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* The caller's tolerance, or what rounding allows at this x. */
+/* Is the row x_i + c, which holds exactly at a number, however large? */
+GPROJI_INTERNAL bool gproji_is_place(const gproji_group *g, const gproji_row *row) {
+    const gproj_term *term = g->term + row->term;
+    return row->terms == 1 && term->j < 0 && fabs(term->a) == 1;
+}
+
+/* max |x| of the variables of rows that must hold; `all` where none must. */
+GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
+    double largest = 0;
+    int64_t l;
+    int32_t i, r;
+    bool none = true;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            none = false;
+            for (l = row->local; !gproji_is_place(g, row) && l < row[1].local; ++l)
+                largest = gproji_fmax(largest, fabs(s->x[g->local_variable[l]]));
+        }
+    }
+    return none ? all : largest;
+}
+
+/* The caller's tolerance, or what rounding allows at this x. A variable far away that no row has raises nothing; it is
+   looked for only where it would. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     gproj_system *s = loop->system;
-    double tolerance;
+    double tolerance, extent;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * gproji_pass_over(s, 0, gproji_extent_task));
+    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
             tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], &s->group[i].row[r], s->x));
-    return tolerance;
+    return gproji_fmin(tolerance, gproji_tolerance_most);
+}
+
+/* What rounding of the variables may change in an evaluated row: 4 roundings of sum_k |dphi/dx_k x_k|. */
+GPROJI_INTERNAL double gproji_row_noise(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
+    double sum = 0;
+    int64_t l;
+    for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local_gradient[l] * s->x[g->local_variable[l]]);
+    return 4 * DBL_EPSILON * sum;
+}
+
+/* The largest noise of the evaluated rows that are above the tolerance. Infinite where one of them is above its own noise,
+   too: that is no matter of rounding. */
+GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
+    const gproj_system *s = loop->system;
+    double largest = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            double phi = fabs(gproji_counted(g, g->row[r].phi)), noise;
+            if (phi <= loop->tolerance) continue;
+            noise = gproji_row_noise(s, g, &g->row[r]);
+            if (!(phi <= noise)) return HUGE_VAL;
+            largest = gproji_fmax(largest, noise);
+        }
+    }
+    return largest;
+}
+
+/* Large forces have large roundings, which max |x| does not tell: raises an automatic tolerance where it is these that keep
+   rows from holding. Only a residual between the tolerance and its upper limit costs a look at the rows. */
+GPROJI_INTERNAL void gproji_raise_tolerance(gproji_loop *loop) {
+    double residual = loop->standing.residual, noise;
+    if (loop->options.tolerance > 0 || residual <= loop->tolerance || !(residual <= gproji_noise_most)) return;
+    noise = gproji_noise_above(loop);
+    if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
 }
 
 /* Gradients and standing at the current x, of the rows as they are. */
@@ -11120,6 +11253,7 @@ GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     loop->system->rounding = loop->tolerance;
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
+    gproji_raise_tolerance(loop);
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
@@ -11560,15 +11694,87 @@ GPROJI_INTERNAL int32_t gproji_second_group(const gproji_loop *loop) {
     return second;
 }
 
+/* The wish with the most energy that acts to the end; -1: none, or it fades by itself. */
+GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
+    double most = 0;
+    int32_t wish = -1, g, k;
+    for (g = 0; g < s->group_count; ++g) {
+        const gproji_group *group = &s->group[g];
+        bool decays = group->schedule.decay > 0 && group->schedule.decay < 1;
+        double energy = 0;
+        if (group->kind != GPROJ_WISH || !gproji_group_counts(group) || decays) continue;
+        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally[k].sum;
+        if (!(energy > most)) continue;
+        most = energy;
+        wish = g;
+    }
+    return wish;
+}
+
+/* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad phi,
+   cancel there. */
+GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
+    double size = 0, sum = 0;
+    int64_t l;
+    int32_t i, r, v;
+    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            double pull = gproji_weight2(g, row) * gproji_counted(g, row->phi);
+            gproji_row_add(g, row, pull, s->gradient);
+            for (l = row->local; l < row[1].local; ++l) {
+                double part = pull * g->local_gradient[l];
+                size += part * part;
+            }
+        }
+    }
+    for (v = 0; v < s->variable_count; ++v) sum += s->gradient[v] * s->gradient[v];
+    return sum <= 0.01 * size;
+}
+
+/* What is in the way of constraints that do not hold, and what to do. */
+GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
+    gproj_system *s = loop->system;
+    bool stalled = loop->result.outcome == GPROJ_STALLED;
+    double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
+    double weight = g->weight * g->row[loop->standing.row].weight;
+    int32_t second = gproji_second_group(loop), wish = gproji_lasting_wish(s);
+    bool guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0, balanced;
+    more[0] = 0;
+    if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
+    balanced = guided && gproji_constraints_balance(s);
+    if (!(loop->standing.residual <= DBL_MAX))
+        gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
+    else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
+        gproji_format(more, size,
+                      "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
+    else if (weight < epsilon)
+        gproji_format(more, size,
+                      "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1", weight,
+                      g->name, epsilon);
+    else if (guided && !balanced)
+        gproji_format(more, size,
+                      "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
+                      s->group[wish].name);
+    else if (!stalled && !balanced)
+        gproji_format(more, size, "; allow more iterations, or ask for less");
+    else if (second >= 0)
+        gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+    else
+        gproji_format(more, size, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less",
+                      g->name);
+}
+
 /* The verdict in a sentence: what happened, where it is worst, what fights, what to do. */
 GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
     const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
     const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
-    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
-    int32_t second = gproji_second_group(loop);
-    char fight[3 * GPROJ_NAME_SIZE], element[GPROJ_NAME_SIZE];
+    const char *plural = r->iterations == 1 ? "" : "s";
+    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
@@ -11578,11 +11784,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
                       "there is nothing that must hold; %d iteration%s towards the wishes", r->iterations, plural);
         return;
     }
-    if (r->outcome == GPROJ_ITERATION_LIMIT) more = "; allow more iterations, or ask for less";
-    if (r->outcome == GPROJ_STALLED && second >= 0) {
-        gproji_format(fight, sizeof fight, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
-        more = fight;
-    }
+    gproji_advise(loop, g, more, sizeof more);
     element[0] = 0;
     if (g->place != GPROJ_PLACE_NONE)
         gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
@@ -12141,6 +12343,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
         s->solving = s->sliding = false;
         loop->spent += loop->lap - loop->started;
+        if (loop->result.outcome == GPROJ_CONVERGED) gproji_values_are_valid(s);
     }
     if (s->error.code != GPROJ_OK) {
         loop->result = gproji_failed_result(&s->error);
@@ -12916,13 +13119,28 @@ GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face,
     if (face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
 }
 
-/* The mean edge length with other positions; 0 without edges. */
+/* The mean edge length with other positions, measured in a unit of `unit`. */
+GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double *position, double unit) {
+    double sum = 0, d[3];
+    int32_t h, k;
+    for (h = 0; h < mesh->halfedge_count; h += 2) {
+        gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
+        for (k = 0; k < 3; ++k) d[k] /= unit;
+        sum += gproji_length3(d);
+    }
+    return sum * unit / mesh->edge_count;
+}
+
+/* The mean edge length with other positions; 0 without edges. Edges whose squares would underflow are measured in a smaller
+   unit. */
 GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
     double sum = 0;
     int32_t h;
     for (h = 0; h < mesh->halfedge_count; h += 2)
         sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
-    return mesh->edge_count ? sum / mesh->edge_count : 0;
+    if (mesh->edge_count == 0) return 0;
+    sum /= mesh->edge_count;
+    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, 1e-210) : sum;
 }
 
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
@@ -16539,11 +16757,14 @@ GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_
     }
 }
 
-/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
+/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). Sweeps square what is left beside the
+   diagonal, so 4 or 5 are usual until it is below all rounding. */
 GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
     int32_t sweep, largest = 0, k;
     for (sweep = 0; sweep < 12; ++sweep) {
+        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
+        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
         gproji_jacobi_rotate(m, v, 0, 1);
         gproji_jacobi_rotate(m, v, 0, 2);
         gproji_jacobi_rotate(m, v, 1, 2);
@@ -16740,6 +16961,24 @@ GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t 
         h = gproji_rotate(mesh, h);
     } while (h != start);
     return most - least;
+}
+
+/* |w1 - w2 + w3 - w4| for the angles of the four faces around an interior vertex: 0 where they touch a cone, but anything
+   where the vertex is flat, though its normals say nothing of it. 0 at other vertices. */
+GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
+    double a[3], b[3], cross[3], sum = 0;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
+    if (start < 0 || mesh->face[start] < 0 || gproj_mesh_valence(mesh, vertex) != 4) return 0;
+    do {
+        int32_t next = gproji_rotate(mesh, h);
+        gproji_sub3(gproji_corner_position(mesh, h ^ 1), gproji_corner_position(mesh, h), a);
+        gproji_sub3(gproji_corner_position(mesh, next ^ 1), gproji_corner_position(mesh, h), b);
+        gproji_cross3(a, b, cross);
+        sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
+        sign = -sign;
+        h = next;
+    } while (h != start);
+    return fabs(sum);
 }
 
 /* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
@@ -16988,6 +17227,24 @@ GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double 
         gproji_area_vector(mesh, mesh->position, f, now);
         m->turned_faces += gproji_dot3(before, now) < 0;
     }
+}
+
+GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean) {
+    double unit = mesh ? gproji_mean_edge(mesh, mesh->position) : 0, largest = 0, sum = 0;
+    int32_t f;
+    if (!(unit > 0)) unit = 1;
+    for (f = 0; mesh && f < mesh->face_count; ++f) {
+        double flatness = 0, middle[3], normal[3];
+        if (mesh->face_degree[f] > 3) {
+            gproji_face_plane(mesh, mesh->position, f, middle, normal);
+            flatness = gproji_face_planarity(mesh, f, middle, normal) / unit;
+        }
+        largest = gproji_fmax(largest, flatness);
+        sum += flatness / mesh->face_count;
+        if (planarity) planarity[f] = flatness;
+    }
+    if (mean) *mean = sum;
+    return largest;
 }
 
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
@@ -19307,20 +19564,22 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_destroy_object(form, sizeof *form);
 }
 
-/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. */
+/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. Vertices without edges count only where
+   there are no others: one far away would take the digits of all coordinates. */
 GPROJI_INTERNAL void gproji_form_measure_units(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     double edge = gproj_mesh_mean_edge_length(mesh), low, high;
-    int32_t v, k;
+    int32_t first = mesh->edge_count ? mesh->origin[0] : 0, v, k;
     for (k = 0; k < 3; ++k) {
-        low = high = mesh->vertex_count ? mesh->position[k] : 0;
-        for (v = 1; v < mesh->vertex_count; ++v) {
+        low = high = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            if (mesh->edge_count && mesh->vertex_halfedge[v] < 0) continue;
             low = gproji_fmin(low, mesh->position[3 * (size_t)v + (size_t)k]);
             high = gproji_fmax(high, mesh->position[3 * (size_t)v + (size_t)k]);
         }
         form->centre[k] = low + (high - low) / 2;
     }
-    form->scale = edge > 0 ? 1 / edge : 1;
+    form->scale = edge > 1e-305 ? 1 / edge : 1;
 }
 
 GPROJI_INTERNAL void gproji_to_internal(const gproj_form *form, const double position[3], double out[3]) {
@@ -19340,14 +19599,18 @@ GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
     return largest;
 }
 
-/* Refuses coordinates that are not finite: the caller may have written them. */
+/* Refuses coordinates that are not finite, or so large that their products would not be, in the mesh's units or in the
+   form's: the caller may have written them. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
-    int32_t i;
+    int32_t i, k;
+    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
-        const double *p = form->mesh->position + 3 * (size_t)i;
-        if (gproji_is_finite(p[0]) && gproji_is_finite(p[1]) && gproji_is_finite(p[2])) continue;
+        double p[3];
+        gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
+        for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
+        if (k == 3) continue;
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                    "a coordinate of vertex %d is not a finite number", i);
+                    "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
         return false;
     }
     return true;
@@ -19371,6 +19634,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
         return gproji_fail_memory(&form->error);
     if (!gproji_positions_are_finite(form)) return form->error.code;
     gproji_form_measure_units(form);
+    if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
@@ -19598,6 +19862,7 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
         return -1;
     }
+    if (part && gproji_check_positions(count, positions, "target", &form->error)) return -1;
     return gproji_add_points(form, part, "targets", GPROJ_CONSTRAINT, positions, weight);
 }
 
@@ -19610,6 +19875,7 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
     if (!part || !positions)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "group %d has no targets, or there are no positions", group);
+    if (gproji_check_positions(part->count, positions, "target", &form->error)) return form->error.code;
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_to_internal(form, positions + 3 * (size_t)i, p);
@@ -22653,6 +22919,44 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     }
 }
 
+/* Circularity alone puts the corners of each face on a sphere: says so where faces are not planar. */
+GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
+    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
+    size_t length = strlen(result->message);
+    int32_t f, face = -1, count = 0;
+    for (f = 0; form->axis && unit > 0 && f < mesh->face_count; ++f) {
+        double off;
+        if (form->axis[f] < 0) continue;
+        gproji_face_plane(mesh, mesh->position, f, mean, normal);
+        off = gproji_face_planarity(mesh, f, mean, normal) / unit;
+        count += off > 1e-6;
+        if (off > worst) worst = off, face = f;
+    }
+    if (face >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
+                      "lengths): add planarity for circles",
+                      count, count == 1 ? " is" : "s are", face, worst);
+}
+
+/* The rows of a cone hold with any angles where the normals around a vertex are coplanar: says so where the angles do not
+   add up. */
+GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
+    double worst = 1e-6;
+    size_t length = strlen(result->message);
+    int32_t v, vertex = -1, count = 0;
+    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v) {
+        double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
+        count += off > 1e-6;
+        if (off > worst) worst = off, vertex = v;
+    }
+    if (vertex >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
+                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
+}
+
 /* -- a solve, at once or in frames -- */
 
 /* A result that says what is wrong with a call and leaves the form as it is. */
@@ -22703,6 +23007,9 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (gproji_is_unbalanced(form, result)) gproji_tell_unbalanced(form, result);
     gproji_tell_spoiled(form, result);
+    if (result->outcome != GPROJ_CONVERGED) return;
+    if (gproji_has_group_on(form, "circularity")) gproji_tell_spheres(form, result);
+    if (gproji_has_group_on(form, "conicality")) gproji_tell_flat_cones(form, result);
 }
 
 /* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */

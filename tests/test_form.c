@@ -1600,6 +1600,131 @@ GPROJT_TEST(positions_that_are_no_numbers) {
     }
 }
 
+/* One coordinate of 1e155, whose square is infinite, never ends as a success: before the form is made, between two solves,
+   as a target, at a drag. */
+GPROJT_TEST(positions_beyond_all_measures) {
+    static const int32_t vertex = 7;
+    static const double far[3] = {1e155, 0, 0};
+    int i;
+    for (i = 0; i < 5; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6);
+        gproj_form *form;
+        gproj_error error;
+        gproj_handles handles;
+        if (i == 0) mesh->position[3 * 7 + 1] = -1e155;
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        memset(&handles, 0, sizeof handles);
+        handles.count = 1, handles.vertex = &vertex;
+        if (i == 1) mesh->position[3 * 7 + 1] = 1e155;
+        if (i == 2) gproj_add_targets(form, 1, &vertex, far, 1);
+        if (i == 3) gproj_set_targets(form, gproj_add_targets(form, 1, &vertex, mesh->position, 1), far);
+        if (i == 4) mesh->position[3 * 7 + 2] = 1e155;
+        if (i == 4)
+            GPROJT_CHECK(!gproj_drag_begin(form, &handles, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+        else
+            GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_FAILED);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(strstr(gproj_form_error(form)->message, "beyond 1e70; use a larger unit of length") != NULL);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* The units are those of the mesh that a form begins with: what is far beyond them afterwards is refused, too. */
+GPROJT_TEST(positions_beyond_the_units) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6);
+    gproj_form *form;
+    int32_t i;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] *= 1e-40;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    mesh->position[12] = 1e40;
+    GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(gproj_form_error(form)->place == GPROJ_PLACE_VERTEX && gproj_form_error(form)->index == 4);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A vertex without faces, far away, changes neither the tolerance nor the result. */
+GPROJT_TEST(a_stray_vertex) {
+    gprojt_soup soup = gprojt_quad_grid(4, 4);
+    gproj_mesh *mesh[2];
+    int i;
+    mesh[0] = gprojt_mesh_of(gprojt_soup_copy(&soup));
+    gprojt_add_vertex(&soup, 1e14, 0, -1e14);
+    mesh[1] = gprojt_mesh_of(soup);
+    for (i = 0; i < 2; ++i) {
+        gproj_form *form = gproj_form_create(mesh[i], NULL);
+        gproj_result result;
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed_boundary(form, 1);
+        result = gproj_solve(form, 30, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.tolerance == 1e-13 && result.residual <= 1e-13);
+        gproj_form_destroy(form);
+    }
+    GPROJT_CHECK(mesh[1]->position[75] == 1e14 && mesh[1]->position[77] == -1e14);
+    GPROJT_CHECK(gprojt_largest_move(mesh[0]->position, mesh[1]->position, 25) < 1e-11);
+    gproj_mesh_destroy(mesh[0]);
+    gproj_mesh_destroy(mesh[1]);
+}
+
+/* One such edge among others. */
+GPROJT_TEST(an_edge_below_all_squares) {
+    static const double lengths[3] = {1e-100, 1e-170, 1e-310};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6);
+        const int32_t *end = mesh->origin + 10;
+        memset(mesh->position + 3 * end[0], 0, 3 * sizeof(double));
+        memset(mesh->position + 3 * end[1], 0, 3 * sizeof(double));
+        mesh->position[3 * end[1] + 1] = lengths[i];
+        gprojt_try_everything(mesh);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Edges whose squares underflow: the same shape as in other units. */
+GPROJT_TEST(edges_below_all_squares) {
+    static const double scales[3] = {1, 1e-200, 1e-290};
+    static const int32_t edge = 3;
+    gproj_mesh *mesh[3];
+    int i;
+    int32_t k;
+    for (i = 0; i < 3; ++i) {
+        gproj_form *form;
+        mesh[i] = gprojt_noisy(0, 4, 0.1, 6);
+        for (k = 0; k < 3 * mesh[i]->vertex_count; ++k) mesh[i]->position[k] *= scales[i];
+        form = gproj_form_create(mesh[i], NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_lengths(form, 1, &edge, NULL, 1);
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+        for (k = 0; k < 3 * mesh[i]->vertex_count; ++k) mesh[i]->position[k] /= scales[i];
+        if (i > 0)
+            GPROJT_CHECK(gprojt_largest_move(mesh[0]->position, mesh[i]->position, mesh[i]->vertex_count) < 1e-9);
+        gproj_form_destroy(form);
+    }
+    for (i = 0; i < 3; ++i) gproj_mesh_destroy(mesh[i]);
+}
+
+/* Circularity without planarity gives spheres, and the verdict says it; with planarity, or on triangles, there is nothing to
+   say. */
+GPROJT_TEST(spheres_are_no_circles) {
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(i == 2 ? 1 : 0, 5, 0.1, 6);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        if (i == 1) gproj_add_planarity(form, 1);
+        gproj_add_circularity(form, 1);
+        result = gproj_solve(form, 40, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK((strstr(result.message, " so the corners are on spheres only") != NULL) == (i == 0));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- refusals -- */
 
 enum {
@@ -1657,8 +1782,8 @@ GPROJT_TEST(form_refusals) {
                                                         "'planarity' (weight -1",
                                                         "'fairness' (weight nan",
                                                         "decay 3",
-                                                        "not a finite number",
-                                                        "not a finite number",
+                                                        "coordinate y of target 1 is nan",
+                                                        "coordinate y of target 1 is nan",
                                                         "no group 44"};
     int call;
     for (call = 0; call < GPROJT_FORM_CALLS; ++call) {
@@ -1963,6 +2088,12 @@ int main(void) {
     GPROJT_RUN(wrong_options_are_of_the_call);
     GPROJT_RUN(int32_max_iterations);
     GPROJT_RUN(tolerance_is_told);
+    GPROJT_RUN(positions_beyond_all_measures);
+    GPROJT_RUN(positions_beyond_the_units);
+    GPROJT_RUN(a_stray_vertex);
+    GPROJT_RUN(spheres_are_no_circles);
+    GPROJT_RUN(edges_below_all_squares);
+    GPROJT_RUN(an_edge_below_all_squares);
     GPROJT_RUN(no_form_and_no_mesh);
     GPROJT_RUN(own_rows_units_and_cancelling);
     GPROJT_RUN(verdict_names_what_fights);

@@ -453,6 +453,80 @@ GPROJT_TEST(without_bounds) {
     squares_free(&s);
 }
 
+/* Columns of very different sizes, as x in other units: x = S y, for which all entries and bounds are known. A small column
+   must not drown beside a large one. */
+GPROJT_TEST(columns_of_all_sizes) {
+    uint64_t seed = 23;
+    int round;
+    for (round = 0; round < 40; ++round) {
+        squares s = random_squares(20, 12, 0.5, &seed), t;
+        gproj_least_squares_result r, q;
+        int32_t j;
+        int64_t e;
+        random_bounds(&s, &seed);
+        t = squares_of(20, 12, s.room);
+        memcpy(t.row, s.row, (size_t)s.room * sizeof *s.row);
+        memcpy(t.start, s.start, 13 * sizeof *s.start);
+        memcpy(t.b, s.b, 20 * sizeof *s.b);
+        t.p.upper = t.upper;
+        for (j = 0; j < 12; ++j) {
+            double scale = ldexp(1, 20 * (gprojt_below(&seed, 5) - 2));
+            for (e = s.start[j]; e < s.start[j + 1]; ++e) t.value[e] = s.value[e] * scale;
+            t.lower[j] = s.lower[j] / scale, t.upper[j] = s.upper[j] / scale;
+        }
+        r = check_solved(&s, 8);
+        q = solve(&t);
+        GPROJT_CHECK(q.outcome == GPROJ_LEAST_SQUARES_SOLVED && q.at_bounds == r.at_bounds);
+        GPROJT_NEAR(q.residual, r.residual, 1e-9);
+        squares_free(&s), squares_free(&t);
+    }
+}
+
+/* Rows that round by more than another row has in all: SOLVED is not said where that other row is not solved. Cases: large
+   rows beside small ones, and entries of the same place whose sum is less than their rounding. */
+GPROJT_TEST(cancellation_is_noise) {
+    static const double large[5] = {1, 1e4, 1e10, 1e15, 1e20};
+    int i, how;
+    for (i = 0; i < 5; ++i)
+        for (how = 0; how < 3; ++how) {
+            squares s = squares_of(2, 2, 6);
+            gproj_least_squares_result r;
+            double a = large[i];
+            s.p.lower = NULL;
+            s.b[0] = how == 1 ? a : 1, s.b[1] = 1;
+            s.row[0] = 0, s.value[0] = a, s.row[1] = 1, s.value[1] = 1; /* a x + a y = b, x - y = 1 */
+            s.row[2] = 0, s.value[2] = a, s.row[3] = 1, s.value[3] = -1;
+            s.start[1] = 2, s.start[2] = 4;
+            if (how == 2) { /* (a - a + 1) x = 1, y = 1 */
+                s.row[1] = s.row[2] = 0, s.value[1] = -a, s.value[2] = 1;
+                s.row[3] = 1, s.value[3] = 1;
+                s.start[1] = 3;
+            }
+            r = solve(&s);
+            GPROJT_CHECK((r.outcome == GPROJ_LEAST_SQUARES_SOLVED) <= (r.residual <= 1e-6));
+            GPROJT_CHECK(i > 1 || r.outcome == GPROJ_LEAST_SQUARES_SOLVED);
+            squares_free(&s);
+        }
+}
+
+/* +-1e50 are bounds like others, and what has no bound may go beyond them. */
+GPROJT_TEST(unbounded_means_unbounded) {
+    squares s = squares_of(3, 3, 3);
+    gproj_least_squares_result r;
+    int32_t j;
+    s.p.upper = s.upper;
+    for (j = 0; j < 3; ++j) s.row[j] = j, s.value[j] = 1e-20, s.start[j + 1] = j + 1, s.b[j] = j == 1 ? -1e40 : 1e40;
+    s.lower[0] = -HUGE_VAL, s.upper[0] = HUGE_VAL; /* 1e60 */
+    s.lower[1] = -1e50, s.upper[1] = 1e50;         /* would be -1e60 */
+    s.lower[2] = -2e50, s.upper[2] = 2e50;         /* as good as none */
+    r = solve(&s);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.at_bounds == 1);
+    GPROJT_NEAR(s.x[0], 1e60, 1e48);
+    GPROJT_CHECK(s.x[1] == -1e50);
+    GPROJT_NEAR(s.x[2], 1e60, 1e48);
+    squares_free(&s);
+}
+
 GPROJT_TEST(empty) {
     squares s = squares_of(3, 0, 0), t = squares_of(0, 3, 0);
     gproj_least_squares_result r;
@@ -714,6 +788,9 @@ int main(void) {
     GPROJT_RUN(all_bounds_hold);
     GPROJT_RUN(fixed_variables);
     GPROJT_RUN(without_bounds);
+    GPROJT_RUN(columns_of_all_sizes);
+    GPROJT_RUN(cancellation_is_noise);
+    GPROJT_RUN(unbounded_means_unbounded);
     GPROJT_RUN(empty);
     GPROJT_RUN(roofs);
     GPROJT_RUN(large_roofs);

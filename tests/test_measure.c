@@ -192,6 +192,11 @@ GPROJT_TEST(planarity_of_each_face) {
     }
     GPROJT_CHECK(largest == m.planarity_max && planarity[m.planarity_face] == largest);
     GPROJT_NEAR(m.planarity_mean, sum / mesh->face_count, 1e-15);
+    sum = 0; /* the same without other measures */
+    GPROJT_CHECK(gproj_measure_planarity(mesh, NULL, &sum) == largest && sum == m.planarity_mean);
+    memset(planarity, 0, (size_t)mesh->face_count * sizeof(double));
+    GPROJT_CHECK(gproj_measure_planarity(mesh, planarity, NULL) == largest && planarity[m.planarity_face] == largest);
+    GPROJT_CHECK(gproj_measure_planarity(NULL, NULL, &sum) == 0 && sum == 0);
     GPROJT_CHECK(m.deviation_max == 0 && m.displacement_mean == 0 && m.turned_faces == 0);
     free(planarity);
     gproj_mesh_destroy(mesh);

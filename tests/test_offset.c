@@ -128,6 +128,24 @@ GPROJT_TEST(conical_where_a_direction_is_flat) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Where a vertex is flat its normals say nothing about angles: the verdict names it, and only there. */
+GPROJT_TEST(flat_vertices_are_no_cones) {
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = i == 2 ? gprojt_moulding(20, 10, 0.1, 3) : gprojt_mesh_of(gprojt_quad_grid(5, 5));
+        gproj_result result;
+        int32_t v;
+        for (v = 0; v < mesh->vertex_count && i < 2; ++v) mesh->position[3 * v + 2] = 0;
+        if (i == 0) mesh->position[3 * 14] += 0.05; /* of valence 4: no right angles any more */
+        result = gprojt_shape_it(mesh, false, true, 20);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK((strstr(result.message, " the angles do not add up as on a cone") != NULL) == (i == 0));
+        GPROJT_CHECK(i > 0 || strstr(result.message, "; but around 2 vertices, flat or folded,"));
+
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The rows against the determinant that they linearise, to second order; and their derivatives. */
 GPROJT_TEST(conicality_rows_are_tangent) {
     gproj_mesh *mesh = gprojt_moulding(4, 4, 0.1, 2);
@@ -574,6 +592,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(conical_meshes);
     GPROJT_RUN(conical_where_a_direction_is_flat);
+    GPROJT_RUN(flat_vertices_are_no_cones);
     GPROJT_RUN(conicality_rows_are_tangent);
     GPROJT_RUN(conicality_is_measured);
     GPROJT_RUN(conicality_begins_anew);

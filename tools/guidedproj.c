@@ -1857,17 +1857,14 @@ static bool record_groups(tool *t, gproj_system *system, tool_record *record) {
     return true;
 }
 
-/* The shape as it is now: vertex i is variables 3i .. 3i + 2 in the form's units. */
+/* The shape as it is now: vertex i is variables 3i .. 3i + 2 in the form's units. Other measures wait for the end. */
 static void measure_now(tool *t, gproj_system *system, tool_record *record) {
     const double *values = gproj_system_values(system);
-    gproj_measures measures;
     double centre[3], scale = 1;
     int32_t i;
     gproj_form_units(t->form, centre, &scale);
     for (i = 0; i < 3 * t->probe->vertex_count; ++i) t->probe->position[i] = centre[i % 3] + values[i] / scale;
-    measures = gproj_measure(t->probe, NULL, NULL);
-    record->planarity_max = measures.planarity_max;
-    record->planarity_mean = measures.planarity_mean;
+    record->planarity_max = gproj_measure_planarity(t->probe, NULL, &record->planarity_mean);
 }
 
 static bool on_iteration(void *user, gproj_system *system, const gproj_iteration *iteration) {
