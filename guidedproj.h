@@ -1286,8 +1286,9 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces; where that leaves more than three quarters of the loads, from
-   uniform forces that bend it first. Later solves go on from the forces they find. */
+   forces start from the solution of gproj_find_forces, drawn to those of a shallow dome, so that the shape has to move
+   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
+   first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -7782,6 +7783,7 @@ typedef struct gproji_group {
     bool has_wide;   /* some rows are kept out of the matrix */
     bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;    /* of the guard: a step may violate its rows by so much */
+    bool lazy;       /* a bound for whose sake a good step is not found again: how near steps lead is no matter here */
     int32_t wakings; /* of the guard: how often rows ceased to wait */
 
     int32_t row_count;
@@ -10835,7 +10837,9 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
-static const double gproji_bound_slack = 0.01;
+static const double gproji_bound_slack = 0.1;
+/* A step that lowers the merit to so much need not be found again for lazy bounds. */
+static const double gproji_bound_enough = 0.1;
 enum {
     GPROJI_ATTEMPTS = 8,     /* steps with different eps in one iteration */
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
@@ -11291,23 +11295,32 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
 }
 
+/* Does the full step lower the merit, with all violations of bounds, so far that lazy bounds may wait for the next one? */
+GPROJI_INTERNAL bool gproji_step_is_enough(const gproji_loop *loop) {
+    gproji_course merit;
+    gproji_merit_along(loop->system, &merit);
+    return gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0);
+}
+
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
    in the first round only. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
-    bool changed = false;
+    bool changed = false, lazy = false;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             bool active = gproji_should_act(s, g, r, slack);
-            changed = changed || active != g->row[r].active;
+            if (active == g->row[r].active) continue;
             g->row[r].active = active;
+            changed = changed || !g->lazy;
+            lazy = lazy || g->lazy;
         }
     }
-    return changed;
+    return changed || (lazy && !gproji_step_is_enough(loop));
 }
 
 /* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it, at x
@@ -20929,9 +20942,14 @@ enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* Initial forces are drawn a little to this one, so that among equally good ones those of a dome of half its radius are
-   found; a shape that leaves more than `lost` of its load unbalanced starts from uniform forces. */
-static const double gproji_force_damping = 0.03, gproji_force_lost = 0.75;
+/* First forces. A density of `thrust` times the mean load, for each edge from the middle to the supports, is that of a
+   shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A solve
+   for the nearest mesh finds how large they should be, and begins with 1.) Forces that balance the shape best are drawn to
+   three quarters of it, and more with signs, which keeps them off zero. A shape whose best forces, drawn by `faint`, leave
+   more than `lost` of its loads carries nothing: it starts from uniform forces, which `guidance` keeps while wishes guide. */
+static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
+                    gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9,
+                    gproji_force_guidance = 0.3;
 
 /* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
 static const double gproji_least_force = 1e-4;
@@ -21375,6 +21393,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, doub
     int32_t group, k;
     if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    if (group >= 0) form->system->group[group].lazy = true;
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
@@ -21759,14 +21778,16 @@ GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *q
     return radius;
 }
 
-/* Are most of the edges for tension only? */
-GPROJI_INTERNAL bool gproji_hangs(const gproj_form *form, const double *upper) {
-    int32_t e, hanging = 0, carrying = 0;
+/* 1: most of the edges are for compression only, -1: for tension only, 0: neither. The limits are those in p. */
+GPROJI_INTERNAL int gproji_wanted_sign(const gproj_form *form, const gproji_balance *p) {
+    int32_t e, carrying = 0, count[2] = {0, 0};
     for (e = 0; e < form->mesh->edge_count; ++e) {
-        carrying += form->statics->force[e] >= 0;
-        hanging += form->statics->force[e] >= 0 && upper[e] <= 0;
+        if (form->statics->force[e] < 0) continue;
+        ++carrying;
+        count[0] += p->lower[e] >= 0;
+        count[1] += p->upper[e] <= 0;
     }
-    return 2 * hanging > carrying;
+    return 2 * count[1] > carrying ? -1 : 2 * count[0] > carrying ? 1 : 0;
 }
 
 /* Every force becomes `force`, or the nearest one that is allowed. */
@@ -21790,13 +21811,23 @@ GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *
         if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / sum;
 }
 
-/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
-   uniform. `work`: 2 numbers a vertex. */
-GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, int32_t *work) {
+/* Finds p->force by gproji_solve_balance; returns the part of the loads that is left, a root of sums of squares, or -1
+   after an error. */
+GPROJI_INTERNAL double gproji_lost_load(gproj_form *form, double damping, double typical, gproji_balance *p) {
+    const double *x = gproj_system_values(form->system);
+    double all;
+    if (!gproji_solve_balance(form, x, damping, typical, p)) return -1;
+    gproji_unbalanced(form, x, NULL, p->load, p->b);
+    all = gproji_dot(p->b, p->b, 3 * p->vertices);
+    gproji_unbalanced(form, x, p->force, p->load, p->b);
+    return all > 0 ? sqrt(gproji_dot(p->b, p->b, 3 * p->vertices) / all) : 0;
+}
+
+/* Sets the scale of loads so that the mean load is 1, and p->load. False after an error. */
+GPROJI_INTERNAL bool gproji_start_loads(gproj_form *form, gproji_balance *p) {
     gproji_statics *s = form->statics;
     const double *x = gproj_system_values(form->system);
-    double load, all, lost, typical = 0.5 * gproji_support_radius(form, work, work + form->mesh->vertex_count);
-    size_t count = 3 * p->vertices;
+    double load;
     s->load_scale = 1;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     load = gproji_mean_load(form, p->load);
@@ -21806,16 +21837,29 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     }
     if (load > 0) s->load_scale = 1 / load;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    return true;
+}
+
+/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
+   uniform. `work`: 2 numbers a vertex. */
+GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_balance *p, int32_t *work) {
+    double lost, damping, typical = gproji_support_radius(form, work, work + form->mesh->vertex_count);
+    bool uniform = false;
+    int sign;
+    if (!gproji_start_loads(form, p)) return false;
     gproji_force_limits(form, p->lower, p->upper);
-    if (gproji_hangs(form, p->upper)) typical = -typical;
-    if (!gproji_solve_balance(form, x, gproji_force_damping, typical, p)) return false;
-    gproji_unbalanced(form, x, NULL, p->load, p->b);
-    all = gproji_dot(p->b, p->b, count);
-    gproji_unbalanced(form, x, p->force, p->load, p->b);
-    lost = all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
-    if (lost > gproji_force_lost) gproji_set_uniform(form, 2 * typical, p);
-    gproji_take_forces(form, p);
-    return lost > gproji_force_lost;
+    sign = gproji_wanted_sign(form, p);
+    typical *= (sign < 0 ? -1 : 1) * (nearest ? 1 : gproji_force_thrust);
+    damping = sign && !nearest ? gproji_force_signed : gproji_force_damping;
+    lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+    if (lost > gproji_force_lost) { /* by the shape, or by the damping? */
+        lost = gproji_lost_load(form, gproji_force_faint, gproji_force_part * typical, p);
+        uniform = lost > gproji_force_lost;
+        if (uniform) gproji_set_uniform(form, typical, p);
+        if (!uniform && lost >= 0) lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+    }
+    if (lost >= 0) gproji_take_forces(form, p);
+    return uniform;
 }
 
 /* The group that draws the forces to where they are, once. */
@@ -21830,24 +21874,24 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     }
 }
 
-/* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise.
-   */
+/* Draws the forces to where they are as long as wishes guide, where they bend the shape first: a shape that carries
+   nothing is nearest to itself without forces. Weight 0 otherwise. */
 GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
     gproji_statics *s = form->statics;
-    gproj_schedule schedule = {0, 0.3, 5};
+    gproj_schedule schedule = {0, 1, 0};
     const double *x;
     int32_t e, row = 0;
     if (s->guidance < 0 && !wanted) return;
     if (s->guidance < 0) gproji_add_force_guidance(form);
-    schedule.weight = wanted ? 1 : 0;
+    schedule.weight = wanted ? gproji_force_guidance : 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
         if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
 }
 
-/* What comes before a solve: forces, if there are none yet, and their guidance. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
+/* What comes before a solve: forces, if there are none yet, and their guidance; for the nearest mesh they are free. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest) {
     gproji_statics *s = form->statics;
     size_t vertices = (size_t)form->mesh->vertex_count;
     gproji_balance p;
@@ -21861,13 +21905,13 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
             return;
         }
         if (gproji_take_balance(form, &p)) {
-            uniform = gproji_start_forces(form, &p, work);
+            uniform = gproji_start_forces(form, nearest, &p, work);
             gproji_give_balance(form, &p);
         }
         gproji_give(&form->own, work, 2 * vertices, sizeof *work);
         s->started = gproji_form_ready(form);
     }
-    gproji_set_force_guidance(form, uniform);
+    gproji_set_force_guidance(form, uniform && !nearest);
 }
 
 /* -- forces for the caller -- */
@@ -22443,8 +22487,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
-    gproji_begin_forces(form);
-    if (form->statics && nearest) gproji_set_force_guidance(form, false); /* forces are free */
+    gproji_begin_forces(form, nearest);
     if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
