@@ -20955,10 +20955,9 @@ enum {
    shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A solve
    for the nearest mesh finds how large they should be, and begins with 1.) Forces that balance the shape best are drawn to
    three quarters of it, and more with signs, which keeps them off zero. A shape whose best forces, drawn by `faint`, leave
-   more than `lost` of its loads carries nothing: it starts from uniform forces, which `guidance` keeps while wishes guide. */
+   more than `lost` of its loads carries nothing: it starts from uniform forces, which are kept at first. */
 static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
-                    gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9,
-                    gproji_force_guidance = 0.3;
+                    gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
 /* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
 static const double gproji_least_force = 1e-4;
@@ -21907,16 +21906,18 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     }
 }
 
-/* Draws the forces to where they are as long as wishes guide, where they bend the shape first: a shape that carries
-   nothing is nearest to itself without forces. Weight 0 otherwise. */
-GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
+/* Draws the forces to where they are, where they bend the shape first, with weights 0.3^n, n <= 5; and where there are
+   wishes, as long as these guide, for a shape that carries nothing is nearest to itself without forces. Weight 0
+   otherwise. */
+GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted, bool wishes) {
+    static const gproj_schedule fading = {1, 0.3, 5}, steady = {0.3, 1, 0};
     gproji_statics *s = form->statics;
-    gproj_schedule schedule = {0, 1, 0};
+    gproj_schedule schedule = wishes ? steady : fading;
     const double *x;
     int32_t e, row = 0;
     if (s->guidance < 0 && !wanted) return;
     if (s->guidance < 0) gproji_add_force_guidance(form);
-    schedule.weight = wanted ? gproji_force_guidance : 0;
+    if (!wanted) schedule.weight = 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
@@ -21924,7 +21925,7 @@ GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
 }
 
 /* What comes before a solve: forces, if there are none yet, and their guidance; for the nearest mesh they are free. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest) {
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
     gproji_statics *s = form->statics;
     gproji_balance p;
     bool uniform = false;
@@ -21935,7 +21936,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest) {
         gproji_give_balance(form, &p);
         s->started = gproji_form_ready(form);
     }
-    gproji_set_force_guidance(form, uniform && !nearest);
+    gproji_set_force_guidance(form, uniform && !nearest, wishes);
 }
 
 /* -- forces for the caller -- */
@@ -22670,7 +22671,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
-    gproji_begin_forces(form, nearest);
+    gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
