@@ -1312,8 +1312,9 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces; where that leaves more than three quarters of the loads, from
-   uniform forces that bend it first. Later solves go on from the forces they find. */
+   forces start from the solution of gproj_find_forces, drawn to those of a shallow dome, so that the shape has to move
+   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
+   first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -1344,6 +1345,12 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
    gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): what is left in each vertex, over the mean
    load. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
+/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is what those of gproj_find_forces leave in
+   each vertex, over the mean load, 0 along the axes of supports. As virtual displacements of the vertices it is a proof
+   (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces w_ij (v_i - v_j)'(d_i - d_j) >= 0, which is never
+   the opposite. It holds for these positions only; others may be balanced. d is 0, but for rounding, where forces are
+   found. */
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
 
 typedef struct gproj_forces {
     double residual; /* largest |sum_j w_ij (v_i - v_j) + f_i| over vertices without support, over the largest |f_i| */
@@ -7868,6 +7875,7 @@ typedef struct gproji_group {
     bool has_wide;   /* some rows are kept out of the matrix */
     bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
     double slack;    /* of the guard: a step may violate its rows by so much */
+    bool lazy;       /* a bound for whose sake a good step is not found again: how near steps lead is no matter here */
     int32_t wakings; /* of the guard: how often rows ceased to wait */
 
     int32_t row_count;
@@ -10923,7 +10931,9 @@ static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji
 static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by max |x| */
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
-static const double gproji_bound_slack = 0.01;
+static const double gproji_bound_slack = 0.1;
+/* A step that lowers the merit to so much need not be found again for lazy bounds. */
+static const double gproji_bound_enough = 0.1;
 enum {
     GPROJI_ATTEMPTS = 8,     /* steps with different eps in one iteration */
     GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
@@ -11444,23 +11454,32 @@ GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group
     return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
 }
 
+/* Does the full step lower the merit, with all violations of bounds, so far that lazy bounds may wait for the next one? */
+GPROJI_INTERNAL bool gproji_step_is_enough(const gproji_loop *loop) {
+    gproji_course merit;
+    gproji_merit_along(loop->system, &merit);
+    return gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0);
+}
+
 /* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
    in the first round only. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
-    bool changed = false;
+    bool changed = false, lazy = false;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             bool active = gproji_should_act(s, g, r, slack);
-            changed = changed || active != g->row[r].active;
+            if (active == g->row[r].active) continue;
             g->row[r].active = active;
+            changed = changed || !g->lazy;
+            lazy = lazy || g->lazy;
         }
     }
-    return changed;
+    return changed || (lazy && !gproji_step_is_enough(loop));
 }
 
 /* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it, at x
@@ -19467,10 +19486,12 @@ typedef struct gproji_statics {
     int32_t *load_vertex;
     double *face_load; /* work: 4 numbers a face; NULL where areas have no weight */
     double *work;      /* 3 numbers a vertex */
+    int32_t *queue;    /* work: 2 numbers a vertex */
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     int32_t group;     /* of equilibrium */
     int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
     bool started;      /* the forces have values */
+    double lost[2];    /* the part of the loads that the best first forces left, and those of the other sign */
 } gproji_statics;
 
 /* A solve of a form, from one frame to the next (gproj_step). */
@@ -19538,6 +19559,7 @@ GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
     gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
     gproji_give(&form->own, s->work, 3 * vertices, sizeof *s->work);
+    gproji_give(&form->own, s->queue, 2 * vertices, sizeof *s->queue);
     gproji_give(&form->own, s, 1, sizeof *s);
 }
 
@@ -21401,9 +21423,13 @@ enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* Initial forces are drawn a little to this one, so that among equally good ones those of a dome of half its radius are
-   found; a shape that leaves more than `lost` of its load unbalanced starts from uniform forces. */
-static const double gproji_force_damping = 0.03, gproji_force_lost = 0.75;
+/* First forces. A density of `thrust` times the mean load, for each edge from the middle to the supports, is that of a
+   shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A solve
+   for the nearest mesh finds how large they should be, and begins with 1.) Forces that balance the shape best are drawn to
+   three quarters of it, and more with signs, which keeps them off zero. A shape whose best forces, drawn by `faint`, leave
+   more than `lost` of its loads carries nothing: it starts from uniform forces, which are kept at first. */
+static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
+                    gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
 /* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
 static const double gproji_least_force = 1e-4;
@@ -21735,10 +21761,11 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
     s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
     s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
+    s->queue = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *s->queue);
     if (gproji_areas_weigh(loads))
         s->face_load = (double *)gproji_take(&form->own, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
     return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start && s->work && (s->face_load || !gproji_areas_weigh(loads));
+           s->first_row && s->load_start && s->work && s->queue && (s->face_load || !gproji_areas_weigh(loads));
 }
 
 /* Which vertices are in equilibrium along which axes, which edges have a force. */
@@ -21847,6 +21874,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, doub
     int32_t group, k;
     if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    if (group >= 0) form->system->group[group].lazy = true;
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
@@ -22037,6 +22065,7 @@ typedef struct gproji_balance {
     int32_t *row;
     double *value, *load, *b, *lower, *upper, *force;
     size_t edges, vertices;
+    bool opposite; /* of the signs that are asked for */
 } gproji_balance;
 
 GPROJI_INTERNAL void gproji_give_balance(gproj_form *form, gproji_balance *p) {
@@ -22121,6 +22150,11 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     gproji_fill_balance(form, x, p);
     gproji_fill_loads(form, p);
     gproji_force_limits(form, p->lower, p->upper);
+    for (e = 0; p->opposite && e < form->mesh->edge_count; ++e) {
+        double lower = p->lower[e];
+        p->lower[e] = -p->upper[e];
+        p->upper[e] = -lower;
+    }
     for (e = 0; e < form->mesh->edge_count; ++e) { /* y = mean + z: the same problem for z, with 0 in the middle */
         p->lower[e] -= mean;
         p->upper[e] -= mean;
@@ -22180,11 +22214,11 @@ GPROJI_INTERNAL double gproji_relative_loads(gproj_form *form, const double *x, 
     return mean;
 }
 
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
+/* The best forces for the mesh as it is, and what they leave: any of the arrays may be NULL. */
+GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left) {
     gproji_balance p;
     double *x, mean;
     int32_t v, e;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
         !gproji_take_balance(form, &p))
         return gproj_form_error(form)->code;
@@ -22197,11 +22231,20 @@ GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, doub
         gproji_unbalanced(form, x, p.force, p.load, p.load);
         for (v = 0; residuals && v < form->mesh->vertex_count; ++v)
             residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) : 0;
+        for (v = 0; left && v < 3 * form->mesh->vertex_count; ++v) left[v] = mean > 0 ? p.load[v] : 0;
         for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
     gproji_give(&form->own, x, 3 * p.vertices, sizeof *x);
     gproji_give_balance(form, &p);
     return gproj_form_error(form)->code;
+}
+
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
+    return form ? gproji_find_balance(form, densities, residuals, NULL) : GPROJ_ERROR_ARGUMENT;
+}
+
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements) {
+    return form && displacements ? gproji_find_balance(form, NULL, NULL, displacements) : GPROJ_ERROR_ARGUMENT;
 }
 
 /* -- the start of a solve -- */
@@ -22231,14 +22274,16 @@ GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *q
     return radius;
 }
 
-/* Are most of the edges for tension only? */
-GPROJI_INTERNAL bool gproji_hangs(const gproj_form *form, const double *upper) {
-    int32_t e, hanging = 0, carrying = 0;
+/* 1: most of the edges are for compression only, -1: for tension only, 0: neither. The limits are those in p. */
+GPROJI_INTERNAL int gproji_wanted_sign(const gproj_form *form, const gproji_balance *p) {
+    int32_t e, carrying = 0, count[2] = {0, 0};
     for (e = 0; e < form->mesh->edge_count; ++e) {
-        carrying += form->statics->force[e] >= 0;
-        hanging += form->statics->force[e] >= 0 && upper[e] <= 0;
+        if (form->statics->force[e] < 0) continue;
+        ++carrying;
+        count[0] += p->lower[e] >= 0;
+        count[1] += p->upper[e] <= 0;
     }
-    return 2 * hanging > carrying;
+    return 2 * count[1] > carrying ? -1 : 2 * count[0] > carrying ? 1 : 0;
 }
 
 /* Every force becomes `force`, or the nearest one that is allowed. */
@@ -22262,13 +22307,23 @@ GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *
         if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / sum;
 }
 
-/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
-   uniform. `work`: 2 numbers a vertex. */
-GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, int32_t *work) {
+/* Finds p->force by gproji_solve_balance; returns the part of the loads that is left, a root of sums of squares, or -1
+   after an error. */
+GPROJI_INTERNAL double gproji_lost_load(gproj_form *form, double damping, double typical, gproji_balance *p) {
+    const double *x = gproj_system_values(form->system);
+    double all;
+    if (!gproji_solve_balance(form, x, damping, typical, p)) return -1;
+    gproji_unbalanced(form, x, NULL, p->load, p->b);
+    all = gproji_dot(p->b, p->b, 3 * p->vertices);
+    gproji_unbalanced(form, x, p->force, p->load, p->b);
+    return all > 0 ? sqrt(gproji_dot(p->b, p->b, 3 * p->vertices) / all) : 0;
+}
+
+/* Sets the scale of loads so that the mean load is 1, and p->load. False after an error. */
+GPROJI_INTERNAL bool gproji_start_loads(gproj_form *form, gproji_balance *p) {
     gproji_statics *s = form->statics;
     const double *x = gproj_system_values(form->system);
-    double load, all, lost, typical = 0.5 * gproji_support_radius(form, work, work + form->mesh->vertex_count);
-    size_t count = 3 * p->vertices;
+    double load;
     s->load_scale = 1;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     load = gproji_mean_load(form, p->load);
@@ -22278,16 +22333,37 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, gproji_balance *p, in
     }
     if (load > 0) s->load_scale = 1 / load;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    return true;
+}
+
+/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
+   uniform. */
+GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_balance *p) {
+    int32_t *queue = form->statics->queue;
+    double lost, damping, typical = gproji_support_radius(form, queue, queue + form->mesh->vertex_count);
+    bool uniform = false;
+    int sign;
+    if (!gproji_start_loads(form, p)) return false;
     gproji_force_limits(form, p->lower, p->upper);
-    if (gproji_hangs(form, p->upper)) typical = -typical;
-    if (!gproji_solve_balance(form, x, gproji_force_damping, typical, p)) return false;
-    gproji_unbalanced(form, x, NULL, p->load, p->b);
-    all = gproji_dot(p->b, p->b, count);
-    gproji_unbalanced(form, x, p->force, p->load, p->b);
-    lost = all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
-    if (lost > gproji_force_lost) gproji_set_uniform(form, 2 * typical, p);
-    gproji_take_forces(form, p);
-    return lost > gproji_force_lost;
+    sign = gproji_wanted_sign(form, p);
+    typical *= (sign < 0 ? -1 : 1) * (nearest ? 1 : gproji_force_thrust);
+    damping = sign && !nearest ? gproji_force_signed : gproji_force_damping;
+    lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+    if (lost > gproji_force_lost) { /* by the shape, or by the damping? */
+        lost = gproji_lost_load(form, gproji_force_faint, gproji_force_part * typical, p);
+        uniform = lost > gproji_force_lost;
+        if (uniform && sign) { /* would it hang instead of standing, or the opposite? */
+            form->statics->lost[0] = lost;
+            p->opposite = true;
+            lost = gproji_lost_load(form, gproji_force_faint, -gproji_force_part * typical, p);
+            form->statics->lost[1] = lost;
+            p->opposite = false;
+        }
+        if (uniform) gproji_set_uniform(form, typical, p);
+        if (!uniform && lost >= 0) lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+    }
+    if (lost >= 0) gproji_take_forces(form, p);
+    return uniform;
 }
 
 /* The group that draws the forces to where they are, once. */
@@ -22302,44 +22378,37 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     }
 }
 
-/* Draws the forces to where they are, with weights 0.3^n, n <= 5, where they bend the shape first; weight 0 otherwise.
-   */
-GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted) {
+/* Draws the forces to where they are, where they bend the shape first, with weights 0.3^n, n <= 5; and where there are
+   wishes, as long as these guide, for a shape that carries nothing is nearest to itself without forces. Weight 0
+   otherwise. */
+GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted, bool wishes) {
+    static const gproj_schedule fading = {1, 0.3, 5}, steady = {0.3, 1, 0};
     gproji_statics *s = form->statics;
-    gproj_schedule schedule = {0, 0.3, 5};
+    gproj_schedule schedule = wishes ? steady : fading;
     const double *x;
     int32_t e, row = 0;
     if (s->guidance < 0 && !wanted) return;
     if (s->guidance < 0) gproji_add_force_guidance(form);
-    schedule.weight = wanted ? 1 : 0;
+    if (!wanted) schedule.weight = 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
         if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
 }
 
-/* What comes before a solve: forces, if there are none yet, and their guidance. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form) {
+/* What comes before a solve: forces, if there are none yet, and their guidance; for the nearest mesh they are free. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
     gproji_statics *s = form->statics;
-    size_t vertices = (size_t)form->mesh->vertex_count;
     gproji_balance p;
-    int32_t *work;
     bool uniform = false;
     if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
-    if (!s->started) {
-        work = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *work);
-        if (!work) {
-            gproji_fail_memory(&form->error);
-            return;
-        }
-        if (gproji_take_balance(form, &p)) {
-            uniform = gproji_start_forces(form, &p, work);
-            gproji_give_balance(form, &p);
-        }
-        gproji_give(&form->own, work, 2 * vertices, sizeof *work);
+    s->lost[0] = s->lost[1] = 0;
+    if (!s->started && gproji_take_balance(form, &p)) {
+        uniform = gproji_start_forces(form, nearest, &p);
+        gproji_give_balance(form, &p);
         s->started = gproji_form_ready(form);
     }
-    gproji_set_force_guidance(form, uniform);
+    gproji_set_force_guidance(form, uniform && !nearest, wishes);
 }
 
 /* -- forces for the caller -- */
@@ -22773,6 +22842,165 @@ GPROJI_INTERNAL void gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
                   kind, planar, others, vertex[0], forces.residual);
 }
 
+/* Says where a shape that hung was asked to stand, or the opposite, and has been turned over for that. */
+GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    size_t length = strlen(result->message);
+    bool stands = gproji_has_group_on(form, gproji_compression_name);
+    if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
+                  stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
+                  stands ? "compression" : "tension", s->lost[0]);
+}
+
+/* -- what cannot hold at all: told after the loop has ended, so that its step and its saved x are free for work -- */
+
+/* held[i] = 1 for coordinates that a constraint prescribes by a row with a single term, value[i]: where; else 0. Returns
+   the number of vertices that are held altogether. */
+GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
+    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
+    memset(held, 0, (size_t)coordinates * sizeof *held);
+    memset(value, 0, (size_t)coordinates * sizeof *value);
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            const gproj_term *term = g->term + row->term;
+            int32_t v;
+            if (row->terms != 1 || !(row->weight > 0) || term->j >= 0 || term->a == 0) continue;
+            v = gproji_variable_of(g, row, term->i);
+            if (v >= coordinates) continue;
+            held[v] = 1;
+            value[v] = -row->constant / term->a;
+        }
+    }
+    for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
+    return count;
+}
+
+/* Are all vertices of a face held, in places that are not in a plane? */
+GPROJI_INTERNAL bool gproji_is_held_bent(const gproj_mesh *mesh, const double *held, const double *value,
+                                         int32_t face) {
+    static const double up[3] = {0, 0, 1};
+    static const double noticeable = 1e-9; /* mean edges */
+    double normal[3], mean = 0, most = 0;
+    int32_t h = mesh->face_halfedge[face], c, k, held_count = 0;
+    if (mesh->face_degree[face] < 4) return false;
+    gproji_area_vector(mesh, value, face, normal);
+    gproji_normalise3(normal, up);
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        for (k = 0; k < 3; ++k) held_count += held[3 * (size_t)mesh->origin[h] + (size_t)k] == 1;
+        mean += gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) / mesh->face_degree[face];
+    }
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        most = gproji_fmax(most, fabs(gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) - mean));
+    return held_count == 3 * mesh->face_degree[face] && most > noticeable;
+}
+
+/* Says which faces cannot be flat because of fixed vertices, or that all are fixed. */
+GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
+    size_t length = strlen(result->message);
+    double *held = form->system->step, *value = form->system->saved;
+    int32_t f, bent = 0, first = -1, count = gproji_find_held(form, held, value);
+    for (f = form->mesh->face_count - 1; gproji_is_on(form, form->planarity) && f >= 0; --f) {
+        if (!gproji_is_held_bent(form->mesh, held, value, f)) continue;
+        first = f;
+        ++bent;
+    }
+    if (bent > 0)
+        gproji_format(
+            result->message + length, sizeof result->message - length,
+            "; face %d cannot become flat, because all of its vertices are fixed%s: let one of them go, or glide",
+            first, bent > 1 ? ", and others, too" : "");
+    else if (count == form->mesh->vertex_count)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; all vertices are fixed: let some of them go");
+}
+
+/* A vertex of a part of the mesh that has loads and no support; -1: none. */
+GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *s = form->statics;
+    int32_t *queue = s->queue, *seen = queue + mesh->vertex_count, v, k, found = -1;
+    gproj_get_loads(form, s->work);
+    for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
+    for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
+        double sum[3] = {0, 0, 0}, size = 0;
+        int32_t head, tail = 0;
+        bool supported = false;
+        if (seen[v]) continue;
+        seen[v] = 1;
+        queue[tail++] = v;
+        for (head = 0; head < tail; ++head) {
+            int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
+            const double *load = s->work + 3 * (size_t)queue[head];
+            supported = supported || s->axes[queue[head]] != GPROJI_AXES;
+            for (k = 0; k < 3; ++k) sum[k] += load[k];
+            size += gproji_length3(load);
+            do {
+                int32_t other = mesh->origin[mesh->twin[h]];
+                if (!seen[other]) queue[tail++] = other;
+                seen[other] = 1;
+                h = mesh->next[mesh->twin[h]];
+            } while (h != start);
+        }
+        if (!supported && gproji_length3(sum) > 1e-9 * size) found = v;
+    }
+    return found;
+}
+
+/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
+GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
+    double *positive = form->system->step, *negative = form->system->saved, sign;
+    const int32_t *force = form->statics->force;
+    int32_t i, r, e, found = -1;
+    memset(positive, 0, (size_t)form->system->variable_count * sizeof *positive);
+    memset(negative, 0, (size_t)form->system->variable_count * sizeof *negative);
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        const gproji_part *part = (const gproji_part *)g->refresh_user;
+        bool stress = g->refresh == gproji_refresh_stress;
+        if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            if (!(g->row[r].weight > 0)) continue;
+            e = stress ? part->vertex[r] : gproji_bounded_force(form, i, r, &sign);
+            if (e < 0) continue;
+            if (!stress && sign > 0) positive[force[e]] = 1;
+            if (!stress && sign < 0) negative[force[e]] = 1;
+            if (stress && part->factor[r] > 0 && part->bound[0] > 0) positive[force[e]] = 1;
+            if (stress && part->factor[r] < 0 && part->bound[1] < 0) negative[force[e]] = 1;
+            if (positive[force[e]] + negative[force[e]] == 2) found = e;
+        }
+    }
+    return found;
+}
+
+/* Says what stands in the way of equilibrium whatever the shape, if there is such a thing, and what holds it back most. */
+GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
+    int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
+    size_t length = strlen(result->message), size = sizeof result->message - length;
+    if (floating >= 0) {
+        gproji_format(result->message + length, size,
+                      "; the part of the mesh with vertex %d has no support that could carry its loads", floating);
+    } else if (edge >= 0) {
+        gproji_format(
+            result->message + length, size,
+            "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
+    } else {
+        for (g = 0; g < form->system->group_count; ++g) {
+            gproj_group_info info = gproj_system_group_info(form->system, g);
+            if (info.kind != GPROJ_CONSTRAINT || info.place != GPROJ_PLACE_VERTEX || g == form->statics->group)
+                continue;
+            if (!gproji_is_on(form, g) || !(info.max > 1e-6)) continue;
+            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
+                          info.worst_element, info.name);
+            return;
+        }
+    }
+}
+
 /* The largest |phi| of the rows of equilibrium that count, over the largest part of a load on a vertex; 0 without loads.
    `largest`: that part, in the form's units. -1 after an error. */
 GPROJI_INTERNAL double gproji_part_unbalanced(gproj_form *form, double *largest) {
@@ -22982,8 +23210,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
-    gproji_begin_forces(form);
-    if (form->statics && nearest) gproji_set_force_guidance(form, false); /* forces are free */
+    gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
     guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
@@ -23005,7 +23232,12 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     gproj_result *result = &form->solve.loop.result;
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
-    if (gproji_is_unbalanced(form, result)) gproji_tell_unbalanced(form, result);
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
+    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) gproji_tell_held(form, result);
+    if (gproji_is_unbalanced(form, result)) {
+        gproji_tell_unbalanced(form, result);
+        gproji_tell_obstacles(form, result);
+    }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return;
     if (gproji_has_group_on(form, "circularity")) gproji_tell_spheres(form, result);

@@ -979,6 +979,101 @@ GPROJT_TEST(forces_of_any_size_are_set) {
     }
 }
 
+/* -- what cannot be -- */
+
+/* What gproj_find_imbalance gives is a proof: loads do work along it, and no allowed force does the opposite. */
+GPROJT_TEST(imbalance_is_a_proof) {
+    int sign, shape;
+    for (sign = -1; sign <= 1; sign += 2)
+        for (shape = 0; shape < 2; ++shape) {
+            gproj_mesh *mesh = gprojt_vault(shape ? QUADS : TRIANGLES, 5, 10, shape ? 0.5 : -2 * sign);
+            gproj_loads loads = gprojt_no_loads();
+            gprojt_list pins = gprojt_boundary(mesh);
+            double *d = gprojt_numbers(3 * mesh->vertex_count), *f, work = 0, size = 0;
+            gproj_form *form;
+            int32_t e, k;
+            gprojt_shake(mesh, 0.3, 4);
+            loads.snow = 1;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            if (sign > 0) gproj_add_compression(form, mesh->edge_count, NULL, 1);
+            if (sign < 0) gproj_add_tension(form, mesh->edge_count, NULL, 1);
+            GPROJT_CHECK(gproj_find_imbalance(form, d) == GPROJ_OK);
+            f = gprojt_true_loads(mesh, &loads);
+            for (k = 0; k < 3 * mesh->vertex_count; ++k) {
+                if (gprojt_listed(pins.item, pins.count, k / 3)) GPROJT_CHECK(d[k] == 0);
+                work += f[k] * d[k];
+                size += fabs(f[k]) * fabs(d[k]);
+            }
+            GPROJT_CHECK(work > 1e-3 * size && size > 0);
+            for (e = 0; e < mesh->edge_count; ++e) {
+                int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
+                double along = 0;
+                for (k = 0; k < 3; ++k)
+                    along += (mesh->position[3 * i + k] - mesh->position[3 * j + k]) * (d[3 * i + k] - d[3 * j + k]);
+                GPROJT_CHECK(sign * along >= -1e-8);
+            }
+            GPROJT_CHECK(gproj_find_imbalance(form, NULL) == GPROJ_ERROR_ARGUMENT);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+            free(d), free(f), free(pins.item);
+        }
+    GPROJT_CHECK(gproj_find_imbalance(NULL, NULL) == GPROJ_ERROR_ARGUMENT);
+}
+
+/* The verdict of a vault under its weight: faces flat or not, some signs, everything fixed or only the boundary, pinned or
+   not. */
+static gproj_result gprojt_verdict(double rise, bool planar, int sign, bool all, bool pinned) {
+    gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, rise);
+    gproj_loads loads = gprojt_no_loads();
+    gprojt_list pins = gprojt_boundary(mesh);
+    gproj_form *form;
+    gproj_supports supports;
+    gproj_result result;
+    int32_t *list = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof *list), v;
+    if (!list) abort();
+    for (v = 0; v < mesh->vertex_count; ++v) list[v] = v;
+    loads.density = 1;
+    if (planar) gprojt_shake(mesh, 0.1, 2); /* a hill's quads are flat */
+    form = gproj_form_create(mesh, NULL);
+    supports = gprojt_pins(pins);
+    if (!pinned) supports.count = 0;
+    if (planar) gproj_add_planarity(form, 1);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    if (sign != -1) gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    if (sign != 1) gproj_add_tension(form, mesh->edge_count, NULL, 1);
+    if (all) gproj_add_fixed(form, mesh->vertex_count, list, 1);
+    if (!all) gproj_add_fixed_boundary(form, 1);
+    result = gproj_solve(form, 40, NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(list), free(pins.item);
+    return result;
+}
+
+GPROJT_TEST(obstacles_are_named) {
+    gproj_result result = gprojt_verdict(2, true, 1, true, true);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED &&
+                 strstr(result.message, "cannot become flat, because all of its "));
+    result = gprojt_verdict(2, false, 1, true, true);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED || strstr(result.message, "all vertices are fixed"));
+    result = gprojt_verdict(2, false, 0, false, true);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "is to have both signs"));
+    result = gprojt_verdict(2, false, 1, false, false);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "has no support"));
+}
+
+/* A shape that is turned over to stand, or to hang, is told. */
+GPROJT_TEST(overturned_shapes_are_told) {
+    int up, sign;
+    for (up = -1; up <= 1; up += 2)
+        for (sign = -1; sign <= 1; sign += 2) {
+            gproj_result result = gprojt_verdict(2.0 * up, false, sign, false, true);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            GPROJT_CHECK((strstr(result.message, "turned over") != NULL) == (up != sign));
+            if (up != sign) GPROJT_CHECK(strstr(result.message, up < 0 ? "the shape hung" : "the shape stood") != NULL);
+        }
+}
+
 /* -- with planar faces -- */
 
 GPROJT_TEST(planar_faces_and_compression) {
@@ -1487,6 +1582,9 @@ int main(void) {
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_are_kept_and_set);
     GPROJT_RUN(forces_of_any_size_are_set);
+    GPROJT_RUN(imbalance_is_a_proof);
+    GPROJT_RUN(obstacles_are_named);
+    GPROJT_RUN(overturned_shapes_are_told);
     GPROJT_RUN(planar_faces_and_compression);
     GPROJT_RUN(weights_switch_groups_off_and_on);
     GPROJT_RUN(equilibrium_on_the_way);
