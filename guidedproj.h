@@ -106,6 +106,7 @@
        >>catalogue      the constraints and wishes
        >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
+       >>corners        faces must keep their corners
        >>solve          solving a form
        >>state          what a form remembers, as bytes
        >>drag           the tangent space's response to handles
@@ -546,6 +547,9 @@ typedef struct gproj_solve_options {
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over */
+    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces, for as many iterations as it
+       takes: sound meshes at any resolution. Allow 100 iterations; most take about 10. See gproj_solve. */
+    bool smooth;
     /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
        must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
        last do not apply, only the weights' ratios matter, and nothing is biased. gproj_solve adds closeness to where it
@@ -2509,6 +2513,29 @@ GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
 }
 
 GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s->low; }
+
+/* a += e e', a symmetric matrix by its entries xx, xy, xz, yy, yz, zz. */
+GPROJI_INLINE void gproji_add_square3(const double e[3], double a[6]) {
+    a[0] += e[0] * e[0], a[1] += e[0] * e[1], a[2] += e[0] * e[2];
+    a[3] += e[1] * e[1], a[4] += e[1] * e[2], a[5] += e[2] * e[2];
+}
+
+/* Solves (a + shift trace(a) I) x = b by L D L'. False where a is not positive definite then. */
+GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const double b[3], double x[3]) {
+    double ridge = shift * (a[0] + a[3] + a[5]), d0 = a[0] + ridge, d1, d2, l10, l20, l21, y0, y1, y2;
+    if (!(d0 > 0)) return false;
+    l10 = a[1] / d0, l20 = a[2] / d0;
+    d1 = a[3] + ridge - l10 * a[1];
+    if (!(d1 > 0)) return false;
+    l21 = (a[4] - l20 * a[1]) / d1;
+    d2 = a[5] + ridge - l20 * a[2] - l21 * l21 * d1;
+    if (!(d2 > 0)) return false;
+    y0 = b[0], y1 = b[1] - l10 * y0, y2 = b[2] - l20 * y0 - l21 * y1;
+    x[2] = y2 / d2;
+    x[1] = y1 / d1 - l21 * x[2];
+    x[0] = y0 / d0 - l10 * x[1] - l20 * x[2];
+    return true;
+}
 
 /* ============================================================================================================
    >>kernels   Small tiles kept in registers, once for each kind of vector unit. Uses platform.
@@ -7877,6 +7904,8 @@ typedef struct gproji_group {
     double slack;    /* of the guard: a step may violate its rows by so much */
     bool lazy;       /* a bound for whose sake a good step is not found again: how near steps lead is no matter here */
     int32_t wakings; /* of the guard: how often rows ceased to wait */
+    bool safeguard;  /* a bound as the guard is, whose rows are added as they are needed, and are no structure */
+    bool metric;     /* measures steps: its rows count with their gradients only, see >>loop */
 
     int32_t row_count;
     gproji_row *row;
@@ -7900,6 +7929,15 @@ typedef struct gproji_group {
 typedef struct gproji_row_name {
     int32_t group, row;
 } gproji_row_name;
+
+/* What the owner of a system adds to its steps; any of them may be NULL. */
+typedef struct gproji_hooks {
+    void (*settle)(void *user, gproj_system *system);       /* gives local unknowns (normals) their best values at x */
+    bool (*inspect)(void *user, gproj_system *system);      /* does the step to x violate a safeguard without a row? */
+    bool (*wake)(void *user, gproj_system *system);         /* gives those rows, at the x before; are there new ones? */
+    bool (*refuse)(void *user, const gproj_system *system); /* is x no good, seen from s->saved? */
+    void *user;
+} gproji_hooks;
 
 /* Nearest: is x no good, seen from s->saved? */
 typedef bool (*gproji_refuse_step)(void *user, const gproj_system *system);
@@ -7962,6 +8000,8 @@ struct gproj_system {
     int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
     int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
     bool sliding;         /* nearest: away from the start, where faces may become small */
+    gproji_hooks hooks;
+    double stiffness;               /* of steps: the factor on the weights of metric groups; 0: they rest */
     gproji_refuse_step refuse_step; /* NULL: none is refused */
     void *refuse_user;
     double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
@@ -8326,7 +8366,8 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
-/* How much has been added to a system. Nothing is ever taken away, so the same counts are the same structure. */
+/* How much has been added to a system, but for rows of safeguards, which come as they are needed. Nothing is ever taken
+   away, so the same counts are the same structure. */
 typedef struct gproji_structure {
     int32_t variables, groups;
     int64_t rows;
@@ -8335,7 +8376,7 @@ typedef struct gproji_structure {
 GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
     gproji_structure structure = {s->variable_count, s->group_count, 0};
     int32_t i;
-    for (i = 0; i < s->group_count; ++i) structure.rows += s->group[i].row_count;
+    for (i = 0; i < s->group_count; ++i) structure.rows += s->group[i].safeguard ? 0 : s->group[i].row_count;
     return structure;
 }
 
@@ -9301,8 +9342,8 @@ GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group
     if (!(row->weight > 0)) return;
     phi = row->run ? gproji_run_value(g, row, s->x, &size) : gproji_linearise_row(g, row, s->x, gradient, &size);
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
-    row->phi = phi;
-    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard);
+    row->phi = g->metric ? 0 : phi;
+    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard && !g->safeguard);
 }
 
 /* Where some rows of a group stand, with its `tallied`. */
@@ -9347,7 +9388,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
             gproji_group *g = &s->group[i];
             if (g->global != (global == 1)) continue;
             g->first_task = INT32_MAX;
-            if (g->guard && !(g->weight > 0)) continue;
+            if ((g->guard || g->safeguard || g->metric) && !(g->weight > 0)) continue;
             g->tallied = g->weight;
             g->first_task = tasks;
             tasks += gproji_group_tasks(g);
@@ -9930,10 +9971,18 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     return true;
 }
 
+/* How many rows all groups have. */
+GPROJI_INTERNAL size_t gproji_all_rows(const gproj_system *s) {
+    size_t rows = 0;
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
+    return rows;
+}
+
 /* Step 2 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
-    size_t nodes = (size_t)s->node_count, rows = (size_t)gproji_structure_of(s).rows;
+    size_t nodes = (size_t)s->node_count, rows = gproji_all_rows(s);
     gproji_elements elements;
     int32_t *mark, *belongs;
     bool enough;
@@ -10199,6 +10248,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
+        if (s->group[i].metric && s->stiffness == 0) continue;
         s->group[i].idle = false;
         woken = true;
     }
@@ -10925,7 +10975,23 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
    with those that are violated by it (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
    Newton method, 2003). The first guess is what is violated at x and what acted on the last step. The merit is then
-   piecewise of degree 4 with a continuous slope. */
+   piecewise of degree 4 with a continuous slope.
+
+   Steps are measured by |dx|, or by what an owner finds better. The rows of metric groups (of a form: differences of the
+   displacement along edges) add
+       k^2 sum (w g'dx)^2,    k the stiffness
+   to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place, so
+   they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the agreement
+   of the model with what a step achieves, as a trust region does: by a tenth where they agree, up where a step fails or
+   falls short. When it has become small near a solution the metric rests and the last steps are Newton's.
+
+   An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these are,
+   while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The differentiation of
+   pseudo-inverses and nonlinear least squares problems whose variables separate, 1973). Full steps are good then that had
+   to be cut to a fifth without it, and their number hardly depends on how fine a mesh is.
+
+   A safeguard (gproji_group.safeguard) has rows only where a step has violated it (hooks.inspect, hooks.wake). It acts as a
+   bound, and is let go where no step is found with it: what must hold comes first, and the verdict tells what was spoiled. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by max |x| */
@@ -10934,12 +11000,20 @@ static const double gproji_noise_most = 1e-11;    /* and by large terms */
 static const double gproji_bound_slack = 0.1;
 /* A step that lowers the merit to so much need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
+/* The stiffness of steps: bounds, and the merit below which it may become 0. */
+static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
+static const double gproji_settled = 1e-3;   /* residual below which refreshes may settle */
+static const double gproji_shortest = 0.125; /* part of a step whose local unknowns are settled */
 enum {
-    GPROJI_ATTEMPTS = 8,     /* steps with different eps in one iteration */
-    GPROJI_BOUND_ROUNDS = 3, /* how often each is found again where it meets bounds */
-    GPROJI_PATIENCE = 5,     /* iterations without progress before the loop stops */
-    GPROJI_REFINEMENTS = 3,  /* rounds at most for systems with wide rows */
-    GPROJI_WAKINGS = 4,      /* from then on no row of the guard waits */
+    GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
+    GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again where it meets bounds */
+    GPROJI_PATIENCE = 5,        /* iterations without progress before the loop stops, */
+    GPROJI_PATIENCE_STIFF = 12, /* and where there is a metric */
+    GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
+    GPROJI_WAKINGS = 4,         /* from then on no row of the guard waits */
+    GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
+    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half */
+    GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
@@ -10973,6 +11047,11 @@ typedef struct gproji_loop {
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
     double epsilon_least; /* the least that follows the residual: gproji_epsilon_min, smaller where steps fall short */
+    bool stiff;           /* metric groups have a weight in this solve */
+    double agreement;     /* what the full step took off the merit, over what the linearised rows said */
+    bool factored;        /* the last attempt found a step, whether good or not */
+    bool failed;          /* an attempt of this iteration was not good */
+    int32_t wary;         /* iterations in which the stiffness does not fall fast */
     double shift;         /* nearest: of the last slide with curvature, times s^2 */
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
@@ -11025,6 +11104,7 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproj_system *s, const gproj
 /* The weight of a group in iteration n. */
 GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(s, g);
+    if (g->metric) return g->schedule.weight * s->stiffness;
     if (last > 0 && n > last) return 0;
     return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
@@ -11042,7 +11122,9 @@ GPROJI_INTERNAL bool gproji_set_weights(gproj_system *s, int32_t n) {
 }
 
 /* Does the group count in merit and residual? */
-GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && !g->guard; }
+GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) {
+    return g->weight > 0 && !g->guard && !g->safeguard && !g->metric;
+}
 
 GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
     int32_t i;
@@ -11315,6 +11397,7 @@ GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
 
 /* The merit along a step: c[0] + c[1] t + ... + c[4] t^4 + sum w^2 min(0, phi + t h + t^2 q)^2 over the hinges. */
 typedef struct gproji_course {
+    double model; /* sum w^2 (phi + h)^2, what the linearised rows make of the full step */
     double c[5];
     int64_t count;
     const gproji_hinge *hinge;
@@ -11353,10 +11436,12 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             const gproji_row *row = &g->row[r];
             gproji_hinge along;
             along.w2 = gproji_weight2(g, row);
-            if (!(along.w2 > 0) || (g->guard && !row->active)) continue;
+            if (!(along.w2 > 0) || g->metric || (g->guard && !row->active)) continue;
             along.phi = row->phi;
             along.h = gproji_row_times(g, row, s->step);
             along.q = gproji_row_products(g, row, s->step);
+            if (g->kind != GPROJ_BOUND || along.phi + along.h < 0)
+                m->model += along.w2 * (along.phi + along.h) * (along.phi + along.h);
             if (g->kind != GPROJ_BOUND) {
                 gproji_add_quartic(&along, m->c);
             } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
@@ -11416,19 +11501,70 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
     return low;
 }
 
-/* The part of the step to take, from the merit along it; 0: none, the step is no good. */
-GPROJI_INTERNAL double gproji_step_length(const gproji_loop *loop) {
-    gproji_course merit;
-    double none, full, t;
-    if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
-    gproji_merit_along(loop->system, &merit);
-    none = gproji_merit_at(&merit, 0), full = gproji_merit_at(&merit, 1);
-    if (!(full <= DBL_MAX)) return 0;
-    if (full > none) {
-        t = gproji_minimise_merit(&merit, 0.05, 1);
-        return gproji_merit_at(&merit, t) < none ? t : 0;
+/* The merit at x, by values alone. */
+GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
+    double sum = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && !g->metric && r < g->row_count; ++r) {
+            double w2 = gproji_weight2(g, &g->row[r]), phi;
+            if (!(w2 > 0)) continue;
+            phi = gproji_counted(g, gproji_row_value(g, r, s->x));
+            sum += w2 * phi * phi;
+        }
     }
-    if (gproji_wishes_are_on(loop->system) || loop->standing.residual > 1e-2) return 1;
+    return sum;
+}
+
+GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
+    if (s->hooks.settle) s->hooks.settle(s->hooks.user, s);
+}
+
+GPROJI_INTERNAL bool gproji_is_refused(gproj_system *s) { return s->hooks.refuse && s->hooks.refuse(s->hooks.user, s); }
+
+/* Goes t of the step; where an owner settles local unknowns does that, linearises rows anew and returns the true merit. */
+GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t) {
+    gproj_system *s = loop->system;
+    loop->iteration.step = gproji_take_step(s, t);
+    if (!s->hooks.settle) return 0;
+    s->hooks.settle(s->hooks.user, s);
+    gproji_refresh_groups(s);
+    return gproji_merit_here(s);
+}
+
+/* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
+   must lower it. 0: none. `none`: the merit before; `model`: what the linearised rows make of the full step. */
+GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, double model) {
+    double merit = gproji_go(loop, 1), t = 1;
+    loop->agreement = none > model ? (none - merit) / (none - model) : 1;
+    while (t > gproji_shortest && (!(merit <= none) || gproji_is_refused(loop->system)))
+        merit = gproji_go(loop, t /= 2);
+    return merit <= none ? t : 0;
+}
+
+/* The part of the step to take, from the merit along it; 0: none, the step is no good. */
+GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    gproji_course merit;
+    double none, full, t = 1;
+    loop->agreement = 1;
+    if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
+    gproji_merit_along(s, &merit);
+    none = gproji_merit_at(&merit, 0);
+    if (s->hooks.settle) {
+        t = gproji_backtrack(loop, none, merit.model);
+        if (t < 1) return t;
+    } else {
+        full = gproji_merit_at(&merit, 1);
+        if (!(full <= DBL_MAX)) return 0;
+        loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
+        if (full > none) {
+            t = gproji_minimise_merit(&merit, 0.05, 1);
+            return gproji_merit_at(&merit, t) < none ? t : 0;
+        }
+    }
+    if (gproji_wishes_are_on(s) || loop->standing.residual > 1e-2) return 1;
     t = gproji_minimise_merit(&merit, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
@@ -11505,32 +11641,53 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
-/* During a solve by multipliers a group may get its first weight, or the guard act: there is no place for them yet. x is
-   where the step begins, and s->saved then too. Returns whether rows were compiled anew; there may be an error. */
-GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool guard) {
+/* All multipliers are 0. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    int32_t i;
+    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
+    if (!s->sum) return false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier) return false;
+        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return true;
+}
+
+/* Compiles again during a solve: `anew`, or where steps are found by multipliers and a group gets its first weight. x is
+   where the step begins, and s->saved then too. Returns whether rows were compiled; there may be an error. */
+GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
-    if (!s->schur.on || !(gproji_wake_groups(s) || guard || s->schur.stale)) return false;
+    if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
     gproji_system_forget(s);
-    if (gproji_compile(s, false) != GPROJ_OK) return true;
+    if (gproji_compile(s, loop->options.nearest) != GPROJ_OK) return true;
+    if (loop->options.nearest && !gproji_start_multipliers(s)) gproji_fail_memory(&s->error);
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
     gproji_pass_over(s, 0, gproji_save_task);
     return true;
 }
 
-/* Finds the full step with this eps, again where it meets bounds, and goes there. False: there is none. */
+/* Finds the full step with this eps, again where it meets bounds and safeguards, and goes there. False: there is none. */
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    int32_t round = 0;
-    bool guard;
+    int32_t round = 0, violations = 0;
     while (s->error.code == GPROJ_OK) {
+        bool violated, again, guard;
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(s, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
-        if (round == GPROJI_BOUND_ROUNDS || !gproji_switch_bounds(loop, round++)) return true;
-        guard = gproji_wake_guard(s);
+        gproji_settle(s);
+        violated = s->hooks.inspect && violations < GPROJI_VIOLATIONS && s->hooks.inspect(s->hooks.user, s);
+        again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
+        round += round < GPROJI_BOUND_ROUNDS;
+        if (!violated && !again) return true;
+        guard = s->schur.on && gproji_wake_guard(s);
         gproji_step_back(s);
-        if (gproji_place_woken(loop, guard)) round = 0;
+        violations += violated;
+        if (gproji_place_woken(loop, guard || (violated && s->hooks.wake(s->hooks.user, s)))) round = 0;
     }
     return false;
 }
@@ -11539,14 +11696,69 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     loop->iteration.epsilon = epsilon;
-    if (!gproji_find_bounded_step(loop, epsilon)) {
+    loop->factored = gproji_find_bounded_step(loop, epsilon);
+    loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
+    if (!(loop->iteration.length > 0))
         gproji_step_back(s);
-        return false;
-    }
-    loop->iteration.length = gproji_step_length(loop);
-    if (loop->iteration.length != 1) loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+    else if (loop->iteration.length != 1)
+        gproji_go(loop, loop->iteration.length);
+    if (!(loop->iteration.length > 0) && loop->factored && s->hooks.settle)
+        gproji_linearise(loop); /* rows were linearised on the way */
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
+}
+
+/* Sets the stiffness of steps. */
+GPROJI_INTERNAL void gproji_stiffen(gproj_system *s, double stiffness) {
+    int32_t i;
+    s->stiffness = stiffness;
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].metric) s->group[i].weight = s->group[i].schedule.weight * stiffness;
+}
+
+/* After an attempt that was not good: stiffer steps, or a larger eps where that is not what was missing. */
+GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
+    gproj_system *s = loop->system;
+    if (loop->stiff && loop->factored && loop->standing.residual > 1e-7) {
+        loop->failed = true;
+        gproji_stiffen(s, gproji_fmax(5 * s->stiffness, gproji_stiffness_least));
+        gproji_place_woken(loop, false);
+    } else {
+        *epsilon *= 10;
+    }
+}
+
+/* The metric rests: steps may be found by multipliers then, where that pays. */
+GPROJI_INTERNAL void gproji_rest_metric(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    int32_t i;
+    gproji_stiffen(s, 0);
+    for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
+    if (!loop->options.nearest && !s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s)))
+        gproji_place_woken(loop, true);
+}
+
+/* After a good step: the stiffness of the next one. */
+GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double factor = loop->agreement > 0.9 ? 0.1 : loop->agreement > 0.5 ? 0.3 : 0.7, stiffness;
+    if (!loop->stiff) return;
+    if (loop->failed) {
+        loop->wary = GPROJI_WARY;
+        factor = 1;
+    } else if (loop->wary > 0) {
+        loop->wary--;
+        factor = gproji_fmax(factor, 0.5);
+    }
+    loop->failed = false;
+    if (loop->iteration.length < 1 || loop->agreement < 0.25) factor = 3;
+    stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
+    if (stiffness >= gproji_stiffness_least)
+        gproji_stiffen(s, stiffness);
+    else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest)
+        gproji_stiffen(s, gproji_stiffness_least);
+    else if (s->stiffness > 0)
+        gproji_rest_metric(loop);
 }
 
 /* The eps that belongs to how far things are from holding: three tenths of the norm of all phi, which does not depend
@@ -11564,7 +11776,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.attempts = 0;
-    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, epsilon *= 10) {
+    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, gproji_damp(loop, &epsilon)) {
         double before = loop->standing.residual;
         bool stepped = gproji_try_step(loop, epsilon);
         if (stepped) gproji_linearise(loop);
@@ -11624,7 +11836,9 @@ GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_
     gproji_place_woken(loop, gproji_wake_guard(s));
     if (s->error.code != GPROJ_OK) return;
     if (gproji_set_weights(s, n)) gproji_linearise(loop);
-    s->late = gproji_wishes_are_on(s) && n <= half ? 0 : s->late + 1;
+    s->late = n <= half && (gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled))
+                  ? 0
+                  : s->late + 1;
     loop->standing = gproji_take_standing(s);
 }
 
@@ -11657,7 +11871,7 @@ GPROJI_INTERNAL int32_t gproji_last_alike(const gproj_system *s, int32_t n) {
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         int32_t last = gproji_last_iteration(s, g);
-        if (!(g->weight > 0) || g->row_count == 0) continue;
+        if (!(g->weight > 0) || g->metric || g->row_count == 0) continue;
         if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1) return n;
         if (last > 0) end = gproji_min(end, last);
     }
@@ -11673,12 +11887,31 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     return true;
 }
 
+/* Where no step is found with a safeguard, lets it go: what must hold comes first. False: there is none. */
+GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    bool released = false;
+    int32_t i;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        if (!g->safeguard || !(g->weight > 0)) continue;
+        g->weight = g->schedule.weight = 0;
+        released = true;
+    }
+    if (!released) return false;
+    if (loop->stiff) gproji_stiffen(s, 1);
+    loop->best.residual = loop->best.merit = HUGE_VAL;
+    loop->waited = loop->wary = 0;
+    return true;
+}
+
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t half = loop->iterations / 2 + loop->iterations % 2;
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
+        if (loop->result.iterations == half && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
@@ -11686,15 +11919,19 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (!gproji_iterate(loop)) {
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             if (gproji_holds(loop)) return GPROJ_CONVERGED;
-            if (!gproji_leave_out(loop, loop->result.iterations + 1)) return GPROJ_STALLED;
+            if (!gproji_leave_out(loop, loop->result.iterations + 1) && !gproji_release_safeguards(loop))
+                return GPROJ_STALLED;
             continue;
         }
+        gproji_adapt_stiffness(loop);
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
         if (gproji_is_better(&loop->standing, &loop->best) || gproji_wishes_are_on(s)) loop->waited = -1;
         if (++loop->waited == 0) loop->best = loop->standing;
-        if (loop->waited >= GPROJI_PATIENCE && !gproji_holds(loop)) return GPROJ_STALLED;
+        if (loop->waited >= (loop->stiff ? GPROJI_PATIENCE_STIFF : GPROJI_PATIENCE) && !gproji_holds(loop) &&
+            !gproji_release_safeguards(loop))
+            return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
@@ -11895,21 +12132,6 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
         if (g->guard && !s->sliding) g->weight = 0;
         if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
     }
-}
-
-/* All multipliers are 0. */
-GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
-    int32_t i;
-    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
-    if (!s->sum) return false;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        size_t rows = (size_t)g->row_count;
-        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
-        if (!g->multiplier) return false;
-        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
-    }
-    return true;
 }
 
 /* Does the row have a multiplier now? */
@@ -12286,6 +12508,16 @@ GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
 
 /* -- runs: a solve, or a part of it -- */
 
+/* Steps are as stiff as can be where there is a metric. */
+GPROJI_INTERNAL void gproji_start_metric(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    int32_t i;
+    loop->stiff = false;
+    for (i = 0; i < s->group_count; ++i)
+        loop->stiff = loop->stiff || (s->group[i].metric && s->group[i].schedule.weight > 0);
+    s->stiffness = loop->stiff;
+}
+
 /* Makes a loop for a solve of this system. Where that is refused the result says why. */
 GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32_t iterations,
                                        const gproj_solve_options *options) {
@@ -12296,6 +12528,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->iterations = iterations;
     loop->frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
+    if (gproji_system_is_open(s)) gproji_start_metric(loop);
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->result.spoiled.element = -1;
     gproji_error_clear(&refused);
@@ -19494,6 +19727,19 @@ typedef struct gproji_statics {
     double lost[2];    /* the part of the loads that the best first forces left, and those of the other sign */
 } gproji_statics;
 
+/* What the section corners keeps for a form. Corner 2 h + k is the one behind half-edge h, seen along its face's normal (k = 0)
+   or the first one (k = 1). */
+typedef struct gproji_corners {
+    int32_t group;
+    double *size;    /* of each half-edge: the corner's area when the solve began; 0: it is let go */
+    double *axis;    /* of each face: its unit normal then */
+    int32_t *row;    /* of each corner; -1: none */
+    uint8_t *marked; /* corners that are to act */
+    int32_t *corner; /* of each row */
+    size_t capacity; /* of `corner` */
+    int32_t wakings; /* in this solve */
+} gproji_corners;
+
 /* A solve of a form, from one frame to the next (gproj_step). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
@@ -19523,6 +19769,8 @@ struct gproj_form {
     gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
     double *guard_area;      /* of each of them, its vectorial area when the solve began: 3 numbers */
     bool guard_on;           /* in this solve */
+    int32_t smooth;          /* the group of the metric of steps; -1: none yet */
+    gproji_corners *corners; /* keeps corners of faces; NULL: none yet */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
     gproji_solve solve;
@@ -19563,8 +19811,20 @@ GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
     gproji_give(&form->own, s, 1, sizeof *s);
 }
 
+GPROJI_INTERNAL void gproji_corners_give(gproj_form *form) {
+    gproji_corners *guard = form->corners;
+    size_t corners = 2 * (size_t)form->mesh->halfedge_count;
+    gproji_give(&form->own, guard->size, corners / 2, sizeof *guard->size);
+    gproji_give(&form->own, guard->axis, 3 * (size_t)form->mesh->face_count, sizeof *guard->axis);
+    gproji_give(&form->own, guard->row, corners, sizeof *guard->row);
+    gproji_give(&form->own, guard->marked, corners, 1);
+    gproji_give(&form->own, guard->corner, guard->capacity, sizeof *guard->corner);
+    gproji_give(&form->own, guard, 1, sizeof *guard);
+}
+
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     if (!form) return;
+    if (form->corners) gproji_corners_give(form);
     if (form->statics) gproji_statics_give(form);
     if (form->guard)
         gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
@@ -19671,7 +19931,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
-    form->closeness = form->planarity = form->drag_fairness = form->drag_handles = -1;
+    form->closeness = form->smooth = form->planarity = form->drag_fairness = form->drag_handles = -1;
     gproji_form_begin(form);
     return form;
 }
@@ -22706,8 +22966,260 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 }
 
 /* ============================================================================================================
+   >>corners   Faces keep their corners. Uses platform, memory, error, vector, system, loop, mesh, measure, form,
+   guard.
+
+   What must hold can be met by elements that are none: a planar face may be folded or turned over in its plane, a circular
+   one may have lost an edge. So every corner of a face keeps a part of its area
+       m'((b - a) x (c - b)) >= part of what it was                                                                  (1)
+   with the vertices a, b, c, and m the face's normal at x (n of the planar faces) or the one that it had when the solve
+   began, which keeps it from turning. A face with corners like that is convex and its edges have lengths; there is no
+   bow-tie. Corners that had no such area when the solve began are let go.
+
+   Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are near
+   to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
+
+static const double gproji_corner_weight = 0.3;
+static const double gproji_corner_wanted = 0.3;  /* part of its area that the row of a corner asks for, */
+static const double gproji_corner_least = 0.2;   /* and that below which it gets one */
+static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
+static const double gproji_corner_turned = 0.05;
+static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
+static const double gproji_corner_none = 1e-3; /* of corners that are let go */
+static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
+enum {
+    GPROJI_CORNER_TERMS = 18,
+    GPROJI_CORNER_BRIEF = 15 /* iterations without planar faces: later a shape that carries may need its corners */
+};
+
+/* The vectorial area of the parallelogram at the corner behind half-edge h: (b - a) x (c - b). */
+GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x, int32_t h, double out[3]) {
+    const double *a = x + 3 * (size_t)mesh->origin[h], *b = x + 3 * (size_t)mesh->origin[mesh->next[h]];
+    const double *c = x + 3 * (size_t)mesh->origin[mesh->next[mesh->next[h]]];
+    double p[3], q[3];
+    gproji_sub3(b, a, p);
+    gproji_sub3(c, b, q);
+    gproji_cross3(p, q, out);
+}
+
+/* The unit normal of a face as its variables say at x; of one without them, that of its area at `frozen`. */
+GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *x, const double *frozen, int32_t face,
+                                          double out[3]) {
+    static const double none[3] = {0, 0, 0};
+    if (form->normal[face] >= 0)
+        gproji_copy3(x + form->normal[face], out);
+    else
+        gproji_area_vector(form->mesh, frozen, face, out);
+    gproji_normalise3(out, none);
+}
+
+/* Linearises the rows that act, with the normals at x. */
+GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group) {
+    const gproj_form *form = (const gproj_form *)user;
+    const gproji_corners *guard = form->corners;
+    int32_t r, k, t, count;
+    for (r = 0; r < system->group[group].row_count; ++r) {
+        gproji_row *row = &system->group[group].row[r];
+        gproj_term *term = gproji_row_terms(system, group, r, &count);
+        int32_t h = guard->corner[r] / 2, face = form->mesh->face[h];
+        bool upright = guard->corner[r] % 2 != 0;
+        double m[3];
+        if (!(row->weight > 0)) continue;
+        gproji_corner_normal(form, system->x, system->x, face, m);
+        if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
+        row->constant = -(upright ? gproji_corner_upright : gproji_corner_wanted);
+        /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
+        for (t = 0; t < count; t += 6)
+            for (k = 0; k < 3; ++k) {
+                term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
+                term[t + 2 * k + 1].a = -term[t + 2 * k].a;
+            }
+    }
+}
+
+/* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
+   a_y b_z, - a_z b_y (m_x), ... Returns its number, -1 after an error. */
+GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
+    gproji_corners *guard = form->corners;
+    const gproj_mesh *mesh = form->mesh;
+    gproj_system *s = form->system;
+    gproj_term term[GPROJI_CORNER_TERMS];
+    int32_t vertex[3], h = corner / 2, rows = s->group[guard->group].row_count, row, c, k, count = 0;
+    void *corners = guard->corner;
+    bool solving = s->solving, enough;
+    enough = gproji_reserve(&form->own, &corners, &guard->capacity, (size_t)rows + 1, sizeof *guard->corner);
+    guard->corner = (int32_t *)corners;
+    if (!enough) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
+    for (c = 0; c < 3; ++c)
+        for (k = 0; k < 3; ++k) {
+            int32_t a = vertex[c], b = vertex[(c + 1) % 3];
+            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
+            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
+        }
+    s->solving = false; /* rows of a guard may come during a solve, when nothing else may */
+    row = gproj_system_add_row(s, guard->group, count, term, -gproji_corner_wanted, mesh->face[corner / 2]);
+    s->solving = solving;
+    if (row < 0) return -1;
+    s->group[guard->group].row[row].weight = 0; /* until it is woken */
+    guard->corner[row] = corner;
+    guard->row[corner] = row;
+    return row;
+}
+
+/* Lets a corner act on steps. Returns whether that is news. */
+GPROJI_INTERNAL bool gproji_wake_corner(gproj_form *form, int32_t corner) {
+    gproji_corners *guard = form->corners;
+    int32_t row = guard->row[corner];
+    gproji_row *rows;
+    if (row < 0) row = gproji_add_corner(form, corner);
+    rows = form->system->group[guard->group].row;
+    if (row < 0 || rows[row].weight > 0) return false;
+    rows[row].weight = sqrt(guard->size[corner / 2]);
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_corner_acts(const gproj_form *form, int32_t corner) {
+    int32_t row = form->corners->row[corner];
+    return row >= 0 && form->system->group[form->corners->group].row[row].weight > 0;
+}
+
+/* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first one
+   it stops if that is enough. Returns whether there was one. */
+GPROJI_INTERNAL bool gproji_seek_corners(const gproj_form *form, const gproj_system *s, double margin, bool first) {
+    const gproji_corners *guard = form->corners;
+    const gproj_mesh *mesh = form->mesh;
+    int32_t f, h, c, k;
+    bool found = false;
+    for (f = 0; f < mesh->face_count; ++f) {
+        const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
+        double m[2][3], area[3];
+        gproji_corner_normal(form, s->x, s->saved, f, m[0]);
+        gproji_copy3(guard->axis + 3 * (size_t)f, m[1]);
+        for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
+            if (!(guard->size[h] > 0)) continue;
+            gproji_corner_area(mesh, s->x, h, area);
+            for (k = 0; k < 2; ++k) {
+                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || gproji_corner_acts(form, 2 * h + k))
+                    continue;
+                if (first) return true;
+                guard->marked[2 * h + k] = 1;
+                found = true;
+            }
+        }
+    }
+    return found;
+}
+
+/* Does the step to x violate the bound of a corner that does not act yet? Marks those that should. */
+GPROJI_INTERNAL bool gproji_inspect_corners(void *user, gproj_system *s) {
+    gproj_form *form = (gproj_form *)user;
+    gproji_corners *guard = form->corners;
+    if (!(s->group[guard->group].weight > 0) || !gproji_seek_corners(form, s, 0, true)) return false;
+    guard->wakings++;
+    return gproji_seek_corners(form, s, gproji_fmin(gproji_corner_margin * guard->wakings, gproji_corner_margin_most),
+                               false);
+}
+
+/* Lets the marked corners act; returns whether there are new ones. x is that of before the step. */
+GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *s) {
+    gproj_form *form = (gproj_form *)user;
+    gproji_corners *guard = form->corners;
+    int32_t corner;
+    bool woken = false;
+    for (corner = 0; corner < 2 * form->mesh->halfedge_count; ++corner) {
+        if (!guard->marked[corner]) continue;
+        guard->marked[corner] = 0;
+        woken = gproji_wake_corner(form, corner) || woken;
+    }
+    if (woken) gproji_refresh_corners(form, s, guard->group);
+    return woken;
+}
+
+/* Has a corner become small, and lost most of its area in the step from `saved`? */
+GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const gproj_system *s) {
+    const gproj_form *form = (const gproj_form *)user;
+    const gproji_corners *guard = form->corners;
+    const gproj_mesh *mesh = form->mesh;
+    int32_t f, h, c;
+    if (!(s->group[guard->group].weight > 0)) return false;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double m[3], area[3], now, had;
+        gproji_corner_normal(form, s->x, s->saved, f, m);
+        for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
+            gproji_corner_area(mesh, s->x, h, area);
+            now = gproji_dot3(area, m);
+            if (!(guard->size[h] > 0) || now >= gproji_corner_kept * guard->size[h]) continue;
+            gproji_corner_area(mesh, s->saved, h, area);
+            gproji_corner_normal(form, s->saved, s->saved, f, m);
+            had = gproji_dot3(area, m);
+            if (had > 0 && now < gproji_corner_kept * had) return true;
+            gproji_corner_normal(form, s->x, s->saved, f, m);
+        }
+    }
+    return false;
+}
+
+/* The guard's group and arrays, once. */
+GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
+    size_t corners = 2 * (size_t)form->mesh->halfedge_count, faces = (size_t)form->mesh->face_count;
+    gproji_corners *guard = (gproji_corners *)gproji_take_zeroed(&form->own, 1, sizeof *guard);
+    form->corners = guard;
+    if (guard) {
+        guard->group = -1;
+        guard->size = (double *)gproji_take_zeroed(&form->own, corners / 2, sizeof *guard->size);
+        guard->axis = (double *)gproji_take_zeroed(&form->own, 3 * faces, sizeof *guard->axis);
+        guard->row = (int32_t *)gproji_take(&form->own, corners, sizeof *guard->row);
+        guard->marked = (uint8_t *)gproji_take_zeroed(&form->own, corners, 1);
+    }
+    if (!guard || !guard->size || !guard->axis || !guard->row || !guard->marked) {
+        gproji_fail_memory(&form->error);
+        return;
+    }
+    if (corners > 0) memset(guard->row, -1, corners * sizeof *guard->row);
+    guard->group = gproji_new_group(form, "corners", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_corners, form);
+    if (guard->group >= 0) form->system->group[guard->group].safeguard = true;
+}
+
+/* What the corners have when the solve begins. */
+GPROJI_INTERNAL void gproji_measure_corners(gproj_form *form) {
+    const double *x = gproj_system_values(form->system);
+    const gproj_mesh *mesh = form->mesh;
+    gproji_corners *guard = form->corners;
+    int32_t f, h, c;
+    for (f = 0; f < mesh->face_count; ++f) {
+        double area[3], *axis = guard->axis + 3 * (size_t)f;
+        gproji_unit_normal(mesh, x, f, axis);
+        for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
+            gproji_corner_area(mesh, x, h, area);
+            guard->size[h] = gproji_dot3(area, axis);
+            if (!(guard->size[h] > gproji_corner_none)) guard->size[h] = 0;
+        }
+    }
+}
+
+/* Sets the guard for a solve that begins: no corner acts yet. */
+GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
+    gproj_schedule schedule = {gproji_corner_weight, 1, INT32_MAX};
+    bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    int32_t r;
+    if (wanted && !form->corners) gproji_add_corners(form);
+    if (!form->corners || !gproji_form_ready(form)) return;
+    if (!wanted) schedule.weight = 0;
+    if (!gproji_is_on(form, form->planarity)) schedule.last = GPROJI_CORNER_BRIEF;
+    gproj_system_set_schedule(form->system, form->corners->group, schedule);
+    if (wanted) gproji_measure_corners(form);
+    form->corners->wakings = 0;
+    for (r = 0; r < form->system->group[form->corners->group].row_count; ++r)
+        form->system->group[form->corners->group].row[r].weight = 0;
+}
+
+/* ============================================================================================================
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
-   memory, error, vector, system, loop, mesh, measure, form, catalogue, statics, guard. */
+   memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners. */
 
 /* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
@@ -22743,7 +23255,7 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t g;
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
-        bool guidance = g == form->closeness || (form->statics && g == form->statics->guidance);
+        bool guidance = g == form->closeness || g == form->smooth || (form->statics && g == form->statics->guidance);
         if (!guidance && !form->system->group[g].guard && info.kind == GPROJ_WISH && info.schedule.weight > 0 &&
             info.rows > 0)
             return true;
@@ -22751,8 +23263,52 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     return false;
 }
 
-/* Half of the iterations, rounded up and at least 1: as long as wishes last by default. */
+static const double gproji_settle_shift = 1e-9; /* of the trace, in the inverse iteration for normals */
+static const double gproji_settle_free = 1e-4;  /* and where an axis point is free */
+enum {
+    GPROJI_SETTLE_ROUNDS = 3,
+    GPROJI_FACES_PER_TASK = 2048 /* at least, unless there are fewer */
+};
+
+/* Half of the iterations, rounded up and at least 1. */
 GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
+
+/* The weight of the differences of a step along edges, and what one of a vertex alone counts beside it. With more of the
+   latter meshes move less and become rough. */
+static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
+
+/* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
+GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
+    static const gproj_term one = {0, -1, 1}, difference[2] = {{0, -1, 1}, {1, -1, -1}};
+    const gproj_mesh *mesh = form->mesh;
+    gproj_system *s = form->system;
+    int32_t e, i, k, *local;
+    form->smooth = gproji_new_group(form, "smooth change", GPROJ_WISH, GPROJ_PLACE_NONE, 0, NULL, NULL);
+    if (form->smooth < 0) return;
+    s->group[form->smooth].metric = true;
+    for (i = 0; i < 3 * mesh->vertex_count && gproji_form_ready(form); ++i) {
+        local = gproji_add_placed_rows(s, form->smooth, 0, 1, 1, &one, 1, 0, -1);
+        if (!local) return;
+        *local = i;
+        s->group[form->smooth].row[i].weight = gproji_metric_near;
+    }
+    for (e = 0; e < mesh->edge_count && gproji_form_ready(form); ++e) {
+        local = gproji_add_placed_rows(s, form->smooth, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
+        for (k = 0; k < 3 && local; ++k, local += 2) {
+            local[0] = 3 * mesh->origin[2 * e] + k;
+            local[1] = 3 * mesh->origin[2 * e + 1] + k;
+        }
+    }
+}
+
+/* Lets steps be measured by their smoothness (see >>loop), or not. */
+GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
+    gproj_schedule schedule = {0, 1, 0};
+    if (wanted && form->smooth < 0) gproji_add_metric(form);
+    if (!gproji_form_ready(form) || form->smooth < 0) return;
+    if (wanted) schedule.weight = gproji_metric_smooth;
+    gproj_system_set_schedule(form->system, form->smooth, schedule);
+}
 
 /* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
@@ -23185,6 +23741,84 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
                       count, count == 1 ? "vertex" : "vertices", vertex, worst);
 }
 
+/* -- local unknowns -- */
+
+/* Faces, one after the other, whose local unknowns a thread settles. */
+typedef struct gproji_settling {
+    const gproj_form *form;
+    double *x;
+    int32_t tasks;
+} gproji_settling;
+
+/* The normal n of a face that makes sum (n'e)^2 over its edges e smallest, with n'n = 1: two steps of inverse iteration from
+   the n at hand, which keeps its side. */
+GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, double *x, int32_t face, double n[3]) {
+    double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3];
+    int32_t h = mesh->face_halfedge[face], c, round;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
+        gproji_add_square3(e, a);
+    }
+    for (round = 0; round < GPROJI_SETTLE_ROUNDS; ++round) {
+        if (!gproji_solve_square3(a, gproji_settle_shift, n, b)) return;
+        gproji_normalise3(b, n);
+        gproji_copy3(b, n);
+    }
+}
+
+/* The axis point p of a circular face that makes sum (e'(m - p))^2 over its edges e with midpoints m smallest, as near as
+   can be to the p at hand: along the axis it is free. */
+GPROJI_INTERNAL void gproji_settle_axis_point(const gproj_mesh *mesh, const double *x, int32_t face, double p[3]) {
+    double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, e[3], m[3], change[3];
+    int32_t h = mesh->face_halfedge[face], c, k;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
+        gproji_sub3(w, v, e);
+        for (k = 0; k < 3; ++k) m[k] = (v[k] + w[k]) / 2 - p[k];
+        gproji_add_square3(e, a);
+        gproji_add_scaled3(gproji_dot3(e, m), e, b);
+    }
+    if (gproji_solve_square3(a, gproji_settle_free, b, change)) gproji_add_scaled3(1, change, p);
+}
+
+GPROJI_INTERNAL void gproji_settle_task(void *data, int32_t task) {
+    const gproji_settling *settling = (const gproji_settling *)data;
+    const gproj_form *form = settling->form;
+    int32_t f = gproji_chunk_start(form->mesh->face_count, settling->tasks, task);
+    int32_t end = gproji_chunk_start(form->mesh->face_count, settling->tasks, task + 1);
+    for (; f < end; ++f) {
+        if (form->normal[f] >= 0) gproji_settle_normal(form->mesh, settling->x, f, settling->x + form->normal[f]);
+        if (form->axis && form->axis[f] >= 0)
+            gproji_settle_axis_point(form->mesh, settling->x, f, settling->x + form->axis[f]);
+    }
+}
+
+/* Gives normals of faces, axis points of circles and axes of cones their best values. */
+GPROJI_INTERNAL void gproji_settle_form(void *user, gproj_system *system) {
+    const gproj_form *form = (const gproj_form *)user;
+    gproji_settling settling;
+    int32_t v;
+    settling.form = form, settling.x = system->x;
+    settling.tasks = gproji_max(1, form->mesh->face_count / GPROJI_FACES_PER_TASK);
+    gproji_for(&form->host.parallel, settling.tasks, gproji_settle_task, &settling);
+    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v)
+        if (form->cone[v] >= 0) gproji_cone_axis(form->mesh, system->x, v, system->x + form->cone[v]);
+}
+
+/* What the form adds to its system's steps in a smooth solve. */
+GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
+    gproji_hooks hooks;
+    memset(&hooks, 0, sizeof hooks);
+    hooks.user = form;
+    if (!form->solve.loop.options.smooth || form->solve.loop.options.nearest) return hooks;
+    if (gproji_is_on(form, form->planarity)) hooks.settle = gproji_settle_form;
+    if (!form->corners) return hooks;
+    hooks.inspect = gproji_inspect_corners;
+    hooks.wake = gproji_wake_corners;
+    hooks.refuse = gproji_refuse_corners;
+    return hooks;
+}
+
 /* -- a solve, at once or in frames -- */
 
 /* A result that says what is wrong with a call and leaves the form as it is. */
@@ -23199,6 +23833,7 @@ GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *
 GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
+    bool smooth = options && options->smooth && !nearest, forces;
     int32_t guided;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23213,10 +23848,14 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
-    guided = gproji_set_default_guidance(form, iterations, options && options->skip_closeness, nearest);
-    gproji_set_guard(form, guided, options && options->skip_guard);
+    forces = form->statics && gproji_is_on(form, form->statics->group);
+    guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || (smooth && !forces),
+                                         nearest);
+    gproji_set_metric(form, smooth && !forces && !options->skip_closeness);
+    gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
+    gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
-    solve->default_last = gproji_guided_iterations(form, iterations);
+    solve->default_last = gproji_guided_iterations(form, smooth ? gproji_min(iterations, 20) : iterations);
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
     return solve->on;
@@ -23249,7 +23888,9 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_solve *solve = &form->solve;
     bool ended;
     form->system->default_last = solve->default_last;
+    form->system->hooks = gproji_form_hooks(form);
     ended = gproji_run(&solve->loop, seconds);
+    memset(&form->system->hooks, 0, sizeof form->system->hooks);
     form->system->default_last = 0;
     if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
     if (ended) solve->on = false, solve->finished = true;
@@ -23311,7 +23952,7 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
 
 /* ============================================================================================================
    >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
-   statics, guard.
+   statics, guard, corners, solve.
 
    One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
    is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
@@ -23343,6 +23984,8 @@ typedef enum gproji_own {
     GPROJI_OWN_FORCES,
     GPROJI_OWN_DRAG_FAIRNESS,
     GPROJI_OWN_DRAG_HANDLES,
+    GPROJI_OWN_METRIC,
+    GPROJI_OWN_CORNERS,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -23354,6 +23997,8 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     case GPROJI_OWN_FORCES: return form->statics ? form->statics->guidance : -1;
     case GPROJI_OWN_DRAG_FAIRNESS: return form->drag_fairness;
     case GPROJI_OWN_DRAG_HANDLES: return form->drag_handles;
+    case GPROJI_OWN_METRIC: return form->smooth;
+    case GPROJI_OWN_CORNERS: return form->corners ? form->corners->group : -1;
     default: return -1;
     }
 }
@@ -23372,6 +24017,10 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     switch (own) {
     case GPROJI_OWN_CLOSENESS: form->closeness = gproj_add_closeness(form, 0); break;
     case GPROJI_OWN_GUARD: gproji_add_guard(form); break;
+    case GPROJI_OWN_METRIC: gproji_add_metric(form); break;
+    case GPROJI_OWN_CORNERS:
+        if (!form->corners) gproji_add_corners(form);
+        break;
     case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
     case GPROJI_OWN_DRAG_FAIRNESS:
         form->drag_fairness = gproj_add_fairness(form, 0);
@@ -23559,6 +24208,50 @@ GPROJI_INTERNAL void gproji_pass_choice(gproji_stream *stream, gproj_form *form,
     if (stream->way == GPROJI_READ && !same) form->system->schur.stale = true; /* to be decided anew */
 }
 
+/* The corners that have rows, in their order. Those that come in get rows. */
+GPROJI_INTERNAL void gproji_pass_corners(gproji_stream *stream, gproj_form *form) {
+    const gproji_corners *guard = form->corners;
+    int32_t end = 2 * form->mesh->halfedge_count, r;
+    int32_t count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
+    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
+    for (r = 0; r < count && !stream->wrong; ++r) {
+        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r];
+        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
+        if (!gproji_comes_in(stream) || stream->wrong) continue;
+        if (form->mesh->face[corner / 2] < 0)
+            gproji_spoil(stream, "a corner is not one of a face");
+        else if (guard->row[corner] < 0)
+            gproji_add_corner(form, corner);
+    }
+}
+
+/* What the guard has during a solve: the corners as they were at its beginning, and the rows. */
+GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *form, gproji_group *g,
+                                             gproji_passing passing) {
+    gproji_corners *guard = form->corners;
+    int32_t count = g->row_count, r, end = 2 * form->mesh->halfedge_count;
+    double none = 0;
+    gproji_pass_doubles(stream, guard->size, (size_t)form->mesh->halfedge_count);
+    gproji_pass_doubles(stream, guard->axis, 3 * (size_t)form->mesh->face_count);
+    gproji_pass_integer(stream, &guard->wakings, 0, INT32_MAX / 2);
+    count = gproji_pass_integer(stream, &count, 0, g->row_count);
+    for (r = 0; stream->way == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
+    for (r = 0; r < count && !stream->wrong; ++r) {
+        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r], row;
+        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
+        row = stream->wrong ? -1 : guard->row[corner];
+        if (row < 0) {
+            gproji_spoil(stream, "a corner has no row");
+            return;
+        }
+        gproji_pass_number(stream, &g->row[row].weight, 0, 1e100);
+        gproji_pass_bool(stream, &g->row[row].active);
+        if (passing == GPROJI_PASS_NEAREST)
+            gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
+    }
+    if (stream->way == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
+}
+
 /* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
    any of a group that the library has added (`own`): they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
@@ -23573,6 +24266,10 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_number(stream, &g->weight, 0, 1e50);
     gproji_pass_choice(stream, form, g);
     if (own && !passing) return;
+    if (g->safeguard) {
+        gproji_pass_corner_rows(stream, form, g, passing);
+        return;
+    }
     if (passing || !g->refresh) gproji_pass_numbers(stream, form, g);
     gproji_pass_weights(stream, form, g);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
@@ -23623,6 +24320,10 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->minimum);
+    gproji_pass_bool(stream, &loop->options.smooth);
+    gproji_pass_bool(stream, &loop->stiff);
+    gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
+    gproji_pass_double(stream, &form->system->stiffness, 0, DBL_MAX);
     gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX / 2);
     if (nearest && begun) gproji_make_multipliers(stream, form);
     if (stream->way != GPROJI_READ) return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
@@ -23696,6 +24397,7 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (list[k] != GPROJI_OWN_FORCES || form->statics))
             gproji_add_own_group(form, (gproji_own)list[k]);
     }
+    gproji_pass_corners(stream, form);
 }
 
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {

@@ -966,7 +966,7 @@ static const char *first_about_forces(const tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->equilibrium.given ? 25 : 12;
+    if (t->iterations == 0) t->iterations = t->nearest ? 60 : 100;
     int i;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
@@ -1614,13 +1614,13 @@ static bool add_gliding(tool *t, const tool_word *word) {
     return glide_along(t, first, word->weight.weight);
 }
 
-/* A wish with its schedule. The first half of the iterations where no last one is given; all with --nearest. */
+/* A wish with its schedule. The first few iterations where no last one is given; all with --nearest. */
 static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
     gproj_schedule schedule;
     schedule.weight = weight->weight;
     schedule.decay = weight->decay;
-    schedule.last = weight->last > 0 ? weight->last : t->iterations > 1 ? t->iterations / 2 : 1;
-    if (weight->last == 0 && t->equilibrium.weight > 0 && schedule.last > 9) schedule.last = 9;
+    schedule.last = weight->last > 0 ? weight->last : t->equilibrium.weight > 0 ? 9 : 6;
+    if (weight->last == 0 && schedule.last > t->iterations / 2) schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
     if (t->nearest) schedule.decay = 0, schedule.last = 0;
     if (group >= 0) gproj_set_schedule(t->form, group, schedule);
 }
@@ -2014,6 +2014,7 @@ static bool solve(tool *t) {
     how.tolerance = t->tolerance;
     how.epsilon = t->epsilon;
     how.time_budget = t->time_limit;
+    how.smooth = !t->nearest;
     how.skip_closeness = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
     how.nearest = t->nearest;
     how.on_iteration = on_iteration;
