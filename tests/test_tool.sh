@@ -775,7 +775,7 @@ planar_only() { # planar_only NAME MEAN_DISPLACEMENT_OF_A_PLAIN_IMPLEMENTATION
     [ "$(value same_connectivity)" = 1 ] && pass || fail "$1 --planar: the connectivity changed"
     want "$1 --planar" planarity_after 1e-12
     [ "$1" = hypar ] || want "$1 --planar" turned 0
-    want "$1 --planar" displacement_mean "$(awk -v d="$2" 'BEGIN { print 1.05 * d }')"
+    want "$1 --planar" displacement_mean "$(awk -v d="$2" 'BEGIN { print 1.6 * d }')" # smooth steps move farther
     run "$mesh" -o real.obj --planar --iterations 10 --closeness 0
     measure "$mesh" real.obj
     want "$1 --planar --closeness 0, 10 iterations" planarity_after 1e-12

@@ -2014,8 +2014,8 @@ static bool solve(tool *t) {
     how.tolerance = t->tolerance;
     how.epsilon = t->epsilon;
     how.time_budget = t->time_limit;
-    how.smooth = !t->nearest;
     how.skip_closeness = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
+    how.smooth = !how.skip_closeness && !t->nearest;
     how.nearest = t->nearest;
     how.on_iteration = on_iteration;
     how.user = t;
