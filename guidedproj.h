@@ -441,7 +441,8 @@ typedef enum gproj_kind {
 } gproj_kind;
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
-   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations. So {w} is the
+   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at most). So
+   {w} is the
    constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1,
    last >= 0. */
 typedef struct gproj_schedule {
@@ -547,8 +548,8 @@ typedef struct gproj_solve_options {
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over */
-    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces, for as many iterations as it
-       takes: sound meshes at any resolution. Allow 100 iterations; most take about 10. See gproj_solve. */
+    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any resolution.
+       Allow 100 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
     bool smooth;
     /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
        must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
@@ -1258,6 +1259,18 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
    the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
    gproj_measure.
+
+   options->smooth (the command line's default) does more for meshes of any resolution:
+   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of by
+     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that satisfy the
+     linearised rows the smoothest is taken: meshes stay fair that way, and move up to 1.7 times as far. Nothing is biased:
+     no closeness is added. With equilibrium closeness guides as above instead.
+   - Normals, axis points and axes of cones take their best values after each step, so that full steps are good ones: the
+     number of iterations hardly depends on how fine the mesh is.
+   - Every corner of a face keeps at least 0.2 of its area and its side, to the end or to half of the iterations, in place of
+     the guard: faces stay convex and upright where they were, and edges keep a length. The rows come as they are needed, as
+     the group "corners". Where no step is found with them they are let go; gproj_result.spoiled tells what that has cost.
+   Iterations are a limit there, no schedule: allow 100.
 
    For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a

@@ -51,7 +51,7 @@ enum {
 
 static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
 
-typedef struct tool_weight { /* a weight with its schedule; last 0: half of the iterations */
+typedef struct tool_weight { /* a weight with its schedule; last 0: a few iterations */
     bool given;
     double weight, decay;
     int32_t last;
@@ -747,9 +747,8 @@ static const tool_option options[] = {
      set_wish_or_one, PLACE(force_fairness)},
 
     {0, "reference", "FILE[=W]", false, "stay near the surface of this mesh (W: 0.1 if left out)",
-     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: half of all iterations, "
-     "with --equilibrium at most 9, if "
-     "left out)",
+     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: 6, with "
+     "--equilibrium 9, if left out)",
      set_reference, PLACE(reference)},
     {0, "closeness", "W", false,
      "stay near the original places. Where nothing else is wished, 0.03*0.3:5 is; --closeness 0 turns that off", NULL,
@@ -768,7 +767,7 @@ static const tool_option options[] = {
      "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
      "best: they keep their weights W to the end",
      "how", set_flag, PLACE(nearest)},
-    {0, "iterations", "N", false, "at most so many (12; with --equilibrium 25, with --nearest 30)", NULL,
+    {0, "iterations", "N", false, "at most so many (100, most take about 10; with --nearest 30)", NULL,
      set_iterations, PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
@@ -966,7 +965,7 @@ static const char *first_about_forces(const tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    if (t->iterations == 0) t->iterations = t->nearest ? 60 : 100;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 100;
     int i;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
