@@ -767,8 +767,8 @@ static const tool_option options[] = {
      "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
      "best: they keep their weights W to the end",
      "how", set_flag, PLACE(nearest)},
-    {0, "iterations", "N", false, "at most so many (100, most take about 10; with --nearest 30)", NULL,
-     set_iterations, PLACE(iterations)},
+    {0, "iterations", "N", false, "at most so many (100, most take about 10; with --nearest 30)", NULL, set_iterations,
+     PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
     {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", NULL,
@@ -1619,7 +1619,8 @@ static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
     schedule.weight = weight->weight;
     schedule.decay = weight->decay;
     schedule.last = weight->last > 0 ? weight->last : t->equilibrium.weight > 0 ? 9 : 6;
-    if (weight->last == 0 && schedule.last > t->iterations / 2) schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
+    if (weight->last == 0 && schedule.last > t->iterations / 2)
+        schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
     if (t->nearest) schedule.decay = 0, schedule.last = 0;
     if (group >= 0) gproj_set_schedule(t->form, group, schedule);
 }
