@@ -23063,7 +23063,7 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
     enough = gproji_reserve(&form->own, &corners, &guard->capacity, (size_t)rows + 1, sizeof *guard->corner);
     guard->corner = (int32_t *)corners;
     if (!enough) {
-        gproji_fail_memory(&form->error);
+        gproji_fail_memory(&s->error);
         return -1;
     }
     for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];

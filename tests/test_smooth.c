@@ -1,0 +1,175 @@
+/* test_smooth.c - solves that are smooth (gproj_solve_options.smooth): steps measured by their smoothness, local unknowns
+   settled, corners of faces kept. */
+#include "gprojt_form.h"
+
+static gproj_solve_options gprojt_smooth(void) {
+    gproj_solve_options options;
+    memset(&options, 0, sizeof options);
+    options.smooth = true;
+    return options;
+}
+
+/* A square patch of n x n quads that is twisted and waved, far from planar; `wave`: how far, in its own size. */
+static gproj_mesh *gprojt_twisted(int32_t n, double wave) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(n, n));
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v, x = (v % (n + 1)) / (double)n, y = (v / (n + 1)) / (double)n;
+        p[0] = x, p[1] = y;
+        p[2] = wave * (sin(4 * x + 1) * cos(3 * y) + 2 * x * y);
+    }
+    return mesh;
+}
+
+static void gprojt_add_planar(gproj_form *form, void *user) {
+    (void)user;
+    gproj_add_planarity(form, 1);
+}
+
+static void gprojt_add_circular(gproj_form *form, void *user) {
+    (void)user;
+    gproj_add_planarity(form, 1);
+    gproj_add_circularity(form, 1);
+}
+
+/* As many iterations for fine meshes as for coarse ones, and nothing spoiled. */
+GPROJT_TEST(iterations_do_not_grow) {
+    static const int32_t sizes[4] = {8, 16, 32, 64};
+    gproj_solve_options options = gprojt_smooth();
+    int i;
+    for (i = 0; i < 4; ++i) {
+        gproj_mesh *mesh = gprojt_twisted(sizes[i], 0.1);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        gproj_add_planarity(form, 1);
+        result = gproj_solve(form, 100, &options);
+        if (result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0 || result.iterations > 15)
+            printf("  %d: %s\n", (int)sizes[i], result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 && result.iterations <= 15);
+        GPROJT_CHECK(gproj_measure_planarity(mesh, NULL, NULL) <= 1e-12);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Circles with a thin strip of faces lose short edges without the corners' bounds. */
+GPROJT_TEST(corners_are_kept) {
+    int kept;
+    for (kept = 0; kept < 2; ++kept) {
+        gproj_mesh *mesh = gprojt_twisted(12, 0.15);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form;
+        gproj_result result;
+        int32_t v;
+        for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v] *= mesh->position[3 * v]; /* narrow at one end */
+        form = gproj_form_create(mesh, NULL);
+        gprojt_add_circular(form, NULL);
+        options.skip_guard = kept == 0;
+        result = gproj_solve(form, 100, &options);
+        if (kept) {
+            if (result.spoiled.total > 0) printf("  %s\n", result.message);
+            GPROJT_CHECK(result.spoiled.total == 0);
+        }
+        GPROJT_CHECK(result.residual <= 1e-9 || result.outcome != GPROJ_CONVERGED);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* What cannot hold with whole faces holds without: the corners are let go, and the verdict says it. */
+GPROJT_TEST(corners_are_let_go) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form;
+    gproj_result result;
+    double target[12] = {0, 0, 0, 1, 0, 0, 0, 0.001, 0, 1, 0.001, 0}; /* a square becomes a line, nearly */
+    static const int32_t vertices[4] = {0, 1, 2, 3};
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, 4, vertices, target, 1);
+    result = gproj_solve(form, 100, &options);
+    if (result.outcome != GPROJ_CONVERGED) printf("  %s\n", result.message);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total > 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
+   and in a new one. */
+GPROJT_TEST(frames_and_states) {
+    gproj_solve_options options = gprojt_smooth();
+    int32_t at, most = 1;
+    int circular;
+    for (circular = 0; circular < 2; ++circular)
+        for (at = 0, most = 1; at < most; ++at) {
+            gproj_mesh *mesh[2] = {gprojt_twisted(7, 0.15), gprojt_twisted(7, 0.15)};
+            gproj_form *form[2];
+            gproj_result result;
+            gproj_error error;
+            double *end;
+            uint8_t *state;
+            size_t size;
+            int32_t k;
+            for (k = 0; k < 2; ++k) {
+                form[k] = gproj_form_create(mesh[k], NULL);
+                (circular ? gprojt_add_circular : gprojt_add_planar)(form[k], NULL);
+            }
+            GPROJT_CHECK(gproj_step_begin(form[0], 60, &options));
+            for (k = 0; k < at && gproj_step_is_on(form[0]); ++k) gproj_step(form[0], 0);
+            size = gproj_state_size(form[0]);
+            state = (uint8_t *)malloc(size);
+            GPROJT_CHECK(gproj_state_save(form[0], state, size, &error) == GPROJ_OK);
+            memset(&result, 0, sizeof result);
+            while (gproj_step_is_on(form[0])) result = gproj_step(form[0], 0);
+            most = result.iterations;
+            end = gprojt_keep(mesh[0]);
+            for (k = 0; k < 2; ++k) {
+                gproj_code code = gproj_state_restore(form[k], state, size, &error);
+                if (code != GPROJ_OK) printf("  %s\n", error.message);
+                GPROJT_CHECK(code == GPROJ_OK && gproj_step_is_on(form[k]));
+                while (gproj_step_is_on(form[k])) result = gproj_step(form[k], 0);
+                GPROJT_CHECK(result.iterations == most);
+                GPROJT_CHECK(gprojt_largest_move(mesh[k]->position, end, mesh[k]->vertex_count) <= 1e-9);
+            }
+            free(state);
+            free(end);
+            for (k = 0; k < 2; ++k) gproj_form_destroy(form[k]), gproj_mesh_destroy(mesh[k]);
+        }
+    GPROJT_CHECK(most > 3);
+}
+
+/* A second solve of what holds does nothing, and one after a change goes on. */
+GPROJT_TEST(solved_again) {
+    gproj_mesh *mesh = gprojt_twisted(10, 0.1);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *before;
+    gprojt_add_circular(form, NULL);
+    GPROJT_CHECK(gproj_solve(form, 100, &options).outcome == GPROJ_CONVERGED);
+    before = gprojt_keep(mesh);
+    GPROJT_CHECK(gproj_solve(form, 100, &options).iterations == 0 && gprojt_unmoved(mesh, before));
+    mesh->position[2] += 0.01;
+    GPROJT_CHECK(gproj_solve(form, 100, &options).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_solve(form, 100, NULL).outcome == GPROJ_CONVERGED); /* and one that is not smooth */
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_twisted(5, 0.2);
+    gproj_solve_options options = gprojt_smooth();
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planar, NULL, 30, &options) >= 30);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 30, &options) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(iterations_do_not_grow);
+    GPROJT_RUN(corners_are_kept);
+    GPROJT_RUN(corners_are_let_go);
+    GPROJT_RUN(frames_and_states);
+    GPROJT_RUN(solved_again);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
