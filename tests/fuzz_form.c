@@ -495,7 +495,7 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
     options.tolerance = tolerances[gprojt_choose(c, 8)];
     options.epsilon = epsilons[gprojt_choose(c, 5)];
     options.skip_damping = flags & 1, options.skip_closeness = flags & 2, options.skip_guard = flags & 4;
-    options.nearest = flags & 16;
+    options.nearest = flags & 16, options.smooth = flags & 32;
     if (flags & 8) options.on_iteration = gprojt_on_form_iteration, options.user = c;
     if (flags == 255) options.time_budget = 1; /* without a clock */
     wrong = !(options.tolerance >= 0) || options.time_budget > 0;
