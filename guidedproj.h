@@ -547,7 +547,7 @@ typedef struct gproj_solve_options {
     void *user;
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
-    bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over */
+    bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
     /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any resolution.
        Allow 100 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
     bool smooth;
@@ -1263,7 +1263,7 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    options->smooth (the command line's default) does more for meshes of any resolution:
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of by
      |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that satisfy the
-     linearised rows the smoothest is taken: meshes stay fair that way, and move up to 1.7 times as far. Nothing is biased:
+     linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is biased:
      no closeness is added. With equilibrium closeness guides as above instead.
    - Normals, axis points and axes of cones take their best values after each step, so that full steps are good ones: the
      number of iterations hardly depends on how fine the mesh is.
@@ -11697,7 +11697,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
         round += round < GPROJI_BOUND_ROUNDS;
         if (!violated && !again) return true;
-        guard = s->schur.on && gproji_wake_guard(s);
+        guard = gproji_wake_guard(s);
         gproji_step_back(s);
         violations += violated;
         if (gproji_place_woken(loop, guard || (violated && s->hooks.wake(s->hooks.user, s)))) round = 0;
