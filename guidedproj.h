@@ -7919,6 +7919,7 @@ typedef struct gproji_group {
     int32_t wakings; /* of the guard: how often rows ceased to wait */
     bool safeguard;  /* a bound as the guard is, whose rows are added as they are needed, and are no structure */
     bool metric;     /* measures steps: its rows count with their gradients only, see >>loop */
+    bool brake;      /* a metric that acts where steps fail, at a stiffness above 1 */
 
     int32_t row_count;
     gproji_row *row;
@@ -10261,7 +10262,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
-        if (s->group[i].metric && s->stiffness == 0) continue;
+        if (s->group[i].metric && s->stiffness <= (s->group[i].brake ? 1 : 0)) continue;
         s->group[i].idle = false;
         woken = true;
     }
@@ -11003,6 +11004,12 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    pseudo-inverses and nonlinear least squares problems whose variables separate, 1973). Full steps are good then that had
    to be cut to a fifth without it, and their number hardly depends on how fine a mesh is.
 
+   The path from x to what must hold is curved, and where it is narrow a straight step leaves it at once. How wrong the
+   linearised rows are at the end of a step is known exactly, and the factor at hand says what to add to it: a second-order
+   correction for the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
+   least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces with a volume
+   need 14 iterations with it and 57 without.
+
    A safeguard (gproji_group.safeguard) has rows only where a step has violated it (hooks.inspect, hooks.wake). It acts as a
    bound, and is let go where no step is found with it: what must hold comes first, and the verdict tells what was spoiled. */
 
@@ -11011,10 +11018,14 @@ static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by 
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.1;
+/* A step that lowers the merit by less than this part of what the linearised rows promise is bent, by at most so much of the
+   square of its length. */
+static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 /* A step that lowers the merit to so much need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
+static const double gproji_brake_most = 9;   /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;   /* residual below which refreshes may settle */
 static const double gproji_shortest = 0.125; /* part of a step whose local unknowns are settled */
 enum {
@@ -11117,6 +11128,8 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproj_system *s, const gproj
 /* The weight of a group in iteration n. */
 GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(s, g);
+    if (g->brake)
+        return g->schedule.weight * s->stiffness * gproji_fmin(gproji_fmax(s->stiffness - 1, 0), gproji_brake_most);
     if (g->metric) return g->schedule.weight * s->stiffness;
     if (last > 0 && n > last) return 0;
     return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
@@ -11536,24 +11549,90 @@ GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
 
 GPROJI_INTERNAL bool gproji_is_refused(gproj_system *s) { return s->hooks.refuse && s->hooks.refuse(s->hooks.user, s); }
 
-/* Goes t of the step; where an owner settles local unknowns does that, linearises rows anew and returns the true merit. */
-GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t) {
+/* Where an owner settles local unknowns: goes t of the step, settles them, linearises rows anew and returns the true merit.
+   Where that is above what it is without settling, which `course` knows, they stay as the step has made them. */
+GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
+    double merit, plain;
     loop->iteration.step = gproji_take_step(s, t);
     if (!s->hooks.settle) return 0;
-    s->hooks.settle(s->hooks.user, s);
+    gproji_settle(s);
     gproji_refresh_groups(s);
-    return gproji_merit_here(s);
+    merit = gproji_merit_here(s);
+    if (merit <= gproji_merit_at(course, t)) return merit;
+    gproji_take_step(s, t);
+    gproji_refresh_groups(s);
+    plain = gproji_merit_here(s);
+    if (plain <= merit) return plain;
+    gproji_take_step(s, t);
+    gproji_settle(s);
+    gproji_refresh_groups(s);
+    return merit;
+}
+
+/* phi of all rows that act = by how much the linearised ones are wrong at x, where the full step has led. */
+GPROJI_INTERNAL void gproji_take_discrepancy(gproj_system *s) {
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            bool acts = row->active && !g->metric;
+            row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->step) : 0;
+        }
+    }
+}
+
+/* The squared length of the step without what belongs to auxiliary variables. */
+GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
+    double sum = 0;
+    int32_t v;
+    for (v = 0; v < s->variable_count; ++v)
+        if (!s->auxiliary[v]) sum += s->step[v] * s->step[v];
+    return sum;
+}
+
+/* Bends the full step, which has led to x and left `merit`: adds what the factor at hand makes of the linearised rows'
+   discrepancy there. A bend that is long beside the step is none, and neither is one that does not lower the merit. Returns
+   the merit at x then; the rows' phi are no more those of where the step began. */
+GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
+    gproj_system *s = loop->system;
+    double *straight = s->gradient; /* free when the step is found */
+    double square = gproji_step_square(s);
+    int32_t v;
+    bool bends;
+    gproji_take_discrepancy(s);
+    gproji_merit_gradient(s);
+    gproji_solve_step(s);
+    bends = gproji_step_square(s) <= gproji_bend_most * square;
+    for (v = 0; v < s->variable_count; ++v) {
+        straight[v] = s->x[v] - s->saved[v];
+        s->step[v] += straight[v];
+    }
+    if (bends) {
+        double bent = gproji_go(loop, 1, course);
+        if (bent < merit) return bent;
+    }
+    memcpy(s->step, straight, (size_t)s->variable_count * sizeof *s->step);
+    return gproji_go(loop, 1, course);
 }
 
 /* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
-   must lower it. 0: none. `none`: the merit before; `model`: what the linearised rows make of the full step. */
-GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, double model) {
-    double merit = gproji_go(loop, 1), t = 1;
-    loop->agreement = none > model ? (none - merit) / (none - model) : 1;
+   must lower it. 0: none. `none`: the merit before. */
+GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course) {
+    double merit = gproji_go(loop, 1, course), promised = none - course->model, t = 1;
+    if (!loop->system->schur.on && none - merit < gproji_bend_below * promised)
+        merit = gproji_bend_step(loop, course, merit);
+    loop->agreement = promised > 0 ? (none - merit) / promised : 1;
     while (t > gproji_shortest && (!(merit <= none) || gproji_is_refused(loop->system)))
-        merit = gproji_go(loop, t /= 2);
+        merit = gproji_go(loop, t /= 2, course);
     return merit <= none ? t : 0;
+}
+
+/* Goes t of the step, whatever the merit. */
+GPROJI_INTERNAL void gproji_go_on(gproji_loop *loop, double t) {
+    loop->iteration.step = gproji_take_step(loop->system, t);
+    gproji_settle(loop->system);
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
@@ -11566,7 +11645,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproji_merit_along(s, &merit);
     none = gproji_merit_at(&merit, 0);
     if (s->hooks.settle) {
-        t = gproji_backtrack(loop, none, merit.model);
+        t = gproji_backtrack(loop, none, &merit);
         if (t < 1) return t;
     } else {
         full = gproji_merit_at(&merit, 1);
@@ -11713,29 +11792,35 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
     if (!(loop->iteration.length > 0))
         gproji_step_back(s);
-    else if (loop->iteration.length != 1)
-        gproji_go(loop, loop->iteration.length);
+    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !s->hooks.settle))
+        gproji_go_on(loop, loop->iteration.length);
     if (!(loop->iteration.length > 0) && loop->factored && s->hooks.settle)
         gproji_linearise(loop); /* rows were linearised on the way */
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return loop->iteration.length > 0;
 }
 
-/* Sets the stiffness of steps. */
-GPROJI_INTERNAL void gproji_stiffen(gproj_system *s, double stiffness) {
+/* Sets the stiffness of steps, x being where the next one begins. Metric groups that come back by that are compiled, where
+   they are not, and linearised. */
+GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
+    gproj_system *s = loop->system;
+    bool back = false;
     int32_t i;
     s->stiffness = stiffness;
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].metric) s->group[i].weight = s->group[i].schedule.weight * stiffness;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        double weight = g->metric ? gproji_weight_in(s, g, 1) : g->weight;
+        back = back || (g->weight == 0 && weight > 0);
+        g->weight = weight;
+    }
+    if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
 }
 
 /* After an attempt that was not good: stiffer steps, or a larger eps where that is not what was missing. */
 GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
-    gproj_system *s = loop->system;
     if (loop->stiff && loop->factored && loop->standing.residual > 1e-7) {
         loop->failed = true;
-        gproji_stiffen(s, gproji_fmax(5 * s->stiffness, gproji_stiffness_least));
-        gproji_place_woken(loop, false);
+        gproji_stiffen(loop, gproji_fmax(5 * loop->system->stiffness, gproji_stiffness_least));
     } else {
         *epsilon *= 10;
     }
@@ -11745,7 +11830,7 @@ GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
 GPROJI_INTERNAL void gproji_rest_metric(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t i;
-    gproji_stiffen(s, 0);
+    gproji_stiffen(loop, 0);
     for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
     if (!loop->options.nearest && !s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s)))
         gproji_place_woken(loop, true);
@@ -11767,9 +11852,10 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     if (loop->iteration.length < 1 || loop->agreement < 0.25) factor = 3;
     stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
     if (stiffness >= gproji_stiffness_least)
-        gproji_stiffen(s, stiffness);
-    else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest)
-        gproji_stiffen(s, gproji_stiffness_least);
+        gproji_stiffen(loop, stiffness);
+    else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
+             (factor > 1 && loop->standing.residual > 1e-7))
+        gproji_stiffen(loop, gproji_stiffness_least);
     else if (s->stiffness > 0)
         gproji_rest_metric(loop);
 }
@@ -11912,7 +11998,7 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
         released = true;
     }
     if (!released) return false;
-    if (loop->stiff) gproji_stiffen(s, 1);
+    if (loop->stiff) gproji_stiffen(loop, 1);
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->waited = loop->wary = 0;
     return true;
@@ -19736,6 +19822,7 @@ typedef struct gproji_statics {
     double load_scale; /* loads inside = loads in internal lengths * load_scale */
     int32_t group;     /* of equilibrium */
     int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
+    int32_t brake;     /* the group that measures how forces change; -1: none yet */
     bool started;      /* the forces have values */
     double lost[2];    /* the part of the loads that the best first forces left, and those of the other sign */
 } gproji_statics;
@@ -22022,7 +22109,7 @@ GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *lo
     gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->own, 1, sizeof *s);
     form->statics = s;
     if (!s) return false;
-    s->group = s->guidance = -1;
+    s->group = s->guidance = s->brake = -1;
     s->load_scale = 1;
     s->loads = *loads;
     if (loads->edge_density) s->edge_density = gproji_copy_numbers(form, loads->edge_density, edges);
@@ -22989,6 +23076,9 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    began, which keeps it from turning. A face with corners like that is convex and its edges have lengths; there is no
    bow-tie. Corners that had no such area when the solve began are let go.
 
+   A row asks for no more than its corner has when it is linearised, or a floor: corners may shrink as far as they must, but
+   slowly, and what must hold is not held up by a wish for more.
+
    Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are near
    to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
 
@@ -22997,12 +23087,13 @@ static const double gproji_corner_wanted = 0.3;  /* part of its area that the ro
 static const double gproji_corner_least = 0.2;   /* and that below which it gets one */
 static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
 static const double gproji_corner_turned = 0.05;
+static const double gproji_corner_floor = 0.1,
+                    gproji_corner_upright_floor = 0.04; /* what a smaller corner is asked for */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
 static const double gproji_corner_none = 1e-3; /* of corners that are let go */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
-    GPROJI_CORNER_TERMS = 18,
-    GPROJI_CORNER_BRIEF = 15 /* iterations without planar faces: later a shape that carries may need its corners */
+    GPROJI_CORNER_TERMS = 18
 };
 
 /* The vectorial area of the parallelogram at the corner behind half-edge h: (b - a) x (c - b). */
@@ -23036,11 +23127,14 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         int32_t h = guard->corner[r] / 2, face = form->mesh->face[h];
         bool upright = guard->corner[r] % 2 != 0;
-        double m[3];
+        double m[3], area[3], has;
         if (!(row->weight > 0)) continue;
         gproji_corner_normal(form, system->x, system->x, face, m);
         if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
-        row->constant = -(upright ? gproji_corner_upright : gproji_corner_wanted);
+        gproji_corner_area(form->mesh, system->x, h, area);
+        has = gproji_dot3(area, m) / guard->size[h];
+        row->constant = upright ? -gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
+                                : -gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
         /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
         for (t = 0; t < count; t += 6)
             for (k = 0; k < 3; ++k) {
@@ -23222,7 +23316,6 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     if (wanted && !form->corners) gproji_add_corners(form);
     if (!form->corners || !gproji_form_ready(form)) return;
     if (!wanted) schedule.weight = 0;
-    if (!gproji_is_on(form, form->planarity)) schedule.last = GPROJI_CORNER_BRIEF;
     gproj_system_set_schedule(form->system, form->corners->group, schedule);
     if (wanted) gproji_measure_corners(form);
     form->corners->wakings = 0;
@@ -23268,9 +23361,9 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t g;
     for (g = 0; g < gproj_system_group_count(form->system); ++g) {
         gproj_group_info info = gproj_system_group_info(form->system, g);
-        bool guidance = g == form->closeness || g == form->smooth || (form->statics && g == form->statics->guidance);
-        if (!guidance && !form->system->group[g].guard && info.kind == GPROJ_WISH && info.schedule.weight > 0 &&
-            info.rows > 0)
+        bool guidance = g == form->closeness || (form->statics && g == form->statics->guidance);
+        if (!guidance && !form->system->group[g].guard && !form->system->group[g].metric && info.kind == GPROJ_WISH &&
+            info.schedule.weight > 0 && info.rows > 0)
             return true;
     }
     return false;
@@ -23289,6 +23382,7 @@ GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, i
 /* The weight of the differences of a step along edges, and what one of a vertex alone counts beside it. With more of the
    latter meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
+static const double gproji_metric_force = 0.3; /* of a change of forces, where steps fail */
 
 /* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
@@ -23314,13 +23408,35 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     }
 }
 
+/* The group that measures how forces change, once. They are free where all goes well, so that the shape moves no more than it
+   must; where steps fail, as with many forces at their bounds, they are braked, too. */
+GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
+    static const gproj_term one = {0, -1, 1};
+    gproj_system *s = form->system;
+    int32_t group = gproji_new_group(form, "force change", GPROJ_WISH, GPROJ_PLACE_NONE, 0, NULL, NULL), e;
+    if (group < 0) return;
+    form->statics->brake = group;
+    s->group[group].metric = s->group[group].brake = true;
+    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
+        int32_t *local;
+        if (form->statics->force[e] < 0) continue;
+        local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
+        if (local) *local = form->statics->force[e];
+    }
+}
+
 /* Lets steps be measured by their smoothness (see >>loop), or not. */
 GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
     gproj_schedule schedule = {0, 1, 0};
+    bool forces = form->statics && gproji_is_on(form, form->statics->group);
     if (wanted && form->smooth < 0) gproji_add_metric(form);
+    if (wanted && forces && form->statics->brake < 0) gproji_add_force_metric(form);
     if (!gproji_form_ready(form) || form->smooth < 0) return;
-    if (wanted) schedule.weight = gproji_metric_smooth;
+    schedule.weight = wanted ? gproji_metric_smooth : 0;
     gproj_system_set_schedule(form->system, form->smooth, schedule);
+    if (!form->statics || form->statics->brake < 0) return;
+    schedule.weight = wanted && forces ? gproji_metric_force : 0;
+    gproj_system_set_schedule(form->system, form->statics->brake, schedule);
 }
 
 /* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
@@ -23846,7 +23962,7 @@ GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *
 GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
-    bool smooth = options && options->smooth && !nearest, forces;
+    bool smooth = options && options->smooth && !nearest;
     int32_t guided;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23861,10 +23977,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     gproji_restart_planes(form);
-    forces = form->statics && gproji_is_on(form, form->statics->group);
-    guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || (smooth && !forces),
-                                         nearest);
-    gproji_set_metric(form, smooth && !forces && !options->skip_closeness);
+    guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || smooth, nearest);
+    gproji_set_metric(form, smooth && !options->skip_closeness);
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
     gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
@@ -23999,6 +24113,7 @@ typedef enum gproji_own {
     GPROJI_OWN_DRAG_HANDLES,
     GPROJI_OWN_METRIC,
     GPROJI_OWN_CORNERS,
+    GPROJI_OWN_BRAKE,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -24012,6 +24127,7 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     case GPROJI_OWN_DRAG_HANDLES: return form->drag_handles;
     case GPROJI_OWN_METRIC: return form->smooth;
     case GPROJI_OWN_CORNERS: return form->corners ? form->corners->group : -1;
+    case GPROJI_OWN_BRAKE: return form->statics ? form->statics->brake : -1;
     default: return -1;
     }
 }
@@ -24035,6 +24151,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
         if (!form->corners) gproji_add_corners(form);
         break;
     case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
+    case GPROJI_OWN_BRAKE: gproji_add_force_metric(form); break;
     case GPROJI_OWN_DRAG_FAIRNESS:
         form->drag_fairness = gproj_add_fairness(form, 0);
         if (form->drag_fairness >= 0) gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
@@ -24407,7 +24524,8 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
     for (k = 0; k < count && !stream->wrong; ++k) {
         if (gproji_comes_in(stream)) list[k] = 0;
         list[k] = (int32_t)gproji_pass_bytes(stream, (uint64_t)list[k], 1);
-        if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (list[k] != GPROJI_OWN_FORCES || form->statics))
+        bool of_forces = list[k] == GPROJI_OWN_FORCES || list[k] == GPROJI_OWN_BRAKE;
+        if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (form->statics || !of_forces))
             gproji_add_own_group(form, (gproji_own)list[k]);
     }
     gproji_pass_corners(stream, form);
