@@ -549,7 +549,7 @@ typedef struct gproj_solve_options {
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
     /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any resolution.
-       Allow 100 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
+       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
     bool smooth;
     /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
        must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
@@ -576,6 +576,7 @@ typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
     int32_t damped;     /* of these, steps that were damped, shortened, guarded or met bounds */
+    int32_t attempts;   /* how often a smooth gproj_solve has begun; 1 otherwise */
     double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;   /* what it was compared with */
     double step;        /* largest |dx| of the last step */
@@ -1270,7 +1271,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    - Every corner of a face keeps at least 0.2 of its area and its side, to the end or to half of the iterations, in place of
      the guard: faces stay convex and upright where they were, and edges keep a length. The rows come as they are needed, as
      the group "corners". Where no step is found with them they are let go; gproj_result.spoiled tells what that has cost.
-   Iterations are a limit there, no schedule: allow 100.
+   - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to three
+     times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
+   Iterations are a limit there, no schedule: allow 200.
 
    For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
@@ -11036,7 +11039,7 @@ enum {
     GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
     GPROJI_WAKINGS = 4,         /* from then on no row of the guard waits */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half */
+    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
     GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
@@ -11068,6 +11071,7 @@ typedef struct gproji_loop {
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
+    int32_t earlier;      /* iterations of earlier attempts */
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
     double epsilon_least; /* the least that follows the residual: gproji_epsilon_min, smaller where steps fall short */
@@ -11894,7 +11898,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
 }
 
 GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) {
-    loop->iteration.number = number;
+    loop->iteration.number = loop->earlier + number;
     loop->iteration.residual = loop->standing.residual;
     loop->iteration.merit = loop->standing.merit;
     loop->iteration.energy = loop->standing.energy;
@@ -12007,10 +12011,10 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t half = loop->iterations / 2 + loop->iterations % 2;
+    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST);
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
-        if (loop->result.iterations == half && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
+        if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
@@ -12128,7 +12132,8 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
     const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
-    const char *plural = r->iterations == 1 ? "" : "s";
+    int32_t iterations = loop->earlier + r->iterations;
+    const char *plural = iterations == 1 ? "" : "s";
     char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
@@ -12136,7 +12141,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     r->worst_element = g ? g->row[standing->row].element : -1;
     if (!g) {
         gproji_format(r->message, sizeof r->message,
-                      "there is nothing that must hold; %d iteration%s towards the wishes", r->iterations, plural);
+                      "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
         return;
     }
     gproji_advise(loop, g, more, sizeof more);
@@ -12144,7 +12149,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     if (g->place != GPROJ_PLACE_NONE)
         gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
     gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
-                  gproji_outcome_string(r->outcome), r->iterations, plural, r->residual, g->name, element, more);
+                  gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
 }
 
 /* A result that carries an error's sentence. */
@@ -12630,6 +12635,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     if (gproji_system_is_open(s)) gproji_start_metric(loop);
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->result.spoiled.element = -1;
+    loop->result.attempts = 1;
     gproji_error_clear(&refused);
     if (gproji_system_is_open(s) && gproji_options_are_valid(s, iterations, &loop->options, &refused) &&
         gproji_values_are_valid(s))
@@ -23383,6 +23389,12 @@ GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, i
    latter meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
 static const double gproji_metric_force = 0.3; /* of a change of forces, where steps fail */
+/* The stiffness with which the attempts of a solve begin. */
+static const double gproji_first_stiffness[] = {1, 10, 3};
+enum {
+    GPROJI_ATTEMPTS_MOST = 3,
+    GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
+};
 
 /* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
@@ -24032,10 +24044,109 @@ GPROJI_INTERNAL bool gproji_form_is_open(gproj_form *form) {
     return gproji_form_ready(form) && gproji_system_is_open(form->system);
 }
 
+/* One attempt: a solve at once, after `earlier` iterations of other attempts. */
+GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier, double stiffness,
+                                            const gproj_solve_options *options) {
+    gproj_result result;
+    if (!gproji_begin_solve(form, iterations, options)) return form->solve.loop.result;
+    form->solve.loop.earlier = earlier;
+    if (form->solve.loop.stiff) form->system->stiffness = stiffness;
+    result = gproji_run_solve(form, -1);
+    result.iterations += earlier;
+    return result;
+}
+
+/* Is this an end with which another attempt may do better? */
+GPROJI_INTERNAL bool gproji_falls_short(const gproj_result *result) {
+    return result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT ||
+           (result->outcome == GPROJ_CONVERGED && result->spoiled.total > 0);
+}
+
+/* Is one end better than another: exact first, then whole, then nearer to what must hold? */
+GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_result *b) {
+    bool exact = a->outcome == GPROJ_CONVERGED;
+    if (exact != (b->outcome == GPROJ_CONVERGED)) return exact;
+    return exact ? a->spoiled.total < b->spoiled.total : a->residual < b->residual;
+}
+
+/* Puts the mesh and the variables where a solve began; `started`: the forces had values then. */
+GPROJI_INTERNAL void gproji_rewind(gproj_form *form, const double *start, bool started) {
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(form->system->x, start, (size_t)form->system->variable_count * sizeof *start);
+    if (form->statics) form->statics->started = started;
+}
+
+/* Puts the variables where an attempt has ended, and all that is said of them. */
+GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
+    memcpy(form->system->x, end, (size_t)form->system->variable_count * sizeof *end);
+    gproji_restart_gliding(form);
+    form->system->solving = true;
+    gproji_refresh_groups(form->system);
+    gproji_evaluate(form->system);
+    form->system->solving = false;
+    gproji_store_positions(form, form->before);
+}
+
+/* The seconds of all phases. */
+GPROJI_INTERNAL void gproji_add_seconds(gproj_result *result, const gproj_result *other) {
+    int32_t k;
+    for (k = 0; k < GPROJ_PHASE_COUNT; ++k) result->seconds[k] += other->seconds[k];
+}
+
+/* Attempts with steps of different stiffness: how a path begins decides where it leads. The best end counts. `start`, `end`:
+   one number a variable, the first with the values at hand. */
+GPROJI_INTERNAL gproj_result gproji_solve_in_attempts(gproj_form *form, int32_t iterations,
+                                                      const gproj_solve_options *options, const double *start,
+                                                      double *end) {
+    size_t size = (size_t)form->system->variable_count * sizeof *end;
+    bool started = form->statics && form->statics->started;
+    double begun = gproji_now(form->system);
+    gproj_solve_options how = *options;
+    gproj_result result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
+    int32_t used = result.iterations, attempt = 1;
+    bool here = true;
+    for (; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result); ++attempt) {
+        gproj_result other;
+        if (iterations - used < GPROJI_ATTEMPT_LEAST) break;
+        if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(form->system) - begun);
+        if (options->time_budget > 0 && !(how.time_budget > 0)) break;
+        if (here) memcpy(end, form->system->x, size);
+        gproji_rewind(form, start, started);
+        other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
+        used = other.iterations;
+        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || gproji_ends_better(&other, &result);
+        gproji_add_seconds(here ? &other : &result, here ? &result : &other);
+        if (here) result = other;
+    }
+    result.attempts = attempt;
+    if (!here) gproji_return_to(form, end);
+    return result;
+}
+
+/* A solve that may begin again. */
+GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
+                                                 const gproj_solve_options *options) {
+    size_t count = (size_t)form->system->variable_count;
+    double *start = (double *)gproji_take(&form->own, count, sizeof *start);
+    double *end = (double *)gproji_take(&form->own, count, sizeof *end);
+    gproj_result result;
+    if (start && end) {
+        memcpy(start, form->system->x, count * sizeof *start);
+        result = gproji_solve_in_attempts(form, iterations, options, start, end);
+    } else {
+        gproji_fail_memory(&form->error);
+        result = gproji_failed_result(&form->error);
+    }
+    gproji_give(&form->own, start, count, sizeof *start);
+    gproji_give(&form->own, end, count, sizeof *end);
+    return result;
+}
+
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproj_result result;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
-    result = gproji_begin_solve(form, iterations, options) ? gproji_run_solve(form, -1) : form->solve.loop.result;
+    result = options && options->smooth && !options->nearest ? gproji_solve_smooth(form, iterations, options)
+                                                             : gproji_attempt(form, iterations, 0, 1, options);
     form->solve.finished = false;
     return result;
 }

@@ -767,7 +767,7 @@ static const tool_option options[] = {
      "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
      "best: they keep their weights W to the end",
      "how", set_flag, PLACE(nearest)},
-    {0, "iterations", "N", false, "at most so many (100, most take about 10; with --nearest 30)", NULL, set_iterations,
+    {0, "iterations", "N", false, "at most so many (200, most take about 10; with --nearest 30)", NULL, set_iterations,
      PLACE(iterations)},
     {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
      PLACE(tolerance)},
@@ -965,7 +965,7 @@ static const char *first_about_forces(const tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 100;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
     int i;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
