@@ -20403,13 +20403,23 @@ GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, c
 }
 
 /* The three rows of a gliding vertex: it is on the line of its segment (2 rows orthogonal to the tangent), and, with
-   weight only when it is pinned, at `end`. Everything in internal units. */
+   weight only when it is pinned, at `end`. The first row keeps its direction as nearly as it can, so that values before and
+   after a step are of one kind. Everything in internal units. */
 GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int32_t first, const double tangent[3],
                                         const double end[3], bool pinned) {
+    const gproj_term *old;
     double basis[3][3];
-    int32_t k;
-    gproji_tangents3(tangent, basis[0], basis[1]);
+    int32_t k, count;
+    old = gproji_row_terms(system, group, first, &count);
+    for (k = 0; k < 3; ++k) basis[0][k] = old[k].a;
     gproji_copy3(tangent, basis[2]);
+    gproji_add_scaled3(-gproji_dot3(basis[0], tangent), tangent, basis[0]);
+    if (gproji_length3(basis[0]) > 0.1) {
+        gproji_normalise3(basis[0], tangent);
+        gproji_cross3(tangent, basis[0], basis[1]);
+    } else {
+        gproji_tangents3(tangent, basis[0], basis[1]);
+    }
     for (k = 0; k < 3; ++k) gproj_system_set_row(system, group, first + k, basis[k], -gproji_dot3(basis[k], end));
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
