@@ -11040,7 +11040,7 @@ enum {
     GPROJI_WAKINGS = 4,         /* from then on no row of the guard waits */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
     GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
-    GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed */
+    GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
@@ -11824,7 +11824,7 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
 GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
     if (loop->stiff && loop->factored && loop->standing.residual > 1e-7) {
         loop->failed = true;
-        gproji_stiffen(loop, gproji_fmax(5 * loop->system->stiffness, gproji_stiffness_least));
+        gproji_stiffen(loop, gproji_fmax(3 * loop->system->stiffness, gproji_stiffness_least));
     } else {
         *epsilon *= 10;
     }
@@ -11844,16 +11844,13 @@ GPROJI_INTERNAL void gproji_rest_metric(gproji_loop *loop) {
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double factor = loop->agreement > 0.9 ? 0.1 : loop->agreement > 0.5 ? 0.3 : 0.7, stiffness;
+    bool is_short = loop->iteration.length < 1 || loop->agreement < 0.25;
     if (!loop->stiff) return;
-    if (loop->failed) {
-        loop->wary = GPROJI_WARY;
-        factor = 1;
-    } else if (loop->wary > 0) {
-        loop->wary--;
-        factor = gproji_fmax(factor, 0.5);
-    }
+    if (loop->wary > 0) factor = gproji_fmax(factor, 0.5);
+    if (loop->failed) factor = 1;
+    if (is_short) factor = 2;
+    loop->wary = loop->failed || is_short ? GPROJI_WARY : gproji_max(0, loop->wary - 1);
     loop->failed = false;
-    if (loop->iteration.length < 1 || loop->agreement < 0.25) factor = 3;
     stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
     if (stiffness >= gproji_stiffness_least)
         gproji_stiffen(loop, stiffness);
