@@ -1265,12 +1265,14 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of by
      |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that satisfy the
      linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is biased:
-     no closeness is added. With equilibrium closeness guides as above instead.
-   - Normals, axis points and axes of cones take their best values after each step, so that full steps are good ones: the
-     number of iterations hardly depends on how fine the mesh is.
-   - Every corner of a face keeps at least 0.2 of its area and its side, to the end or to half of the iterations, in place of
-     the guard: faces stay convex and upright where they were, and edges keep a length. The rows come as they are needed, as
-     the group "corners". Where no step is found with them they are let go; gproj_result.spoiled tells what that has cost.
+     no closeness is added. Forces are measured, too, where steps fail.
+   - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent by
+     what the linearised rows have missed: full steps are good ones then, and their number hardly depends on how fine the mesh
+     is.
+   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50 iterations
+     or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and edges keep a
+     length. The rows come as they are needed, as the group "corners". Where no step is found with them they are let go;
+     gproj_result.spoiled tells what that has cost.
    - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to three
      times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
    Iterations are a limit there, no schedule: allow 200.
@@ -24127,6 +24129,11 @@ GPROJI_INTERNAL gproj_result gproji_solve_in_attempts(gproj_form *form, int32_t 
     }
     result.attempts = attempt;
     if (!here) gproji_return_to(form, end);
+    if (attempt > 1 && gproji_falls_short(&result)) {
+        size_t length = strlen(result.message);
+        gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
+                      attempt);
+    }
     return result;
 }
 

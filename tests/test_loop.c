@@ -1157,6 +1157,37 @@ GPROJT_TEST(same_bits_for_all_workers) {
     free(first);
 }
 
+/* A metric that has rested while the rows were compiled measures steps again: its rows are linearised when it comes back. */
+GPROJT_TEST(metric_comes_back) {
+    static const double start[2] = {3, 1};
+    gproj_system *s = gprojt_system(NULL, 2, 1, start);
+    gproj_term product = gprojt_term(0, 1, 1), linear[2];
+    gproji_loop loop;
+    int32_t i;
+    gprojt_add_group(s, "product", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "metric", GPROJ_WISH, 0.1);
+    s->group[1].metric = true;
+    gproj_system_add_row(s, 0, 1, &product, -2, 0);
+    for (i = 0; i < 2; ++i) {
+        linear[i] = gprojt_term(i, -1, 1);
+        gproj_system_add_row(s, 1, 1, &linear[i], 0, i);
+    }
+    GPROJT_CHECK(gproji_begin_loop(&loop, s, 10, NULL) && loop.stiff);
+    GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
+    gproji_start_loop(&loop);
+    gproji_stiffen(&loop, 0);
+    GPROJT_CHECK(s->group[1].weight == 0);
+    gproji_system_forget(s);
+    GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
+    for (i = 0; i < 2; ++i) s->group[1].local_gradient[i] = HUGE_VAL; /* whatever memory had */
+    gproji_see_rows(&loop);
+    gproji_stiffen(&loop, 0.5);
+    GPROJT_CHECK(s->group[1].weight == 0.05);
+    GPROJT_CHECK(s->group[1].local_gradient[0] == 1 && s->group[1].local_gradient[1] == 1);
+    GPROJT_CHECK(gproji_find_step(&loop, 1e-3) && gproji_take_step(s, 0) == 0);
+    gproj_system_destroy(s);
+}
+
 int main(void) {
     GPROJT_RUN(sphere_and_planes);
     GPROJT_RUN(circle_packing);
@@ -1198,5 +1229,6 @@ int main(void) {
     GPROJT_RUN(int32_max_iterations);
     GPROJT_RUN(no_allocation_after_the_first_iteration);
     GPROJT_RUN(same_bits_for_all_workers);
+    GPROJT_RUN(metric_comes_back);
     return gprojt_report();
 }

@@ -52,6 +52,24 @@ GPROJT_TEST(iterations_do_not_grow) {
     }
 }
 
+/* Planar faces in compression, the boundary fixed and supported. */
+static void gprojt_add_carrying(gproj_form *form, void *user) {
+    const gproj_mesh *mesh = (const gproj_mesh *)user;
+    gproj_loads loads;
+    gproj_supports supports;
+    int32_t vertex[512], v, count = 0;
+    memset(&loads, 0, sizeof loads);
+    memset(&supports, 0, sizeof supports);
+    for (v = 0; v < mesh->vertex_count && count < 512; ++v)
+        if (gproj_mesh_is_boundary_vertex(mesh, v)) vertex[count++] = v;
+    loads.density = 1;
+    supports.count = count, supports.vertex = vertex;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_compression(form, mesh->edge_count, NULL, 1);
+}
+
 static void gprojt_add_planar_fixed(gproj_form *form, void *user) {
     gprojt_add_planar(form, user);
     gproj_add_fixed_boundary(form, 1);
@@ -99,13 +117,81 @@ GPROJT_TEST(corners_are_let_go) {
     gproj_mesh_destroy(mesh);
 }
 
+/* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
+GPROJT_TEST(steps_are_bent) {
+    static const int32_t sizes[3] = {6, 11, 16};
+    gproj_solve_options options = gprojt_smooth();
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_twisted(sizes[i], 0.2);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        gprojt_add_circular(form, NULL);
+        result = gproj_solve(form, 100, &options);
+        if (result.iterations > 11) printf("  %d: %s\n", (int)sizes[i], result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 && result.iterations <= 11);
+        GPROJT_CHECK(result.attempts == 1);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+typedef struct gprojt_attempts {
+    int32_t last, calls, cancel_at;
+    bool ascending;
+} gprojt_attempts;
+
+static bool gprojt_count_iterations(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    gprojt_attempts *seen = (gprojt_attempts *)user;
+    (void)system;
+    seen->ascending = seen->ascending && iteration->number > seen->last;
+    seen->last = iteration->number;
+    return ++seen->calls != seen->cancel_at;
+}
+
+/* Faces with all vertices fixed beside others that are free: nothing helps. Three attempts share the iterations, the best end
+   counts, and mesh, groups and verdict are of the same one. */
+GPROJT_TEST(attempts) {
+    static const int32_t limits[3] = {200, 20, 5};
+    int i, cancelled;
+    for (i = 0; i < 3; ++i)
+        for (cancelled = 0; cancelled < 2; ++cancelled) {
+            static const int32_t fixed[4] = {0, 1, 7, 8};
+            gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+            gproj_solve_options options = gprojt_smooth();
+            gprojt_attempts seen = {0, 0, 0, true};
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_result result;
+            double most = 0;
+            int32_t g;
+            gproj_add_planarity(form, 1);
+            gproj_add_fixed(form, 4, fixed, 1);
+            options.on_iteration = gprojt_count_iterations;
+            options.user = &seen;
+            if (cancelled) seen.cancel_at = 3;
+            result = gproj_solve(form, limits[i], &options);
+            GPROJT_CHECK(seen.ascending && seen.last <= limits[i] && result.iterations <= seen.last);
+            GPROJT_CHECK(cancelled ? result.outcome == GPROJ_CANCELLED && result.attempts == 1 && result.iterations == 3
+                                   : result.outcome == GPROJ_STALLED || result.outcome == GPROJ_ITERATION_LIMIT);
+            if (!cancelled)
+                GPROJT_CHECK(i == 0 ? result.attempts == 3 : i == 1 ? result.attempts <= 2 : result.attempts == 1);
+            for (g = 0; g < gproj_system_group_count(gproj_form_system(form)); ++g) {
+                gproj_group_info info = gproj_system_group_info(gproj_form_system(form), g);
+                if (info.kind == GPROJ_CONSTRAINT && info.max > most) most = info.max;
+            }
+            GPROJT_NEAR(most, result.residual, 1e-9);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
    and in a new one. */
 GPROJT_TEST(frames_and_states) {
     gproj_solve_options options = gprojt_smooth();
     int32_t at, most = 1;
-    int circular;
-    for (circular = 0; circular < 2; ++circular)
+    int kind;
+    for (kind = 0; kind < 3; ++kind)
         for (at = 0, most = 1; at < most; ++at) {
             gproj_mesh *mesh[2] = {gprojt_twisted(7, 0.15), gprojt_twisted(7, 0.15)};
             gproj_form *form[2];
@@ -117,7 +203,9 @@ GPROJT_TEST(frames_and_states) {
             int32_t k;
             for (k = 0; k < 2; ++k) {
                 form[k] = gproj_form_create(mesh[k], NULL);
-                (circular ? gprojt_add_circular : gprojt_add_planar)(form[k], NULL);
+                (kind == 0   ? gprojt_add_planar
+                 : kind == 1 ? gprojt_add_circular
+                             : gprojt_add_carrying)(form[k], mesh[k]);
             }
             GPROJT_CHECK(gproj_step_begin(form[0], 60, &options));
             for (k = 0; k < at && gproj_step_is_on(form[0]); ++k) gproj_step(form[0], 0);
@@ -166,6 +254,7 @@ GPROJT_TEST(every_allocation_fails_once) {
     gproj_solve_options options = gprojt_smooth();
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planar, NULL, 30, &options) >= 30);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 30, &options) >= 30);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_carrying, mesh, 30, &options) >= 30);
     gproj_mesh_destroy(mesh);
 }
 
@@ -173,6 +262,8 @@ int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
+    GPROJT_RUN(steps_are_bent);
+    GPROJT_RUN(attempts);
     GPROJT_RUN(frames_and_states);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);

@@ -2336,6 +2336,7 @@ static void report_result(json *j, const tool *t) {
     json_string(j, "sentence", result->message);
     json_integer(j, "iterations", result->iterations);
     json_integer(j, "damped", result->damped);
+    json_integer(j, "attempts", result->attempts);
     json_number(j, "residual", result->residual);
     json_number(j, "tolerance", result->tolerance);
     json_number(j, "last_step", result->step);

@@ -16,7 +16,7 @@
 #include "../guidedproj.h"
 
 enum {
-    ITERATIONS = 60,
+    ITERATIONS = 200,
     STARTS = 3,
     CASES = 24
 };
@@ -114,6 +114,7 @@ static suite_end run(gproj_mesh *mesh, double *original, const suite_case *what,
     memset(&options, 0, sizeof options);
     options.epsilon = paper ? 1e-3 : 0;
     options.skip_damping = options.skip_closeness = options.skip_guard = paper;
+    options.smooth = !paper;
     end.result = gproj_solve(form, ITERATIONS, &options);
     end.residual = end.result.residual;
     end.moved = gproj_measure(mesh, original, NULL).displacement_mean;
