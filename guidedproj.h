@@ -12215,7 +12215,8 @@ static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is pos
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,   /* iterations at the beginning */
-    GPROJI_NEAREST_RESTORE = 5,  /* iterations at the end */
+    GPROJI_NEAREST_RESTORE = 5,  /* iterations at the end, a tenth of many, up to */
+    GPROJI_NEAREST_RESTORE_MOST = 8,
     GPROJI_NEAREST_ATTEMPTS = 6, /* factorisations with curvature, before those without */
     GPROJI_NEAREST_ROUNDS = 12,  /* multipliers with one factorisation */
     GPROJI_NEAREST_HALVES = 5,   /* lengths of a step */
@@ -12570,7 +12571,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
-    int32_t last = iterations - gproji_min(GPROJI_NEAREST_RESTORE, iterations / 3);
+    int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
+    int32_t last = iterations - gproji_min(restore, iterations / 3);
     for (n = loop->result.iterations + 1; n <= iterations; ++n) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
