@@ -24034,6 +24034,32 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     if (gproji_has_group_on(form, "conicality")) gproji_tell_flat_cones(form, result);
 }
 
+/* Has the solve led beyond the coordinates that a mesh may have? */
+GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
+    const double *x = gproj_system_values(form->system);
+    int32_t i, k;
+    for (i = 0; i < form->mesh->vertex_count; ++i) {
+        double p[3];
+        gproji_from_internal(form, x + 3 * (size_t)i, p);
+        for (k = 0; k < 3; ++k)
+            if (!(fabs(p[k]) <= GPROJI_COORDINATE_MAX)) return true;
+    }
+    return false;
+}
+
+/* Ends a solve that has led beyond all coordinates, which are not written. */
+GPROJI_INTERNAL gproj_result gproji_end_beyond(gproj_form *form) {
+    gproj_result *result = &form->solve.loop.result;
+    form->solve.on = false, form->solve.finished = true;
+    gproji_load_positions(form);
+    result->outcome = GPROJ_STALLED;
+    gproji_format(
+        result->message, sizeof result->message,
+        "the steps have led beyond coordinates of 1e70, so the mesh is left where it was: ask for less, or fix "
+        "vertices");
+    return *result;
+}
+
 /* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
     gproji_solve *solve = &form->solve;
@@ -24046,6 +24072,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
     if (ended) solve->on = false, solve->finished = true;
     if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
+    if (gproji_is_beyond(form)) return gproji_end_beyond(form);
     gproji_store_positions(form, form->before);
     if (ended) gproji_finish_solve(form);
     return solve->loop.result;

@@ -2038,6 +2038,33 @@ GPROJT_TEST(no_allocation_in_a_second_solve) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A solve that leads beyond the coordinates of a mesh leaves it where it was, and says so; it can be solved again. */
+GPROJT_TEST(beyond_all_coordinates) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(1));
+    gproj_form *form;
+    gproj_solve_options options;
+    double *before;
+    int32_t i;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] *= 1e66;
+    before = gprojt_keep(mesh);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_volume(form, 1e16 * gproj_volume(mesh), 1); /* edges of some 1e71 */
+    memset(&options, 0, sizeof options);
+    for (i = 0; i < 3; ++i) {
+        gproj_result result;
+        options.smooth = i == 1, options.nearest = i == 2;
+        result = gproj_solve(form, 60, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED && strstr(result.message, "beyond coordinates of 1e70"));
+        GPROJT_CHECK(gprojt_unmoved(mesh, before) && gproj_form_error(form)->code == GPROJ_OK);
+    }
+    GPROJT_CHECK(gproj_step_begin(form, 60, NULL));
+    while (gproj_step_is_on(form)) gproj_step(form, 0);
+    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(builders);
     GPROJT_RUN(gradients_of_everything);
@@ -2099,5 +2126,6 @@ int main(void) {
     GPROJT_RUN(verdict_names_what_fights);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
+    GPROJT_RUN(beyond_all_coordinates);
     return gprojt_report();
 }
