@@ -441,10 +441,8 @@ typedef enum gproj_kind {
 } gproj_kind;
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
-   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at most). So
-   {w} is the
-   constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1,
-   last >= 0. */
+   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at most).
+   So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
@@ -518,7 +516,7 @@ typedef enum gproj_outcome {
 
 /* What one iteration did; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number;    /* from 1; numbers are left out where no step can be found before a schedule ends */
+    int32_t number; /* from 1, through all attempts; some are left out where no step is found before a schedule ends */
     double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
     double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
     double energy;     /* the wishes' part of it */
@@ -575,7 +573,7 @@ typedef struct gproj_spoiled {
 typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
-    int32_t damped;     /* of these, steps that were damped, shortened, guarded or met bounds */
+    int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
     int32_t attempts;   /* how often a smooth gproj_solve has begun; 1 otherwise */
     double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;   /* what it was compared with */
@@ -11031,6 +11029,7 @@ static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
+static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffer steps are no help */
 static const double gproji_brake_most = 9;   /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;   /* residual below which refreshes may settle */
 static const double gproji_shortest = 0.125; /* part of a step whose local unknowns are settled */
@@ -11556,13 +11555,12 @@ GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
 
 GPROJI_INTERNAL bool gproji_is_refused(gproj_system *s) { return s->hooks.refuse && s->hooks.refuse(s->hooks.user, s); }
 
-/* Where an owner settles local unknowns: goes t of the step, settles them, linearises rows anew and returns the true merit.
+/* For owners that settle local unknowns: goes t of the step, settles them, linearises rows anew and returns the true merit.
    Where that is above what it is without settling, which `course` knows, they stay as the step has made them. */
 GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit, plain;
     loop->iteration.step = gproji_take_step(s, t);
-    if (!s->hooks.settle) return 0;
     gproji_settle(s);
     gproji_refresh_groups(s);
     merit = gproji_merit_here(s);
@@ -11740,29 +11738,13 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
-/* All multipliers are 0. */
-GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
-    int32_t i;
-    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
-    if (!s->sum) return false;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        size_t rows = (size_t)g->row_count;
-        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
-        if (!g->multiplier) return false;
-        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
-    }
-    return true;
-}
-
 /* Compiles again during a solve: `anew`, or where steps are found by multipliers and a group gets its first weight. x is
    where the step begins, and s->saved then too. Returns whether rows were compiled; there may be an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
     gproji_system_forget(s);
-    if (gproji_compile(s, loop->options.nearest) != GPROJ_OK) return true;
-    if (loop->options.nearest && !gproji_start_multipliers(s)) gproji_fail_memory(&s->error);
+    if (gproji_compile(s, false) != GPROJ_OK) return true;
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
     gproji_pass_over(s, 0, gproji_save_task);
@@ -11825,7 +11807,7 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
 
 /* After an attempt that was not good: stiffer steps, or a larger eps where that is not what was missing. */
 GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
-    if (loop->stiff && loop->factored && loop->standing.residual > 1e-7) {
+    if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
         loop->failed = true;
         gproji_stiffen(loop, gproji_fmax(3 * loop->system->stiffness, gproji_stiffness_least));
     } else {
@@ -11839,8 +11821,7 @@ GPROJI_INTERNAL void gproji_rest_metric(gproji_loop *loop) {
     int32_t i;
     gproji_stiffen(loop, 0);
     for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
-    if (!loop->options.nearest && !s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s)))
-        gproji_place_woken(loop, true);
+    if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
 }
 
 /* After a good step: the stiffness of the next one. */
@@ -11858,7 +11839,7 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     if (stiffness >= gproji_stiffness_least)
         gproji_stiffen(loop, stiffness);
     else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
-             (factor > 1 && loop->standing.residual > 1e-7))
+             (factor > 1 && loop->standing.residual > gproji_stiffness_ends))
         gproji_stiffen(loop, gproji_stiffness_least);
     else if (s->stiffness > 0)
         gproji_rest_metric(loop);
@@ -12237,6 +12218,21 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
         if (g->guard && !s->sliding) g->weight = 0;
         if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
     }
+}
+
+/* All multipliers are 0. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    int32_t i;
+    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
+    if (!s->sum) return false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier) return false;
+        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return true;
 }
 
 /* Does the row have a multiplier now? */
@@ -23903,9 +23899,9 @@ typedef struct gproji_settling {
     int32_t tasks;
 } gproji_settling;
 
-/* The normal n of a face that makes sum (n'e)^2 over its edges e smallest, with n'n = 1: two steps of inverse iteration from
-   the n at hand, which keeps its side. */
-GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, double *x, int32_t face, double n[3]) {
+/* The normal n of a face that makes sum (n'e)^2 over its edges e smallest, with n'n = 1: a few steps of inverse iteration
+   from the n at hand, which keeps its side. */
+GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, const double *x, int32_t face, double n[3]) {
     double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3];
     int32_t h = mesh->face_halfedge[face], c, round;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
@@ -24677,9 +24673,10 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         if (gproji_kind_of_group(form, k)) list[count++] = (int32_t)gproji_kind_of_group(form, k);
     count = gproji_pass_integer(stream, &count, 0, GPROJI_OWN_COUNT - 1);
     for (k = 0; k < count && !stream->wrong; ++k) {
+        bool of_forces;
         if (gproji_comes_in(stream)) list[k] = 0;
         list[k] = (int32_t)gproji_pass_bytes(stream, (uint64_t)list[k], 1);
-        bool of_forces = list[k] == GPROJI_OWN_FORCES || list[k] == GPROJI_OWN_BRAKE;
+        of_forces = list[k] == GPROJI_OWN_FORCES || list[k] == GPROJI_OWN_BRAKE;
         if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (form->statics || !of_forces))
             gproji_add_own_group(form, (gproji_own)list[k]);
     }
