@@ -11555,13 +11555,11 @@ GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
 
 GPROJI_INTERNAL bool gproji_is_refused(gproj_system *s) { return s->hooks.refuse && s->hooks.refuse(s->hooks.user, s); }
 
-/* For owners that settle local unknowns: goes t of the step, settles them, linearises rows anew and returns the true merit.
-   Where that is above what it is without settling, which `course` knows, they stay as the step has made them. */
-GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_course *course) {
+/* Linearises rows at x, where t of the step has led and local unknowns are settled, and returns the true merit. Where that
+   is above what it is without settling, which `course` knows, they stay as the step has made them. */
+GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit, plain;
-    loop->iteration.step = gproji_take_step(s, t);
-    gproji_settle(s);
     gproji_refresh_groups(s);
     merit = gproji_merit_here(s);
     if (merit <= gproji_merit_at(course, t)) return merit;
@@ -11573,6 +11571,13 @@ GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_cours
     gproji_settle(s);
     gproji_refresh_groups(s);
     return merit;
+}
+
+/* For owners that settle local unknowns: goes t of the step and settles them there. Returns the true merit. */
+GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_course *course) {
+    loop->iteration.step = gproji_take_step(loop->system, t);
+    gproji_settle(loop->system);
+    return gproji_arrive(loop, t, course);
 }
 
 /* phi of all rows that act = by how much the linearised ones are wrong at x, where the full step has led. */
@@ -11623,9 +11628,9 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
 }
 
 /* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
-   must lower it. 0: none. `none`: the merit before. */
+   must lower it. 0: none. x is at the end of the full step, `none` the merit before. */
 GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course) {
-    double merit = gproji_go(loop, 1, course), promised = none - course->model, t = 1;
+    double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
     if (!loop->system->schur.on && none - merit < gproji_bend_below * promised)
         merit = gproji_bend_step(loop, course, merit);
     loop->agreement = promised > 0 ? (none - merit) / promised : 1;
@@ -11644,22 +11649,18 @@ GPROJI_INTERNAL void gproji_go_on(gproji_loop *loop, double t) {
 GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproj_system *s = loop->system;
     gproji_course merit;
-    double none, full, t = 1;
+    double none, full, t;
     loop->agreement = 1;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
     gproji_merit_along(s, &merit);
     none = gproji_merit_at(&merit, 0);
-    if (s->hooks.settle) {
-        t = gproji_backtrack(loop, none, &merit);
-        if (t < 1) return t;
-    } else {
-        full = gproji_merit_at(&merit, 1);
-        if (!(full <= DBL_MAX)) return 0;
-        loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
-        if (full > none) {
-            t = gproji_minimise_merit(&merit, 0.05, 1);
-            return gproji_merit_at(&merit, t) < none ? t : 0;
-        }
+    if (s->hooks.settle) return gproji_backtrack(loop, none, &merit);
+    full = gproji_merit_at(&merit, 1);
+    if (!(full <= DBL_MAX)) return 0;
+    loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
+    if (full > none) {
+        t = gproji_minimise_merit(&merit, 0.05, 1);
+        return gproji_merit_at(&merit, t) < none ? t : 0;
     }
     if (gproji_wishes_are_on(s) || loop->standing.residual > 1e-2) return 1;
     t = gproji_minimise_merit(&merit, 0.1, 2);

@@ -39,6 +39,7 @@ static const bench_problem bench_problems[] = {
     {"fairness", BENCH_FAIRNESS, bench_quad_mesh, {0.40, 0.35, 0.35, 0.35, 0.35, 0.35, 0.30}},
     {"hybrid", BENCH_PLANARITY, bench_hybrid_mesh, {0}},
     {"volume", BENCH_VOLUME, bench_closed, {0}},
+    {"default", BENCH_DEFAULT, bench_quad_mesh, {0}},
 };
 enum {
     BENCH_PROBLEMS = sizeof bench_problems / sizeof *bench_problems,
@@ -110,6 +111,7 @@ typedef struct bench_run {
     double *step, *next; /* CHOLMOD's next step, as it is and refined */
     double our_error, their_error;
     bench_samples ours, theirs;
+    bench_samples guided; /* of a default solve: ours while the smooth metric acts */
 } bench_run;
 
 /* The largest difference of two vectors over the largest entry of the second. */
@@ -164,7 +166,8 @@ static bool bench_foresee(bench_run *run) {
 static bool bench_visit_step(void *user, const bench_step *step) {
     bench_run *run = (bench_run *)user;
     if (run->expecting) bench_compare_steps(run, step);
-    if (step->number > 1 && (run->alone || !run->apart)) bench_add_sample(&run->ours, step->seconds);
+    if (step->number > 1 && step->once && (run->alone || !run->apart))
+        bench_add_sample(step->guided ? &run->guided : &run->ours, step->seconds);
     if (run->alone || step->number == run->iterations) return true;
     run->failed = !bench_foresee(run);
     return !run->failed;
@@ -355,14 +358,32 @@ static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *op
     return measured;
 }
 
+/* A default solve's iterations beside plain ones. */
+static bool bench_measure_default(const bench_mesh *mesh, const bench_options *options, bench_result *result) {
+    static const bench_task task[2] = {BENCH_DEFAULT, BENCH_PLANARITY};
+    static const int32_t workers[2] = {0, 0};
+    bench_run *run[2];
+    bool measured = bench_pair(run, mesh, task, workers, options->samples);
+    if (measured) {
+        result->ours = bench_simd.facts(run[0]->form);
+        result->samples = run[0]->ours.count;
+        bench_medians(&run[0]->ours, result->our_seconds);
+        result->guided = bench_median_whole(&run[0]->guided);
+        result->plain = bench_median_whole(&run[1]->ours);
+    }
+    bench_end_pair(run);
+    return measured;
+}
+
 /* Measures one case and tells its ratio. False where it cannot be measured. */
 static bool bench_case(const bench_mesh *mesh, bench_task task, const bench_options *options, bench_result *result) {
-    bool measured;
+    bool measured, beside = task != BENCH_VOLUME && task != BENCH_DEFAULT; /* CHOLMOD's */
     fprintf(stderr, "%s %d\n", result->problem, (int)result->nominal);
-    measured = task == BENCH_VOLUME ? bench_measure_volume(mesh, options, result)
-                                    : bench_measure_both(mesh, task, options, result);
+    measured = task == BENCH_VOLUME    ? bench_measure_volume(mesh, options, result)
+               : task == BENCH_DEFAULT ? bench_measure_default(mesh, options, result)
+                                       : bench_measure_both(mesh, task, options, result);
     if (!measured) fprintf(stderr, "bench: %s %d: nothing to measure\n", result->problem, (int)result->nominal);
-    if (measured && !options->quick && task != BENCH_VOLUME) bench_measure_others(mesh, task, options->samples, result);
+    if (measured && !options->quick && beside) bench_measure_others(mesh, task, options->samples, result);
     if (measured && bench_has_both(result) && !options->markdown)
         printf("ratio %s %d %.3f\n", result->problem, (int)result->nominal, bench_ratio(result));
     fflush(stdout);
@@ -451,7 +472,8 @@ static const char bench_help[] =
     "\n"
     "  --quick         five problems up to 10000 vertices, ours and CHOLMOD's only\n"
     "  --problem NAME  only this one; may be repeated: quad, closed, hex, statics,\n"
-    "                  fairness, hybrid, volume, or a real mesh in the folder\n"
+    "                  fairness, hybrid, volume, default (a default solve's\n"
+    "                  iterations over plain ones), or a real mesh in the folder\n"
     "                  GPROJ_DATA or ../shared/data\n"
     "  --size V        only with about V vertices; may be repeated\n"
     "  --samples N     at least N samples of each time (9)\n"

@@ -26,7 +26,8 @@ typedef enum bench_task {
     BENCH_PLANARITY,
     BENCH_STATICS,  /* equilibrium with the boundary fixed and supporting */
     BENCH_FAIRNESS, /* fairness that stays on */
-    BENCH_VOLUME    /* one global row */
+    BENCH_VOLUME,   /* one global row */
+    BENCH_DEFAULT   /* planarity by a default solve: smooth, with damping and safeguards */
 } bench_task;
 
 /* The phases of an iteration, of any solver. */
@@ -68,6 +69,8 @@ typedef struct bench_step {
     double seconds[BENCH_PHASES];
     const double *dx;
     double largest; /* |dx| */
+    bool guided;    /* default: the smooth metric acted */
+    bool once;      /* one factorisation */
 } bench_step;
 
 /* False: that was enough. */

@@ -15,6 +15,8 @@ struct bench_form {
     double held, peak; /* bytes of the form and all it makes, now and at most */
     bench_visit visit;
     void *user;
+    bench_task task;
+    bool guided; /* the next iteration */
 };
 
 static double bench_processor_time(void *user) { return (void)user, bench_now(); }
@@ -69,6 +71,7 @@ static void bench_add_rows(bench_form *f, bench_task task) {
     gproj_add_planarity(f->form, 1);
     if (task == BENCH_STATICS) bench_add_statics(f);
     if (task == BENCH_FAIRNESS) gproj_set_schedule(f->form, gproj_add_fairness(f->form, 0.2), always);
+    f->task = task;
     if (task == BENCH_VOLUME) gproj_add_volume(f->form, gproj_volume(f->mesh), 1);
 }
 
@@ -109,7 +112,8 @@ static bool bench_after_iteration(void *user, gproj_system *system, const gproj_
     bench_form *f = (bench_form *)user;
     bench_step step;
     int p;
-    if (iteration->attempts != 1) {
+    step.once = iteration->attempts == 1;
+    if (!step.once && f->task != BENCH_DEFAULT) {
         fprintf(stderr, "bench: %d factorisations in one iteration\n", (int)iteration->attempts);
         return false;
     }
@@ -118,6 +122,8 @@ static bool bench_after_iteration(void *user, gproj_system *system, const gproj_
     step.variables = system->variable_count;
     step.dx = system->step;
     step.largest = iteration->step;
+    step.guided = f->guided;
+    f->guided = system->stiffness > 0;
     return f->visit(f->user, &step);
 }
 
@@ -125,8 +131,12 @@ static bool bench_solve_form(bench_form *f, int32_t iterations, bench_visit visi
     gproj_solve_options options;
     gproj_result result;
     memset(&options, 0, sizeof options);
-    options.epsilon = BENCH_EPSILON;
-    options.skip_damping = options.skip_closeness = options.skip_guard = true;
+    if (f->task == BENCH_DEFAULT) {
+        options.smooth = f->guided = true;
+    } else {
+        options.epsilon = BENCH_EPSILON;
+        options.skip_damping = options.skip_closeness = options.skip_guard = true;
+    }
     options.on_iteration = bench_after_iteration;
     options.user = f;
     f->visit = visit;

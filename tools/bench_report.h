@@ -23,6 +23,7 @@ typedef struct bench_result {
     double cblas, scalar;                                        /* whole iterations of ours in other ways */
     double one_worker, two_workers;                              /* the same by the clock on the wall */
     double without;                                              /* volume: a whole iteration without the global row */
+    double guided, plain; /* default: whole iterations while the smooth metric acts, and plain ones */
     double our_error, their_error; /* of a step: largest difference from the refined one, relative */
 } bench_result;
 
@@ -180,6 +181,10 @@ static void bench_write_verdicts(FILE *file, const bench_report *report) {
         double whole = r->our_seconds[BENCH_WHOLE], share = bench_our_rate(r) / peak;
         if (r->without > 0)
             bench_write_verdict(file, r, "with over without the global row", whole / r->without, false, 1.1);
+        if (r->plain > 0) {
+            bench_write_verdict(file, r, "default over plain, metric at rest", whole / r->plain, false, 1.5);
+            bench_write_verdict(file, r, "default over plain, metric acting", r->guided / r->plain, false, 4);
+        }
         if (!bench_has_both(r) || r->bound == 0) continue;
         if (r->nominal >= 30000) bench_write_verdict(file, r, "factorisation, part of dgemm's peak", share, true, 0.45);
         if (r->nominal == 3500) bench_write_verdict(file, r, "factorisation, part of dgemm's peak", share, true, 0.25);
@@ -229,6 +234,8 @@ static void bench_write_json_result(FILE *file, const bench_result *r) {
     if (r->two_workers > 0)
         fprintf(file, "      \"workers_wall_seconds\": [%.9g, %.9g],\n", r->one_worker, r->two_workers);
     if (r->without > 0) fprintf(file, "      \"without_global_row_seconds\": %.9g,\n", r->without);
+    if (r->plain > 0)
+        fprintf(file, "      \"guided_seconds\": %.9g, \"plain_seconds\": %.9g,\n", r->guided, r->plain);
     fprintf(file, "      \"agrees\": %s}", bench_agrees(r) ? "true" : "false");
 }
 
