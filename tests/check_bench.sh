@@ -59,6 +59,7 @@ for problem in closed hex statics fairness hybrid; do
     clean "bench --problem $problem" "$([ $? = 0 ] && grep -q "^ratio $problem 200 " "$problem.txt" || cat "$problem.txt")"
 done
 "$bench" --problem volume --size 200 --samples 1 2>&1 | grep -q 'the global row *volume' && pass || fail 'bench --problem volume'
+"$bench" --problem default --size 200 --samples 1 2>&1 | grep -q 'default over plain, metric at rest' && pass || fail 'bench --problem default'
 "$bench" --quick --problem quad --size 500 --samples 1 --markdown 2>/dev/null | grep -q '^| planar quads | [0-9.]* |$' && pass ||
     fail 'bench --markdown'
 report

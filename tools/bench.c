@@ -39,7 +39,7 @@ static const bench_problem bench_problems[] = {
     {"fairness", BENCH_FAIRNESS, bench_quad_mesh, {0.40, 0.35, 0.35, 0.35, 0.35, 0.35, 0.30}},
     {"hybrid", BENCH_PLANARITY, bench_hybrid_mesh, {0}},
     {"volume", BENCH_VOLUME, bench_closed, {0}},
-    {"default", BENCH_DEFAULT, bench_quad_mesh, {0}},
+    {"default", BENCH_DEFAULT, bench_closed, {0}},
 };
 enum {
     BENCH_PROBLEMS = sizeof bench_problems / sizeof *bench_problems,
