@@ -11198,19 +11198,6 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* By how much rounding may change the linear part of a row of a compiled group. */
-GPROJI_INTERNAL double gproji_row_rounding(const gproji_group *g, const gproji_row *row, const double *x) {
-    const int32_t *variable = g->local_variable + row->local;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    double sum = 0;
-    if (row->run)
-        sum = gproji_absolute_dot(g->local_gradient + row->local, x + variable[0], row->terms);
-    else
-        for (; term < end; ++term)
-            if (term->j < 0) sum += fabs(term->a * x[variable[term->i]]);
-    return 16 * DBL_EPSILON * sum;
-}
-
 /* A pass over all variables, by several threads. */
 typedef struct gproji_pass {
     gproj_system *system;
@@ -11294,12 +11281,6 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* Is the row x_i + c, which holds exactly at a number, however large? */
-GPROJI_INTERNAL bool gproji_is_place(const gproji_group *g, const gproji_row *row) {
-    const gproj_term *term = g->term + row->term;
-    return row->terms == 1 && term->j < 0 && fabs(term->a) == 1;
-}
-
 /* max |x| of the variables of rows that must hold; `all` where none must. */
 GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
     double largest = 0;
@@ -11310,74 +11291,81 @@ GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) 
         const gproji_group *g = &s->group[i];
         for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
+            const gproj_term *term = g->term + row->term;
             if (!(row->weight > 0)) continue;
             none = false;
-            for (l = row->local; !gproji_is_place(g, row) && l < row[1].local; ++l)
+            if (row->terms == 1 && term->j < 0 && fabs(term->a) == 1) continue; /* x_i + c is exact, however large */
+            for (l = row->local; l < row[1].local; ++l)
                 largest = gproji_fmax(largest, fabs(s->x[g->local_variable[l]]));
         }
     }
     return none ? all : largest;
 }
 
-/* The caller's tolerance, or what rounding allows at this x. A variable far away that no row has raises nothing; it is
-   looked for only where it would. */
+/* The caller's tolerance, or the residual that rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     gproj_system *s = loop->system;
     double tolerance, extent;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
+    /* 1. Rounding of single variables. One far away that no row names raises nothing; it is looked for only where it would. */
     extent = gproji_pass_over(s, 0, gproji_extent_task);
     if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
     tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; s->group[i].global && s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            tolerance = gproji_fmax(tolerance, gproji_row_rounding(&s->group[i], &s->group[i].row[r], s->x));
+    /* 2. Rounding of long sums: the linear terms of global rows. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->global && g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            const int32_t *variable = g->local_variable + row->local;
+            const gproj_term *term = g->term + row->term, *end = term + row->terms;
+            double sum = 0;
+            if (row->run)
+                sum = gproji_absolute_dot(g->local_gradient + row->local, s->x + variable[0], row->terms);
+            else
+                for (; term < end; ++term)
+                    if (term->j < 0) sum += fabs(term->a * s->x[variable[term->i]]);
+            tolerance = gproji_fmax(tolerance, 16 * DBL_EPSILON * sum);
+        }
+    }
     return gproji_fmin(tolerance, gproji_tolerance_most);
 }
 
-/* What rounding of the variables may change in an evaluated row: 4 roundings of sum_k |dphi/dx_k x_k|. */
-GPROJI_INTERNAL double gproji_row_noise(const gproj_system *s, const gproji_group *g, const gproji_row *row) {
-    double sum = 0;
-    int64_t l;
-    for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local_gradient[l] * s->x[g->local_variable[l]]);
-    return 4 * DBL_EPSILON * sum;
-}
-
-/* The largest noise of the evaluated rows that are above the tolerance. Infinite where one of them is above its own noise,
-   too: that is no matter of rounding. */
+/* The largest noise of the evaluated rows that are above the tolerance: 4 roundings of sum_k |dphi/dx_k x_k|. Infinite where
+   one of them is above its own noise, too: that is no matter of rounding. */
 GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
     const gproj_system *s = loop->system;
     double largest = 0;
+    int64_t l;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
-            double phi = fabs(gproji_counted(g, g->row[r].phi)), noise;
+            const gproji_row *row = &g->row[r];
+            double phi = fabs(gproji_counted(g, row->phi)), sum = 0;
             if (phi <= loop->tolerance) continue;
-            noise = gproji_row_noise(s, g, &g->row[r]);
-            if (!(phi <= noise)) return HUGE_VAL;
-            largest = gproji_fmax(largest, noise);
+            for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local_gradient[l] * s->x[g->local_variable[l]]);
+            if (!(phi <= 4 * DBL_EPSILON * sum)) return HUGE_VAL;
+            largest = gproji_fmax(largest, 4 * DBL_EPSILON * sum);
         }
     }
     return largest;
 }
 
-/* Large forces have large roundings, which max |x| does not tell: raises an automatic tolerance where it is these that keep
-   rows from holding. Only a residual between the tolerance and its upper limit costs a look at the rows. */
-GPROJI_INTERNAL void gproji_raise_tolerance(gproji_loop *loop) {
-    double residual = loop->standing.residual, noise;
-    if (loop->options.tolerance > 0 || residual <= loop->tolerance || !(residual <= gproji_noise_most)) return;
-    noise = gproji_noise_above(loop);
-    if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
-}
-
-/* Gradients and standing at the current x, of the rows as they are. */
+/* Evaluates the rows as they are at the current x: gradients, tolerance and standing. */
 GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
+    double residual;
     loop->tolerance = gproji_tolerance_at(loop);
     loop->system->rounding = loop->tolerance;
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
-    gproji_raise_tolerance(loop);
+    residual = loop->standing.residual;
+    /* Large forces have large roundings, which max |x| does not tell. Only a residual between the automatic tolerance and
+       its upper limit costs a look at the rows. */
+    if (loop->options.tolerance <= 0 && residual > loop->tolerance && residual <= gproji_noise_most) {
+        double noise = gproji_noise_above(loop);
+        if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
+    }
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
@@ -11387,35 +11375,28 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
     gproji_see_rows(loop);
 }
 
-/* The step by multipliers. */
-GPROJI_INTERNAL bool gproji_find_schur_step(gproji_loop *loop, double epsilon) {
-    gproj_system *s = loop->system;
-    bool factored;
-    gproji_schur_assemble(s, epsilon);
-    gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = gproji_schur_factor(s);
-    loop->iteration.attempts++;
-    gproji_lap(loop, GPROJ_PHASE_FACTOR);
-    if (factored) gproji_schur_finish(s);
-    gproji_lap(loop, GPROJ_PHASE_SOLVE);
-    return factored;
-}
-
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    int32_t wide;
-    bool fused, factored;
-    if (s->schur.on) return gproji_find_schur_step(loop, epsilon);
-    gproji_merit_gradient(s);
-    wide = gproji_step_sides(s);
-    fused = wide < s->cholesky->batch;
+    int32_t wide = 0;
+    bool by_multipliers = s->schur.on, fused = false, factored;
+    if (by_multipliers) {
+        gproji_schur_assemble(s, epsilon);
+    } else {
+        gproji_merit_gradient(s);
+        wide = gproji_step_sides(s);
+        fused = wide < s->cholesky->batch; /* right-hand sides go through the fronts while these are in the cache */
+    }
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
+    factored = by_multipliers ? gproji_schur_factor(s)
+                              : gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
-    gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
+    if (by_multipliers)
+        gproji_schur_finish(s);
+    else
+        gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -11435,29 +11416,7 @@ typedef struct gproji_course {
     const gproji_hinge *hinge;
 } gproji_course;
 
-/* w^2 (phi + t h + t^2 q)^2 */
-GPROJI_INTERNAL void gproji_add_quartic(const gproji_hinge *row, double c[5]) {
-    double w2 = row->w2, phi = row->phi, h = row->h, q = row->q;
-    c[0] += w2 * phi * phi;
-    c[1] += w2 * 2 * phi * h;
-    c[2] += w2 * (h * h + 2 * phi * q);
-    c[3] += w2 * 2 * h * q;
-    c[4] += w2 * q * q;
-}
-
-/* The row's products at dx: phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference. */
-GPROJI_INTERNAL double gproji_row_products(const gproji_group *g, const gproji_row *row, const double *dx) {
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    const int32_t *variable = g->local_variable + row->local;
-    double sum = 0;
-    if (row->run) return 0;
-    for (; term < end; ++term)
-        if (term->j >= 0) sum += term->a * dx[variable[term->i]] * dx[variable[term->j]];
-    return sum;
-}
-
-/* M(t) along dx, for rows linearised where it begins: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. Of
-   the bounds' rows those that a t <= 2 may violate. */
+/* M(t) along dx, for rows linearised where it begins: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -11466,18 +11425,24 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            gproji_hinge along;
-            along.w2 = gproji_weight2(g, row);
-            if (!(along.w2 > 0) || g->metric || (g->guard && !row->active)) continue;
-            along.phi = row->phi;
-            along.h = gproji_row_times(g, row, s->step);
-            along.q = gproji_row_products(g, row, s->step);
-            if (g->kind != GPROJ_BOUND || along.phi + along.h < 0)
-                m->model += along.w2 * (along.phi + along.h) * (along.phi + along.h);
+            const gproj_term *term = g->term + row->term, *end = term + row->terms;
+            const int32_t *variable = g->local_variable + row->local;
+            double w2 = gproji_weight2(g, row), phi = row->phi, h, q = 0;
+            if (!(w2 > 0) || g->metric || (g->guard && !row->active)) continue;
+            h = gproji_row_times(g, row, s->step);
+            /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference; runs are linear */
+            for (; !row->run && term < end; ++term)
+                if (term->j >= 0) q += term->a * s->step[variable[term->i]] * s->step[variable[term->j]];
+            if (g->kind != GPROJ_BOUND || phi + h < 0) m->model += w2 * (phi + h) * (phi + h);
             if (g->kind != GPROJ_BOUND) {
-                gproji_add_quartic(&along, m->c);
-            } else if (!(along.phi + 2 * gproji_fmin(along.h, 0) + 4 * gproji_fmin(along.q, 0) >= 0)) {
-                s->hinge[m->count++] = along;
+                m->c[0] += w2 * phi * phi;
+                m->c[1] += w2 * 2 * phi * h;
+                m->c[2] += w2 * (h * h + 2 * phi * q);
+                m->c[3] += w2 * 2 * h * q;
+                m->c[4] += w2 * q * q;
+            } else if (!(phi + 2 * gproji_fmin(h, 0) + 4 * gproji_fmin(q, 0) >= 0)) { /* a t <= 2 may violate it */
+                gproji_hinge *hinge = &s->hinge[m->count++];
+                hinge->w2 = w2, hinge->phi = phi, hinge->h = h, hinge->q = q;
             }
         }
     }
@@ -11553,8 +11518,6 @@ GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
     if (s->hooks.settle) s->hooks.settle(s->hooks.user, s);
 }
 
-GPROJI_INTERNAL bool gproji_is_refused(gproj_system *s) { return s->hooks.refuse && s->hooks.refuse(s->hooks.user, s); }
-
 /* Linearises rows at x, where t of the step has led and local unknowns are settled, and returns the true merit. Where that
    is above what it is without settling, which `course` knows, they stay as the step has made them. */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
@@ -11580,19 +11543,6 @@ GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_cours
     return gproji_arrive(loop, t, course);
 }
 
-/* phi of all rows that act = by how much the linearised ones are wrong at x, where the full step has led. */
-GPROJI_INTERNAL void gproji_take_discrepancy(gproj_system *s) {
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            gproji_row *row = &g->row[r];
-            bool acts = row->active && !g->metric;
-            row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->step) : 0;
-        }
-    }
-}
-
 /* The squared length of the step without what belongs to auxiliary variables. */
 GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     double sum = 0;
@@ -11603,15 +11553,23 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
 }
 
 /* Bends the full step, which has led to x and left `merit`: adds what the factor at hand makes of the linearised rows'
-   discrepancy there. A bend that is long beside the step is none, and neither is one that does not lower the merit. Returns
-   the merit at x then; the rows' phi are no more those of where the step began. */
+   discrepancy there. Returns the merit at x then; the rows' phi are no more those of where the step began. */
 GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
     gproj_system *s = loop->system;
     double *straight = s->gradient; /* free when the step is found */
     double square = gproji_step_square(s);
-    int32_t v;
+    int32_t i, r, v;
     bool bends;
-    gproji_take_discrepancy(s);
+    /* 1. phi = by how much the linearised rows that act are wrong at x. */
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            gproji_row *row = &g->row[r];
+            bool acts = row->active && !g->metric;
+            row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->step) : 0;
+        }
+    }
+    /* 2. The correction; one that is long beside the step is none. */
     gproji_merit_gradient(s);
     gproji_solve_step(s);
     bends = gproji_step_square(s) <= gproji_bend_most * square;
@@ -11619,6 +11577,7 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         straight[v] = s->x[v] - s->saved[v];
         s->step[v] += straight[v];
     }
+    /* 3. The bent step where it lowers the merit further, else the straight one. */
     if (bends) {
         double bent = gproji_go(loop, 1, course);
         if (bent < merit) return bent;
@@ -11630,19 +11589,13 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
 /* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
    must lower it. 0: none. x is at the end of the full step, `none` the merit before. */
 GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course) {
+    gproj_system *s = loop->system;
     double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
-    if (!loop->system->schur.on && none - merit < gproji_bend_below * promised)
-        merit = gproji_bend_step(loop, course, merit);
+    if (!s->schur.on && none - merit < gproji_bend_below * promised) merit = gproji_bend_step(loop, course, merit);
     loop->agreement = promised > 0 ? (none - merit) / promised : 1;
-    while (t > gproji_shortest && (!(merit <= none) || gproji_is_refused(loop->system)))
+    while (t > gproji_shortest && (!(merit <= none) || (s->hooks.refuse && s->hooks.refuse(s->hooks.user, s))))
         merit = gproji_go(loop, t /= 2, course);
     return merit <= none ? t : 0;
-}
-
-/* Goes t of the step, whatever the merit. */
-GPROJI_INTERNAL void gproji_go_on(gproji_loop *loop, double t) {
-    loop->iteration.step = gproji_take_step(loop->system, t);
-    gproji_settle(loop->system);
 }
 
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
@@ -11777,17 +11730,18 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
 /* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
 GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
+    bool good;
     loop->iteration.epsilon = epsilon;
     loop->factored = gproji_find_bounded_step(loop, epsilon);
     loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
-    if (!(loop->iteration.length > 0))
+    good = loop->iteration.length > 0;
+    if (!good)
         gproji_step_back(s);
-    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !s->hooks.settle))
-        gproji_go_on(loop, loop->iteration.length);
-    if (!(loop->iteration.length > 0) && loop->factored && s->hooks.settle)
-        gproji_linearise(loop); /* rows were linearised on the way */
+    else if (loop->iteration.length != 1 && !s->hooks.settle)
+        loop->iteration.step = gproji_take_step(s, loop->iteration.length); /* else x is there */
+    if (!good && loop->factored && s->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
-    return loop->iteration.length > 0;
+    return good;
 }
 
 /* Sets the stiffness of steps, x being where the next one begins. Metric groups that come back by that are compiled, where
@@ -11816,20 +11770,12 @@ GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
     }
 }
 
-/* The metric rests: steps may be found by multipliers then, where that pays. */
-GPROJI_INTERNAL void gproji_rest_metric(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    int32_t i;
-    gproji_stiffen(loop, 0);
-    for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
-    if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
-}
-
 /* After a good step: the stiffness of the next one. */
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double factor = loop->agreement > 0.9 ? 0.1 : loop->agreement > 0.5 ? 0.3 : 0.7, stiffness;
     bool is_short = loop->iteration.length < 1 || loop->agreement < 0.25;
+    int32_t i;
     if (!loop->stiff) return;
     if (loop->wary > 0) factor = gproji_fmax(factor, 0.5);
     if (loop->failed) factor = 1;
@@ -11842,14 +11788,11 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
              (factor > 1 && loop->standing.residual > gproji_stiffness_ends))
         gproji_stiffen(loop, gproji_stiffness_least);
-    else if (s->stiffness > 0)
-        gproji_rest_metric(loop);
-}
-
-/* The eps that belongs to how far things are from holding: three tenths of the norm of all phi, which does not depend
-   on the directions of the axes, as the largest of them would. */
-GPROJI_INTERNAL double gproji_epsilon_of(const gproji_standing *standing) {
-    return 0.3 * sqrt(gproji_fmax(0, standing->merit - standing->energy));
+    else if (s->stiffness > 0) { /* the metric rests: steps may be found by multipliers then, where that pays */
+        gproji_stiffen(loop, 0);
+        for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
+        if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
+    }
 }
 
 /* One iteration from a linearised x to the next. False when no attempt was good; x is then as before. */
@@ -11857,8 +11800,10 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double epsilon = loop->options.epsilon;
     int32_t attempt;
-    if (!(epsilon > 0))
-        epsilon = gproji_fmin(gproji_fmax(gproji_epsilon_of(&loop->standing), loop->epsilon_least), gproji_epsilon_max);
+    if (!(epsilon > 0)) { /* follows the norm of all phi, which does not depend on the directions of the axes */
+        epsilon = 0.3 * sqrt(gproji_fmax(0, loop->standing.merit - loop->standing.energy));
+        epsilon = gproji_fmin(gproji_fmax(epsilon, loop->epsilon_least), gproji_epsilon_max);
+    }
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.attempts = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, gproji_damp(loop, &epsilon)) {
@@ -11945,30 +11890,23 @@ GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     return true;
 }
 
-/* Is this clearly better than that: by a tenth in the largest residual, or by two fifths in the sum of squares? */
-GPROJI_INTERNAL bool gproji_is_better(const gproji_standing *a, const gproji_standing *b) {
-    return a->residual < 0.9 * b->residual || a->merit < 0.6 * b->merit;
-}
-
-/* The last iteration with the weights of n, but for a decay of what must hold. */
-GPROJI_INTERNAL int32_t gproji_last_alike(const gproj_system *s, int32_t n) {
+/* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of what must hold, in
+   which nothing would be different. False: that is all the others. */
+GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
+    const gproj_system *s = loop->system;
     int32_t end = INT32_MAX, i;
-    for (i = 0; i < s->group_count; ++i) {
+    for (i = 0; i < s->group_count && end > n; ++i) {
         const gproji_group *g = &s->group[i];
         int32_t last = gproji_last_iteration(s, g);
         if (!(g->weight > 0) || g->metric || g->row_count == 0) continue;
-        if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1) return n;
-        if (last > 0) end = gproji_min(end, last);
+        if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1)
+            end = n;
+        else if (last > 0)
+            end = gproji_min(end, last);
     }
-    return end;
-}
-
-/* Iteration n has found no step: leaves out those in which nothing would be different. False: that is all the others. */
-GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
-    int32_t last = gproji_last_alike(loop->system, n);
-    if (last >= loop->iterations) return false;
-    loop->frame_first += last - loop->result.iterations; /* they take no time */
-    loop->result.iterations = last;
+    if (end >= loop->iterations) return false;
+    loop->frame_first += end - loop->result.iterations; /* they take no time */
+    loop->result.iterations = end;
     return true;
 }
 
@@ -11994,6 +11932,7 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST);
+    bool better;
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
@@ -12012,7 +11951,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         gproji_report_iteration(loop, loop->result.iterations + 1);
         if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
-        if (gproji_is_better(&loop->standing, &loop->best) || gproji_wishes_are_on(s)) loop->waited = -1;
+        better = loop->standing.residual < 0.9 * loop->best.residual || loop->standing.merit < 0.6 * loop->best.merit;
+        if (better || gproji_wishes_are_on(s)) loop->waited = -1; /* progress, or none to be judged yet */
         if (++loop->waited == 0) loop->best = loop->standing;
         if (loop->waited >= (loop->stiff ? GPROJI_PATIENCE_STIFF : GPROJI_PATIENCE) && !gproji_holds(loop) &&
             !gproji_release_safeguards(loop))
