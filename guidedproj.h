@@ -11629,44 +11629,38 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     }
 }
 
-/* Should the row of a bound act on this step? Yes where the step would violate it by more than `slack`, in itself and
-   linearised (of a convex row the tangent alone would say so too early); where it acts already, as long as it does not
-   hold the step back. The guard looks where the full step leads, and keeps its rows. */
-GPROJI_INTERNAL bool gproji_should_act(const gproj_system *s, const gproji_group *g, int32_t r, double slack) {
-    const gproji_row *row = &g->row[r];
-    double ahead;
-    if (!(row->weight > 0)) return false;
-    if (g->guard) return row->active || gproji_row_value(g, r, s->x) < -g->slack;
-    ahead = row->phi + gproji_row_times(g, row, s->step);
-    return row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
-}
-
-/* Does the full step lower the merit, with all violations of bounds, so far that lazy bounds may wait for the next one? */
-GPROJI_INTERNAL bool gproji_step_is_enough(const gproji_loop *loop) {
-    gproji_course merit;
-    gproji_merit_along(loop->system, &merit);
-    return gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0);
-}
-
-/* Switches rows of bounds on and off by the step that was found; true: it must be found again. The guard has its say
-   in the first round only. */
+/* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again. A
+   row should act where the step would violate it by more than a part of the residual, in itself and linearised (of a convex
+   row the tangent alone would say so too early); where it acts already, as long as it does not hold the step back. The guard
+   looks where the step leads, in the first round, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
     bool changed = false, lazy = false;
+    gproji_course merit;
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
-            bool active = gproji_should_act(s, g, r, slack);
-            if (active == g->row[r].active) continue;
-            g->row[r].active = active;
+            gproji_row *row = &g->row[r];
+            bool active = false;
+            if (row->weight > 0 && g->guard) {
+                active = row->active || gproji_row_value(g, r, s->x) < -g->slack;
+            } else if (row->weight > 0) {
+                double ahead = row->phi + gproji_row_times(g, row, s->step);
+                active = row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
+            }
+            if (active == row->active) continue;
+            row->active = active;
             changed = changed || !g->lazy;
             lazy = lazy || g->lazy;
         }
     }
-    return changed || (lazy && !gproji_step_is_enough(loop));
+    if (changed || !lazy) return changed;
+    /* Lazy bounds may wait for the next step if this one lowers the merit, with all violations, far enough. */
+    gproji_merit_along(s, &merit);
+    return !(gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0));
 }
 
 /* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it, at x
@@ -11961,20 +11955,6 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
-/* The other group that must hold with the largest residual above the tolerance; -1: none. */
-GPROJI_INTERNAL int32_t gproji_second_group(const gproji_loop *loop) {
-    const gproj_system *s = loop->system;
-    double largest = loop->tolerance;
-    int32_t g, second = -1;
-    for (g = 0; g < s->group_count; ++g) {
-        double max = gproj_system_group_info(s, g).max;
-        if (g == loop->standing.group || !gproji_must_hold(&s->group[g]) || max <= largest) continue;
-        largest = max;
-        second = g;
-    }
-    return second;
-}
-
 /* The wish with the most energy that acts to the end; -1: none, or it fades by itself. */
 GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
     double most = 0;
@@ -12020,12 +12000,18 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
-    double weight = g->weight * g->row[loop->standing.row].weight;
-    int32_t second = gproji_second_group(loop), wish = gproji_lasting_wish(s);
+    double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance;
+    int32_t second = -1, wish = gproji_lasting_wish(s), k;
     bool guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0, balanced;
     more[0] = 0;
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
     balanced = guided && gproji_constraints_balance(s);
+    for (k = 0; k < s->group_count; ++k) { /* the other group that must hold with the largest residual */
+        double max = gproj_system_group_info(s, k).max;
+        if (k == loop->standing.group || !gproji_must_hold(&s->group[k]) || max <= largest) continue;
+        largest = max;
+        second = k;
+    }
     if (!(loop->standing.residual <= DBL_MAX))
         gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
@@ -12094,21 +12080,6 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
         return false;
     }
     return true;
-}
-
-/* Refuses options that mean nothing; that is an error of the call, not of the system. */
-GPROJI_INTERNAL bool gproji_options_are_valid(const gproj_system *s, int32_t iterations, const gproj_solve_options *o,
-                                              gproj_error *error) {
-    bool numbers = gproji_is_finite(o->tolerance) && gproji_is_finite(o->epsilon) && gproji_is_finite(o->time_budget);
-    if (iterations >= 0 && numbers && o->tolerance >= 0 && o->epsilon >= 0 && o->time_budget >= 0 &&
-        (o->time_budget == 0 || s->host.clock.now))
-        return true;
-    gproji_fail(
-        error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time budget "
-        "needs a clock in the host",
-        iterations, o->tolerance, o->epsilon, o->time_budget);
-    return false;
 }
 
 /* -- the nearest point -- */
@@ -12181,65 +12152,52 @@ GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_ro
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
 }
 
-/* Before the first solve of a slide: phi + y in place of phi. Rows without a weight forget their multipliers, and so do
-   bounds that do not act: their multipliers fall to 0. */
-GPROJI_INTERNAL void gproji_add_multipliers(gproj_system *s) {
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            gproji_row *row = &g->row[r];
-            gproji_multiplier *multiplier = &g->multiplier[r];
-            if (!gproji_is_multiplied(g, row)) multiplier->y = 0;
-            multiplier->rise = row->active ? 0 : -multiplier->y;
-            row->phi += multiplier->y;
-        }
-    }
-}
-
-/* After a solve: phi becomes what the model leaves of a constraint, phi + G dx, and y rises by it; wishes are served.
-   Returns the sum of w^2 phi^2. */
-GPROJI_INTERNAL double gproji_raise_multipliers(gproj_system *s, bool first) {
-    double sum = 0;
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            gproji_row *row = &g->row[r];
-            if (!row->active || !gproji_is_multiplied(g, row)) {
-                row->phi = 0;
-                continue;
-            }
-            row->phi += gproji_row_times(g, row, s->step) - (first ? g->multiplier[r].y : 0);
-            g->multiplier[r].rise += row->phi;
-            sum += gproji_weight2(g, row) * row->phi * row->phi;
-        }
-    }
-    return sum;
-}
-
 /* Solves for dx and the rise of the multipliers, from rows linearised at x. False when the matrix is not positive
    definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
-    double *sum = s->sum, first = 0, left = HUGE_VAL;
-    int32_t round, v;
+    double *sum = s->sum, first = 0, left = HUGE_VAL, follows = gproji_epsilon_max;
+    int32_t round, i, r, v;
     bool factored;
-    double follows = gproji_epsilon_max;
     if (curved) follows = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_nearest_epsilon), follows);
     loop->iteration.epsilon = sqrt(follows * follows + gproji_nearest_scale * gproji_nearest_scale * shift);
-    gproji_add_multipliers(s);
+    /* 1. phi + y in place of phi. Rows without a weight forget their multipliers, and so do bounds that do not act: these
+       multipliers fall to 0. */
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            gproji_multiplier *multiplier = &g->multiplier[r];
+            if (!gproji_is_multiplied(g, &g->row[r])) multiplier->y = 0;
+            multiplier->rise = g->row[r].active ? 0 : -multiplier->y;
+            g->row[r].phi += multiplier->y;
+        }
+    }
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     factored = gproji_factor_matrix(s, loop->iteration.epsilon, curved, 0, NULL);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
+    /* 2. Steps with the same factor, until G dx = -phi: each time phi becomes what the model leaves of a constraint,
+       phi + G dx, and y rises by it; wishes are served by the first one. */
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
     for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
         gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) sum[v] += s->step[v];
-        left = gproji_raise_multipliers(s, round == 0);
+        left = 0;
+        for (i = 0; i < s->group_count; ++i) {
+            gproji_group *g = &s->group[i];
+            for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+                gproji_row *row = &g->row[r];
+                if (!row->active || !gproji_is_multiplied(g, row)) {
+                    row->phi = 0;
+                    continue;
+                }
+                row->phi += gproji_row_times(g, row, s->step) - (round == 0 ? g->multiplier[r].y : 0);
+                g->multiplier[r].rise += row->phi;
+                left += gproji_weight2(g, row) * row->phi * row->phi;
+            }
+        }
         if (round == 0) first = left;
     }
     memcpy(s->step, sum, (size_t)s->variable_count * sizeof *sum);
@@ -12268,9 +12226,11 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
     return changed;
 }
 
-/* Bounds act first where they are violated or have a multiplier. */
-GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
-    int32_t i, r;
+/* Finds a slide, again where it meets bounds. */
+GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift) {
+    gproj_system *s = loop->system;
+    int32_t round, i, r;
+    /* 1. Bounds act first where they are violated or have a multiplier. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
@@ -12278,38 +12238,21 @@ GPROJI_INTERNAL void gproji_start_multiplied_bounds(gproj_system *s) {
             row->active = gproji_is_multiplied(g, row) && row->phi + g->multiplier[r].y < 0;
         }
     }
-}
-
-/* Multipliers of bounds are not positive: what is left of them. */
-GPROJI_INTERNAL void gproji_limit_multipliers(gproj_system *s) {
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
-            gproji_multiplier *multiplier = &s->group[i].multiplier[r];
-            multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
-        }
-}
-
-/* The rows at x again, with the bounds that act as they are. */
-GPROJI_INTERNAL void gproji_evaluate_slide(gproj_system *s) {
-    int32_t i, r;
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
-            if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
-}
-
-/* Finds a slide, again where it meets bounds. */
-GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift) {
-    gproj_system *s = loop->system;
-    int32_t round;
-    gproji_start_multiplied_bounds(s);
+    /* 2. Again with those that the step would violate, and without those that would hold it back. */
     for (round = 0; gproji_find_slide(loop, curved, shift); ++round) {
-        bool again = gproji_switch_multiplied_bounds(s);
-        if (!again || round == GPROJI_BOUND_ROUNDS) {
-            gproji_limit_multipliers(s);
-            return true;
+        if (gproji_switch_multiplied_bounds(s) && round < GPROJI_BOUND_ROUNDS) {
+            for (i = 0; i < s->group_count; ++i)
+                for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
+                    if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
+            continue;
         }
-        gproji_evaluate_slide(s);
+        /* 3. Multipliers of bounds are not positive: what is left of them. */
+        for (i = 0; i < s->group_count; ++i)
+            for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
+                gproji_multiplier *multiplier = &s->group[i].multiplier[r];
+                multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
+            }
+        return true;
     }
     return false;
 }
@@ -12393,13 +12336,6 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     return false;
 }
 
-/* The first shift to try after a slide that had this one. */
-GPROJI_INTERNAL void gproji_next_shift(gproji_loop *loop, double shift) {
-    loop->shift = shift;
-    if (loop->iteration.length == 1) loop->shift = shift < gproji_nearest_flat ? 0 : shift / 3;
-    if (loop->iteration.length < 0.5) loop->shift = 1.5 * shift;
-}
-
 /* One slide from a linearised x. False when no attempt was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -12410,7 +12346,11 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
             loop->minimum = curved && shift <= gproji_nearest_flat;
-            if (curved) gproji_next_shift(loop, shift);
+            if (curved) { /* the first shift to try next time */
+                loop->shift = shift;
+                if (loop->iteration.length == 1) loop->shift = shift < gproji_nearest_flat ? 0 : shift / 3;
+                if (loop->iteration.length < 0.5) loop->shift = 1.5 * shift;
+            }
             gproji_lap(loop, GPROJ_PHASE_SOLVE);
             return true;
         }
@@ -12472,20 +12412,10 @@ GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
     gproji_judge_nearest(loop);
 }
 
-/* Moves x by at most `size`, to and fro in an order without symmetry, always the same: symmetric meshes would stay on a
-   saddle, where a symmetric step cannot leave it. */
-GPROJI_INTERNAL void gproji_break_symmetry(gproj_system *s, double size) {
-    uint32_t state = 1;
-    int32_t v;
-    for (v = 0; v < s->variable_count; ++v) {
-        state = state * 1664525u + 1013904223u;
-        s->x[v] += size * ((double)(state >> 8) / 8388608.0 - 1);
-    }
-}
-
 /* Iteration n of a nearest solve that slides until `last`. False: nothing can be done. */
 GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_t guided, int32_t last) {
     gproj_system *s = loop->system;
+    uint32_t state = 1;
     int32_t i;
     if (n > guided && n <= last && gproji_slide(loop)) return true;
     if (n > guided && gproji_holds(loop)) return false;
@@ -12494,7 +12424,12 @@ GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_
         if (s->group[i].guard && n <= guided) s->group[i].weight = gproji_weight_in(s, &s->group[i], n);
     gproji_linearise(loop);
     if (!gproji_iterate(loop)) return false;
-    if (n == guided) gproji_break_symmetry(s, gproji_nearest_symmetry * loop->iteration.step);
+    /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a symmetric
+       step cannot leave it. */
+    for (i = 0; n == guided && i < s->variable_count; ++i) {
+        state = state * 1664525u + 1013904223u;
+        s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
+    }
     return true;
 }
 
@@ -12551,34 +12486,38 @@ GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
 
 /* -- runs: a solve, or a part of it -- */
 
-/* Steps are as stiff as can be where there is a metric. */
-GPROJI_INTERNAL void gproji_start_metric(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    int32_t i;
-    loop->stiff = false;
-    for (i = 0; i < s->group_count; ++i)
-        loop->stiff = loop->stiff || (s->group[i].metric && s->group[i].schedule.weight > 0);
-    s->stiffness = loop->stiff;
-}
-
-/* Makes a loop for a solve of this system. Where that is refused the result says why. */
+/* Makes a loop for a solve of this system. Where that is refused the result says why: options that mean nothing are an error
+   of the call, not of the system. */
 GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32_t iterations,
                                        const gproj_solve_options *options) {
+    const gproj_solve_options *o = &loop->options;
     gproj_error refused;
+    int32_t i;
     memset(loop, 0, sizeof *loop);
     loop->system = s;
     if (options) loop->options = *options;
     loop->iterations = iterations;
     loop->frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
-    if (gproji_system_is_open(s)) gproji_start_metric(loop);
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->result.spoiled.element = -1;
     loop->result.attempts = 1;
     gproji_error_clear(&refused);
-    if (gproji_system_is_open(s) && gproji_options_are_valid(s, iterations, &loop->options, &refused) &&
-        gproji_values_are_valid(s))
-        return true;
+    if (gproji_system_is_open(s)) {
+        for (i = 0; i < s->group_count; ++i)
+            loop->stiff = loop->stiff || (s->group[i].metric && s->group[i].schedule.weight > 0);
+        s->stiffness = loop->stiff;
+        if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
+            o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
+            (o->time_budget > 0 && !s->host.clock.now))
+            gproji_fail(
+                &refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time "
+                "budget needs a clock in the host",
+                iterations, o->tolerance, o->epsilon, o->time_budget);
+        else if (gproji_values_are_valid(s))
+            return true;
+    }
     loop->result = gproji_failed_result(refused.code ? &refused : gproj_system_error(s));
     return false;
 }
