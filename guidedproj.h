@@ -107,6 +107,7 @@
        >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
        >>corners        faces must keep their corners
+       >>verdict        why a solve has ended as it did
        >>solve          solving a form
        >>state          what a form remembers, as bytes
        >>drag           the tangent space's response to handles
@@ -23218,8 +23219,395 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
 }
 
 /* ============================================================================================================
+   >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh, measure,
+   form, catalogue, statics, guard.
+
+   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and where it is missing,
+   what could not hold from the beginning, and what has been spoiled on the way. Each function below appends a clause to the
+   sentence, or nothing. They run when a solve has ended, so its step and its saved x are free for work. */
+
+/* -- equilibrium -- */
+
+/* The three rows of equilibrium with the largest |phi|, of different vertices; -1 where there are fewer. */
+GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3]) {
+    const gproji_group *g = &form->system->group[form->statics->group];
+    double phi[3] = {0, 0, 0};
+    int32_t r, k;
+    for (k = 0; k < 3; ++k) vertex[k] = -1;
+    for (r = 0; r < g->row_count; ++r) {
+        double size = fabs(g->row[r].phi);
+        int32_t v = g->row[r].element;
+        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
+        if (k == 3) k = 2;
+        if (!(size > phi[k])) continue;
+        phi[k] = size;
+        vertex[k] = v;
+        for (; k > 0 && phi[k] > phi[k - 1]; --k) {
+            double other = phi[k - 1];
+            int32_t w = vertex[k - 1];
+            phi[k - 1] = phi[k], vertex[k - 1] = vertex[k];
+            phi[k] = other, vertex[k] = w;
+        }
+    }
+}
+
+GPROJI_INTERNAL bool gproji_has_group_on(const gproj_form *form, const char *name) {
+    int32_t g;
+    for (g = 0; g < form->system->group_count; ++g)
+        if (strcmp(form->system->group[g].name, name) == 0 && gproji_is_on(form, g)) return true;
+    return false;
+}
+
+/* Says that no equilibrium was found, which one, and where it is missing. Returns whether it, or a bound on forces, is what
+   does not hold. */
+GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    bool up = gproji_has_group_on(form, gproji_compression_name), down = gproji_has_group_on(form, gproji_tension_name);
+    const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
+    const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
+    size_t length = strlen(result->message);
+    char others[48];
+    int32_t vertex[3];
+    gproj_forces forces;
+    if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
+        return false;
+    forces = gproj_measure_forces(form);
+    gproji_worst_balanced(form, vertex);
+    gproji_format(others, sizeof others, "vertex ");
+    if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; no %sequilibrium%s was found near this shape: %s%d out of balance by up to %g of the largest load",
+                  kind, planar, others, vertex[0], forces.residual);
+    return true;
+}
+
+/* Says where a shape that hung was asked to stand, or the opposite, and has been turned over for that. */
+GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    size_t length = strlen(result->message);
+    bool stands = gproji_has_group_on(form, gproji_compression_name);
+    if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
+                  stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
+                  stands ? "compression" : "tension", s->lost[0]);
+}
+
+/* -- what cannot hold at all -- */
+
+/* held[i] = 1 for coordinates that a constraint prescribes by a row with a single term, value[i]: where; else 0. Returns
+   the number of vertices that are held altogether. */
+GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
+    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
+    memset(held, 0, (size_t)coordinates * sizeof *held);
+    memset(value, 0, (size_t)coordinates * sizeof *value);
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            const gproj_term *term = g->term + row->term;
+            int32_t v;
+            if (row->terms != 1 || !(row->weight > 0) || term->j >= 0 || term->a == 0) continue;
+            v = gproji_variable_of(g, row, term->i);
+            if (v >= coordinates) continue;
+            held[v] = 1;
+            value[v] = -row->constant / term->a;
+        }
+    }
+    for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
+    return count;
+}
+
+/* Are all vertices of a face held, in places that are not in a plane? */
+GPROJI_INTERNAL bool gproji_is_held_bent(const gproj_mesh *mesh, const double *held, const double *value,
+                                         int32_t face) {
+    static const double up[3] = {0, 0, 1};
+    static const double noticeable = 1e-9; /* mean edges */
+    double normal[3], mean = 0, most = 0;
+    int32_t h = mesh->face_halfedge[face], c, k, held_count = 0;
+    if (mesh->face_degree[face] < 4) return false;
+    gproji_area_vector(mesh, value, face, normal);
+    gproji_normalise3(normal, up);
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        for (k = 0; k < 3; ++k) held_count += held[3 * (size_t)mesh->origin[h] + (size_t)k] == 1;
+        mean += gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) / mesh->face_degree[face];
+    }
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        most = gproji_fmax(most, fabs(gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) - mean));
+    return held_count == 3 * mesh->face_degree[face] && most > noticeable;
+}
+
+/* Says which faces cannot be flat because of fixed vertices, or that all are fixed. */
+GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
+    size_t length = strlen(result->message);
+    double *held = form->system->step, *value = form->system->saved;
+    int32_t f, bent = 0, first = -1, count = gproji_find_held(form, held, value);
+    for (f = form->mesh->face_count - 1; gproji_is_on(form, form->planarity) && f >= 0; --f) {
+        if (!gproji_is_held_bent(form->mesh, held, value, f)) continue;
+        first = f;
+        ++bent;
+    }
+    if (bent > 0)
+        gproji_format(
+            result->message + length, sizeof result->message - length,
+            "; face %d cannot become flat, because all of its vertices are fixed%s: let one of them go, or glide",
+            first, bent > 1 ? ", and others, too" : "");
+    else if (count == form->mesh->vertex_count)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; all vertices are fixed: let some of them go");
+}
+
+/* A vertex of a part of the mesh that has loads and no support; -1: none. */
+GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *s = form->statics;
+    int32_t *queue = s->queue, *seen = queue + mesh->vertex_count, v, k, found = -1;
+    gproj_get_loads(form, s->work);
+    for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
+    for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
+        double sum[3] = {0, 0, 0}, size = 0;
+        int32_t head, tail = 0;
+        bool supported = false;
+        if (seen[v]) continue;
+        seen[v] = 1;
+        queue[tail++] = v;
+        for (head = 0; head < tail; ++head) {
+            int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
+            const double *load = s->work + 3 * (size_t)queue[head];
+            supported = supported || s->axes[queue[head]] != GPROJI_AXES;
+            for (k = 0; k < 3; ++k) sum[k] += load[k];
+            size += gproji_length3(load);
+            do {
+                int32_t other = mesh->origin[mesh->twin[h]];
+                if (!seen[other]) queue[tail++] = other;
+                seen[other] = 1;
+                h = mesh->next[mesh->twin[h]];
+            } while (h != start);
+        }
+        if (!supported && gproji_length3(sum) > 1e-9 * size) found = v;
+    }
+    return found;
+}
+
+/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
+GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
+    double *positive = form->system->step, *negative = form->system->saved, sign;
+    const int32_t *force = form->statics->force;
+    int32_t i, r, e, found = -1;
+    memset(positive, 0, (size_t)form->system->variable_count * sizeof *positive);
+    memset(negative, 0, (size_t)form->system->variable_count * sizeof *negative);
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        const gproji_part *part = (const gproji_part *)g->refresh_user;
+        bool stress = g->refresh == gproji_refresh_stress;
+        if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
+        for (r = 0; r < g->row_count; ++r) {
+            if (!(g->row[r].weight > 0)) continue;
+            e = stress ? part->vertex[r] : gproji_bounded_force(form, i, r, &sign);
+            if (e < 0) continue;
+            if (!stress && sign > 0) positive[force[e]] = 1;
+            if (!stress && sign < 0) negative[force[e]] = 1;
+            if (stress && part->factor[r] > 0 && part->bound[0] > 0) positive[force[e]] = 1;
+            if (stress && part->factor[r] < 0 && part->bound[1] < 0) negative[force[e]] = 1;
+            if (positive[force[e]] + negative[force[e]] == 2) found = e;
+        }
+    }
+    return found;
+}
+
+/* Says what stands in the way of equilibrium whatever the shape, if there is such a thing, and what holds it back most. */
+GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
+    int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
+    size_t length = strlen(result->message), size = sizeof result->message - length;
+    if (floating >= 0) {
+        gproji_format(result->message + length, size,
+                      "; the part of the mesh with vertex %d has no support that could carry its loads", floating);
+    } else if (edge >= 0) {
+        gproji_format(
+            result->message + length, size,
+            "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
+    } else {
+        for (g = 0; g < form->system->group_count; ++g) {
+            gproj_group_info info = gproj_system_group_info(form->system, g);
+            if (info.kind != GPROJ_CONSTRAINT || info.place != GPROJ_PLACE_VERTEX || g == form->statics->group)
+                continue;
+            if (!gproji_is_on(form, g) || !(info.max > 1e-6)) continue;
+            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
+                          info.worst_element, info.name);
+            return;
+        }
+    }
+}
+
+/* Equilibrium to the tolerance says nothing where the loads themselves are below it: where the mesh has shrunk to a
+   point, or beside huge forces. */
+GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
+    static const double noticeable = 1e-3;
+    const gproji_statics *s = form->statics;
+    const gproji_group *g;
+    const gproj_loads *loads;
+    size_t count = 3 * (size_t)form->mesh->vertex_count, i;
+    double *load, worst = 0, largest = 0, part;
+    bool follow; /* loads that vanish with the shape */
+    int32_t r, e;
+    if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
+    load = (double *)gproji_take(&form->own, count, sizeof *load);
+    if (!load) {
+        gproji_fail_memory(&form->error);
+        *result = gproji_failed_result(gproj_form_error(form));
+        return;
+    }
+    /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
+    loads = &s->loads;
+    gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
+    for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
+    gproji_give(&form->own, load, count, sizeof *load);
+    g = &form->system->group[s->group];
+    for (r = 0; r < g->row_count; ++r)
+        if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
+    part = largest > 0 ? worst / largest : 0;
+    /* 2. No loads are left, or they are too small to be seen. */
+    follow = (!loads->edge_density && loads->density != 0) || loads->area_load != 0 || loads->snow != 0;
+    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) follow = follow || loads->edge_density[e] != 0;
+    if (largest == 0 && follow) {
+        result->outcome = GPROJ_STALLED;
+        gproji_format(result->message, sizeof result->message,
+                      "no equilibrium: the mesh has shrunk to a point, and its loads with it; fix vertices or let them "
+                      "glide");
+    } else if (part > noticeable && largest <= 10 * result->tolerance) {
+        result->outcome = GPROJ_STALLED;
+        gproji_format(result->message, sizeof result->message,
+                      "no equilibrium: the loads have become nothing beside the forces, and %g of the largest load is "
+                      "unbalanced; where the mesh has shrunk to a point, fix vertices or let them glide",
+                      part);
+    }
+}
+
+/* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
+   them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
+GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
+    int32_t vertices = 3 * form->mesh->vertex_count;
+    double sum[3] = {0, 0, 0};
+    int64_t t;
+    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
+        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
+        if (i >= vertices) continue;
+        if (j >= 0 && j < vertices) return true;
+        if (j < 0) sum[i % 3] += g->term[t].a;
+    }
+    return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
+}
+
+/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
+GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
+    int32_t i, r;
+    for (i = 0; i < form->system->group_count; ++i) {
+        const gproji_group *g = &form->system->group[i];
+        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!(row->weight > 0)) continue;
+            /* A bound holds the mesh if a mesh that has shrunk to the origin violates it. */
+            if (g->kind == GPROJ_BOUND ? row->constant < 0 : g->global || gproji_row_holds(form, g, row)) return true;
+        }
+    }
+    return false;
+}
+
+/* -- what else must not be hidden -- */
+
+/* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
+GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
+    static const char *const words[GPROJI_DAMAGE_COUNT][2] = {
+        {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
+        {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
+        {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
+    const char *between = "";
+    int32_t kind;
+    for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
+        int32_t count = d->count[kind], at = d->first[kind];
+        size_t length = strlen(text);
+        if (count == 0) continue;
+        gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
+                      count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
+        length = strlen(text);
+        if (gproji_damage_place(kind) == GPROJ_PLACE_EDGE)
+            gproji_format(text + length, size - length, ", vertices %d and %d)", mesh->origin[2 * at],
+                          mesh->origin[2 * at + 1]);
+        else
+            gproji_append(text, size, length, ")", 1);
+        between = ", ";
+    }
+}
+
+/* Counts what the whole work, from gproj_form_create on, has spoiled. A mesh can satisfy everything and yet be spoiled:
+   the verdict says so. */
+GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
+    static const char help[] =
+        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
+        "keep it whole";
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    size_t size = sizeof result->message, length = strlen(result->message);
+    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
+    gproji_damages d;
+    gproji_find_damages(mesh, x, form->original, &d);
+    result->spoiled = gproji_spoiled_of(&d);
+    if (result->outcome != GPROJ_CONVERGED &&
+        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
+        return; /* there is worse to tell */
+    if (shrunk < 0.2) {
+        gproji_format(result->message + length, size - length,
+                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+    } else if (result->spoiled.total > 0) {
+        length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
+        gproji_list_damages(mesh, &d, result->message, size);
+        length = strlen(result->message);
+        if (length + sizeof help <= size) gproji_append(result->message, size, length, help, sizeof help - 1);
+    }
+}
+
+/* Circularity alone puts the corners of each face on a sphere: says so where faces are not planar. */
+GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
+    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
+    size_t length = strlen(result->message);
+    int32_t f, face = -1, count = 0;
+    for (f = 0; form->axis && unit > 0 && f < mesh->face_count; ++f) {
+        double off;
+        if (form->axis[f] < 0) continue;
+        gproji_face_plane(mesh, mesh->position, f, mean, normal);
+        off = gproji_face_planarity(mesh, f, mean, normal) / unit;
+        count += off > 1e-6;
+        if (off > worst) worst = off, face = f;
+    }
+    if (face >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
+                      "lengths): add planarity for circles",
+                      count, count == 1 ? " is" : "s are", face, worst);
+}
+
+/* The rows of a cone hold with any angles where the normals around a vertex are coplanar: says so where the angles do not
+   add up. */
+GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
+    double worst = 1e-6;
+    size_t length = strlen(result->message);
+    int32_t v, vertex = -1, count = 0;
+    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v) {
+        double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
+        count += off > 1e-6;
+        if (off > worst) worst = off, vertex = v;
+    }
+    if (vertex >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
+                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
+}
+
+/* ============================================================================================================
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
-   memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners. */
+   memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners, verdict. */
 
 /* x = the mesh's positions, and normals and axes as they are now. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
@@ -23368,408 +23756,6 @@ GPROJI_INTERNAL int32_t gproji_guided_iterations(const gproj_form *form, int32_t
     return forces ? gproji_min(9, gproji_half(iterations)) : gproji_half(iterations);
 }
 
-/* -- what statics add to the verdict -- */
-
-/* Is equilibrium, or a bound on forces, what does not hold? */
-GPROJI_INTERNAL bool gproji_is_unbalanced(const gproj_form *form, const gproj_result *result) {
-    const gproji_statics *s = form->statics;
-    if (!s || !gproji_is_on(form, s->group)) return false;
-    if (result->outcome != GPROJ_STALLED && result->outcome != GPROJ_ITERATION_LIMIT) return false;
-    return gproj_system_group_info(form->system, s->group).max > 1e-9;
-}
-
-/* The three rows of equilibrium with the largest |phi|, of different vertices; -1 where there are fewer. */
-GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3], double *largest) {
-    const gproji_group *g = &form->system->group[form->statics->group];
-    double phi[3] = {0, 0, 0};
-    int32_t r, k;
-    for (k = 0; k < 3; ++k) vertex[k] = -1;
-    for (r = 0; r < g->row_count; ++r) {
-        double size = fabs(g->row[r].phi);
-        int32_t v = g->row[r].element;
-        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
-        if (k == 3) k = 2;
-        if (!(size > phi[k])) continue;
-        phi[k] = size;
-        vertex[k] = v;
-        for (; k > 0 && phi[k] > phi[k - 1]; --k) {
-            double other = phi[k - 1];
-            int32_t w = vertex[k - 1];
-            phi[k - 1] = phi[k], vertex[k - 1] = vertex[k];
-            phi[k] = other, vertex[k] = w;
-        }
-    }
-    *largest = phi[0];
-}
-
-GPROJI_INTERNAL bool gproji_has_group_on(const gproj_form *form, const char *name) {
-    int32_t g;
-    for (g = 0; g < form->system->group_count; ++g)
-        if (strcmp(form->system->group[g].name, name) == 0 && gproji_is_on(form, g)) return true;
-    return false;
-}
-
-/* Says that no equilibrium was found, which one, and where it is missing. */
-GPROJI_INTERNAL void gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
-    bool up = gproji_has_group_on(form, gproji_compression_name), down = gproji_has_group_on(form, gproji_tension_name);
-    const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
-    const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
-    gproj_forces forces = gproj_measure_forces(form);
-    size_t length = strlen(result->message);
-    char others[48];
-    int32_t vertex[3];
-    double largest;
-    gproji_worst_balanced(form, vertex, &largest);
-    gproji_format(others, sizeof others, "vertex ");
-    if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; no %sequilibrium%s was found near this shape: %s%d out of balance by up to %g of the largest load",
-                  kind, planar, others, vertex[0], forces.residual);
-}
-
-/* Says where a shape that hung was asked to stand, or the opposite, and has been turned over for that. */
-GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
-    const gproji_statics *s = form->statics;
-    size_t length = strlen(result->message);
-    bool stands = gproji_has_group_on(form, gproji_compression_name);
-    if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
-                  stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
-                  stands ? "compression" : "tension", s->lost[0]);
-}
-
-/* -- what cannot hold at all: told after the loop has ended, so that its step and its saved x are free for work -- */
-
-/* held[i] = 1 for coordinates that a constraint prescribes by a row with a single term, value[i]: where; else 0. Returns
-   the number of vertices that are held altogether. */
-GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
-    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
-    memset(held, 0, (size_t)coordinates * sizeof *held);
-    memset(value, 0, (size_t)coordinates * sizeof *value);
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
-        if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
-        for (r = 0; r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            const gproj_term *term = g->term + row->term;
-            int32_t v;
-            if (row->terms != 1 || !(row->weight > 0) || term->j >= 0 || term->a == 0) continue;
-            v = gproji_variable_of(g, row, term->i);
-            if (v >= coordinates) continue;
-            held[v] = 1;
-            value[v] = -row->constant / term->a;
-        }
-    }
-    for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
-    return count;
-}
-
-/* Are all vertices of a face held, in places that are not in a plane? */
-GPROJI_INTERNAL bool gproji_is_held_bent(const gproj_mesh *mesh, const double *held, const double *value,
-                                         int32_t face) {
-    static const double up[3] = {0, 0, 1};
-    static const double noticeable = 1e-9; /* mean edges */
-    double normal[3], mean = 0, most = 0;
-    int32_t h = mesh->face_halfedge[face], c, k, held_count = 0;
-    if (mesh->face_degree[face] < 4) return false;
-    gproji_area_vector(mesh, value, face, normal);
-    gproji_normalise3(normal, up);
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        for (k = 0; k < 3; ++k) held_count += held[3 * (size_t)mesh->origin[h] + (size_t)k] == 1;
-        mean += gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) / mesh->face_degree[face];
-    }
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
-        most = gproji_fmax(most, fabs(gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) - mean));
-    return held_count == 3 * mesh->face_degree[face] && most > noticeable;
-}
-
-/* Says which faces cannot be flat because of fixed vertices, or that all are fixed. */
-GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
-    size_t length = strlen(result->message);
-    double *held = form->system->step, *value = form->system->saved;
-    int32_t f, bent = 0, first = -1, count = gproji_find_held(form, held, value);
-    for (f = form->mesh->face_count - 1; gproji_is_on(form, form->planarity) && f >= 0; --f) {
-        if (!gproji_is_held_bent(form->mesh, held, value, f)) continue;
-        first = f;
-        ++bent;
-    }
-    if (bent > 0)
-        gproji_format(
-            result->message + length, sizeof result->message - length,
-            "; face %d cannot become flat, because all of its vertices are fixed%s: let one of them go, or glide",
-            first, bent > 1 ? ", and others, too" : "");
-    else if (count == form->mesh->vertex_count)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; all vertices are fixed: let some of them go");
-}
-
-/* A vertex of a part of the mesh that has loads and no support; -1: none. */
-GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
-    const gproj_mesh *mesh = form->mesh;
-    const gproji_statics *s = form->statics;
-    int32_t *queue = s->queue, *seen = queue + mesh->vertex_count, v, k, found = -1;
-    gproj_get_loads(form, s->work);
-    for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
-    for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
-        double sum[3] = {0, 0, 0}, size = 0;
-        int32_t head, tail = 0;
-        bool supported = false;
-        if (seen[v]) continue;
-        seen[v] = 1;
-        queue[tail++] = v;
-        for (head = 0; head < tail; ++head) {
-            int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
-            const double *load = s->work + 3 * (size_t)queue[head];
-            supported = supported || s->axes[queue[head]] != GPROJI_AXES;
-            for (k = 0; k < 3; ++k) sum[k] += load[k];
-            size += gproji_length3(load);
-            do {
-                int32_t other = mesh->origin[mesh->twin[h]];
-                if (!seen[other]) queue[tail++] = other;
-                seen[other] = 1;
-                h = mesh->next[mesh->twin[h]];
-            } while (h != start);
-        }
-        if (!supported && gproji_length3(sum) > 1e-9 * size) found = v;
-    }
-    return found;
-}
-
-/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
-GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
-    double *positive = form->system->step, *negative = form->system->saved, sign;
-    const int32_t *force = form->statics->force;
-    int32_t i, r, e, found = -1;
-    memset(positive, 0, (size_t)form->system->variable_count * sizeof *positive);
-    memset(negative, 0, (size_t)form->system->variable_count * sizeof *negative);
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
-        const gproji_part *part = (const gproji_part *)g->refresh_user;
-        bool stress = g->refresh == gproji_refresh_stress;
-        if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
-        for (r = 0; r < g->row_count; ++r) {
-            if (!(g->row[r].weight > 0)) continue;
-            e = stress ? part->vertex[r] : gproji_bounded_force(form, i, r, &sign);
-            if (e < 0) continue;
-            if (!stress && sign > 0) positive[force[e]] = 1;
-            if (!stress && sign < 0) negative[force[e]] = 1;
-            if (stress && part->factor[r] > 0 && part->bound[0] > 0) positive[force[e]] = 1;
-            if (stress && part->factor[r] < 0 && part->bound[1] < 0) negative[force[e]] = 1;
-            if (positive[force[e]] + negative[force[e]] == 2) found = e;
-        }
-    }
-    return found;
-}
-
-/* Says what stands in the way of equilibrium whatever the shape, if there is such a thing, and what holds it back most. */
-GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
-    int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
-    size_t length = strlen(result->message), size = sizeof result->message - length;
-    if (floating >= 0) {
-        gproji_format(result->message + length, size,
-                      "; the part of the mesh with vertex %d has no support that could carry its loads", floating);
-    } else if (edge >= 0) {
-        gproji_format(
-            result->message + length, size,
-            "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
-    } else {
-        for (g = 0; g < form->system->group_count; ++g) {
-            gproj_group_info info = gproj_system_group_info(form->system, g);
-            if (info.kind != GPROJ_CONSTRAINT || info.place != GPROJ_PLACE_VERTEX || g == form->statics->group)
-                continue;
-            if (!gproji_is_on(form, g) || !(info.max > 1e-6)) continue;
-            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
-                          info.worst_element, info.name);
-            return;
-        }
-    }
-}
-
-/* The largest |phi| of the rows of equilibrium that count, over the largest part of a load on a vertex; 0 without loads.
-   `largest`: that part, in the form's units. -1 after an error. */
-GPROJI_INTERNAL double gproji_part_unbalanced(gproj_form *form, double *largest) {
-    const gproji_group *g = &form->system->group[form->statics->group];
-    size_t count = 3 * (size_t)form->mesh->vertex_count, i;
-    double worst = 0, *load = (double *)gproji_take(&form->own, count, sizeof *load);
-    int32_t r;
-    *largest = 0;
-    if (!load) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    gproji_loads_at(form->mesh, &form->statics->loads, gproji_internal_loads(form), gproj_system_values(form->system),
-                    load);
-    for (i = 0; i < count; ++i) *largest = gproji_fmax(*largest, fabs(load[i]));
-    gproji_give(&form->own, load, count, sizeof *load);
-    for (r = 0; r < g->row_count; ++r)
-        if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
-    return *largest > 0 ? worst / *largest : 0;
-}
-
-/* Do some of the loads follow the shape, so that they vanish with it? */
-GPROJI_INTERNAL bool gproji_loads_follow(const gproj_loads *loads, int32_t edges) {
-    int32_t e;
-    for (e = 0; loads->edge_density && e < edges; ++e)
-        if (loads->edge_density[e] != 0) return true;
-    return (!loads->edge_density && loads->density != 0) || loads->area_load != 0 || loads->snow != 0;
-}
-
-/* Equilibrium to the tolerance says nothing where the loads themselves are below it: where the mesh has shrunk to a
-   point, or beside huge forces. */
-GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
-    static const double noticeable = 1e-3;
-    const gproji_statics *s = form->statics;
-    double part, largest;
-    if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
-    part = gproji_part_unbalanced(form, &largest);
-    if (part < 0) {
-        *result = gproji_failed_result(gproj_form_error(form));
-    } else if (largest == 0 && gproji_loads_follow(&s->loads, form->mesh->edge_count)) {
-        result->outcome = GPROJ_STALLED;
-        gproji_format(result->message, sizeof result->message,
-                      "no equilibrium: the mesh has shrunk to a point, and its loads with it; fix vertices or let them "
-                      "glide");
-    } else if (part > noticeable && largest <= 10 * result->tolerance) {
-        result->outcome = GPROJ_STALLED;
-        gproji_format(result->message, sizeof result->message,
-                      "no equilibrium: the loads have become nothing beside the forces, and %g of the largest load is "
-                      "unbalanced; where the mesh has shrunk to a point, fix vertices or let them glide",
-                      part);
-    }
-}
-
-/* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
-   them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
-    int32_t vertices = 3 * form->mesh->vertex_count;
-    double sum[3] = {0, 0, 0};
-    int64_t t;
-    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
-        if (i >= vertices) continue;
-        if (j >= 0 && j < vertices) return true;
-        if (j < 0) sum[i % 3] += g->term[t].a;
-    }
-    return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
-}
-
-/* Would a bound's row be violated by a mesh that has shrunk to a point? (At the origin: bounds of lengths and areas do
-   not depend on where it is.) */
-GPROJI_INTERNAL bool gproji_bound_holds(const gproji_row *row) { return row->constant < 0; }
-
-/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
-GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t i, r;
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
-        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            if (!(row->weight > 0)) continue;
-            if (g->kind == GPROJ_BOUND ? gproji_bound_holds(row) : g->global || gproji_row_holds(form, g, row))
-                return true;
-        }
-    }
-    return false;
-}
-
-/* -- what else the verdict must not hide -- */
-
-/* What has happened to so many faces or edges, as words behind their number. */
-GPROJI_INTERNAL const char *gproji_damage_words(int32_t kind, bool one) {
-    static const char *const words[GPROJI_DAMAGE_COUNT][2] = {
-        {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
-        {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
-        {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
-    return words[kind][one ? 0 : 1];
-}
-
-/* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
-GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
-    const char *between = "";
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
-        int32_t count = d->count[kind], at = d->first[kind];
-        size_t length = strlen(text);
-        if (count == 0) continue;
-        gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count,
-                      gproji_damage_words(kind, count == 1),
-                      count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
-        length = strlen(text);
-        if (gproji_damage_place(kind) == GPROJ_PLACE_EDGE)
-            gproji_format(text + length, size - length, ", vertices %d and %d)", mesh->origin[2 * at],
-                          mesh->origin[2 * at + 1]);
-        else
-            gproji_append(text, size, length, ")", 1);
-        between = ", ";
-    }
-}
-
-/* Counts what the whole work, from gproj_form_create on, has spoiled. A mesh can satisfy everything and yet be spoiled:
-   the verdict says so. */
-GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
-    static const char help[] =
-        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
-        "keep it whole";
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    size_t size = sizeof result->message, length = strlen(result->message);
-    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
-    gproji_damages d;
-    gproji_find_damages(mesh, x, form->original, &d);
-    result->spoiled = gproji_spoiled_of(&d);
-    if (result->outcome != GPROJ_CONVERGED &&
-        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
-        return; /* there is worse to tell */
-    if (shrunk < 0.2) {
-        gproji_format(result->message + length, size - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
-    } else if (result->spoiled.total > 0) {
-        length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
-        gproji_list_damages(mesh, &d, result->message, size);
-        length = strlen(result->message);
-        if (length + sizeof help <= size) gproji_append(result->message, size, length, help, sizeof help - 1);
-    }
-}
-
-/* Circularity alone puts the corners of each face on a sphere: says so where faces are not planar. */
-GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
-    const gproj_mesh *mesh = form->mesh;
-    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
-    size_t length = strlen(result->message);
-    int32_t f, face = -1, count = 0;
-    for (f = 0; form->axis && unit > 0 && f < mesh->face_count; ++f) {
-        double off;
-        if (form->axis[f] < 0) continue;
-        gproji_face_plane(mesh, mesh->position, f, mean, normal);
-        off = gproji_face_planarity(mesh, f, mean, normal) / unit;
-        count += off > 1e-6;
-        if (off > worst) worst = off, face = f;
-    }
-    if (face >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
-                      "lengths): add planarity for circles",
-                      count, count == 1 ? " is" : "s are", face, worst);
-}
-
-/* The rows of a cone hold with any angles where the normals around a vertex are coplanar: says so where the angles do not
-   add up. */
-GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
-    double worst = 1e-6;
-    size_t length = strlen(result->message);
-    int32_t v, vertex = -1, count = 0;
-    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v) {
-        double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
-        count += off > 1e-6;
-        if (off > worst) worst = off, vertex = v;
-    }
-    if (vertex >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
-                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
-}
-
 /* -- local unknowns -- */
 
 /* Faces, one after the other, whose local unknowns a thread settles. */
@@ -23899,10 +23885,9 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     if (gproji_has_active_wish(form) && !gproji_is_held(form))
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
-    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) gproji_tell_held(form, result);
-    if (gproji_is_unbalanced(form, result)) {
-        gproji_tell_unbalanced(form, result);
-        gproji_tell_obstacles(form, result);
+    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
+        gproji_tell_held(form, result);
+        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return;
