@@ -5618,35 +5618,20 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
     return true;
 }
 
-/* Finds the elimination order asked for, with tree and counts. */
-GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_cholesky_options *options) {
-    gproji_symbolic *out = an->out;
-    gproj_ordering ordering = options->ordering;
-    gproji_condensation condensed;
-    int32_t k;
-    bool done = true;
-    memset(&condensed, 0, sizeof condensed);
-    gproji_pool_start(&condensed.pool, an->keep->heap);
-    if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_BEST) {
-        done = gproji_better_order(an, &condensed);
-    } else if (ordering == GPROJ_ORDERING_DISSECTION) {
-        done = gproji_dissect_order(an, &condensed);
-    } else {
-        if (ordering == GPROJ_ORDERING_AMD)
-            done = gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL);
-        else
-            for (k = 0; k < out->nodes; ++k)
-                out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[k] : k;
-        if (done) gproji_count_factor(an, 0);
-    }
-    gproji_pool_give_all(&condensed.pool);
-    return done;
+/* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written once,
+   added to the parent once). Wide panels compute faster. Fitted to measurements; chooses supernodes, nothing else. */
+GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
+    double rows = width + below;
+    double flops = width * (below * rows + width * width / 3.0);
+    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
 }
 
-/* Cuts the positions into fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
-GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
-    int32_t n = an->graph->nodes, k, s = -1, *super_of = an->a;
+/* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
+GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
+    int32_t n = an->graph->nodes, k, p, s = -1, kept = 0, *super_of = an->a;
+    int32_t *joined = an->b;                /* 1: has become part of an ancestor */
+    int32_t *host = an->c, *number = an->d; /* the supernode that s is now part of; the new number */
+    /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
         an->chain[k] = -1;
@@ -5668,20 +5653,8 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
         int32_t up = an->parent[an->tail[s]];
         an->super_parent[s] = up < 0 ? -1 : super_of[up];
     }
-}
-
-/* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written once,
-   added to the parent once). Wide panels compute faster. Fitted to measurements; chooses supernodes, nothing else. */
-GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
-    double rows = width + below;
-    double flops = width * (below * rows + width * width / 3.0);
-    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
-}
-
-/* Joins children to their parents if that is cheaper, although it puts zeros into the factor. */
-GPROJI_INTERNAL void gproji_relax_supernodes(gproji_analysis *an) {
-    int32_t p, s, kept = 0, *joined = an->b; /* 1: has become part of an ancestor */
-    int32_t *host = an->c, *number = an->d;  /* the supernode that s is now part of; the new number */
+    if (!relax) return;
+    /* 2. Relaxation: children join their parents if that is cheaper, although it puts zeros into the factor. */
     for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
     for (p = 0; p < an->supernodes; ++p) { /* children come before parents: those of p are final */
         int32_t *link = &an->child[p];
@@ -5707,7 +5680,7 @@ GPROJI_INTERNAL void gproji_relax_supernodes(gproji_analysis *an) {
             an->child[an->super_parent[p]] = p;
         }
     }
-    /* Renumbers the supernodes that are left, in the same order. */
+    /* 3. The supernodes that are left get new numbers in the same order. */
     for (s = an->supernodes - 1; s >= 0; --s) host[s] = joined[s] ? host[an->super_parent[s]] : s;
     for (s = 0; s < an->supernodes; ++s) {
         number[s] = kept;
@@ -5965,13 +5938,18 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
                                     const gproj_cholesky_options *options, bool concurrent, gproji_symbolic *out) {
     gproji_analysis an;
+    gproji_condensation condensed;
+    gproj_ordering ordering = options->ordering;
     int32_t **part[16], *space, k;
     int64_t n = graph->nodes;
     bool done;
     memset(&an, 0, sizeof an);
+    memset(&condensed, 0, sizeof condensed);
     memset(out, 0, sizeof *out);
     an.graph = graph, an.out = out, an.keep = keep, an.keep_order = options->disable_postorder;
     gproji_pool_start(&an.pool, keep->heap);
+    gproji_pool_start(&condensed.pool, keep->heap);
+    /* 1. Memory for everything that has an entry for each node. */
     out->columns = columns;
     out->nodes = graph->nodes;
     out->order = gproji_take_ints(keep, n);
@@ -5979,14 +5957,28 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     out->column = gproji_take_ints(keep, n + 1);
     out->front_of = gproji_take_ints(keep, n);
     space = gproji_take_ints(&an.pool, 16 * n);
+    done = out->order && out->position && out->column && out->front_of && space;
     part[0] = &an.parent, part[1] = &an.count, part[2] = &an.rows, part[3] = &an.a, part[4] = &an.b, part[5] = &an.c;
     part[6] = &an.d, part[7] = &an.chain, part[8] = &an.head, part[9] = &an.tail, part[10] = &an.width;
     part[11] = &an.below, part[12] = &an.below_nodes, part[13] = &an.super_parent, part[14] = &an.child;
     part[15] = &an.sibling;
-    for (k = 0; space && k < 16; ++k) *part[k] = space + k * n;
-    done = out->order && out->position && out->column && out->front_of && space && gproji_choose_order(&an, options);
-    if (done) gproji_find_supernodes(&an);
-    if (done && !options->disable_relaxation && !an.keep_order) gproji_relax_supernodes(&an);
+    for (k = 0; done && k < 16; ++k) *part[k] = space + k * n;
+    /* 2. Order, elimination tree, column counts. */
+    if (ordering == GPROJ_ORDERING_DISSECTION && n > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
+    if (done && ordering == GPROJ_ORDERING_BEST) {
+        done = gproji_better_order(&an, &condensed);
+    } else if (done && ordering == GPROJ_ORDERING_DISSECTION) {
+        done = gproji_dissect_order(&an, &condensed);
+    } else if (done) {
+        if (ordering == GPROJ_ORDERING_AMD)
+            done = gproji_amd_order(keep->heap, graph, columns, out->order, NULL);
+        else
+            for (k = 0; k < n; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[k] : k;
+        if (done) gproji_count_factor(&an, 0);
+    }
+    gproji_pool_give_all(&condensed.pool);
+    /* 3. Supernodes, fronts, memory. */
+    if (done) gproji_find_supernodes(&an, !options->disable_relaxation && !an.keep_order);
     done = done && gproji_make_fronts(&an) && gproji_find_rows(&an) && gproji_layout(&an, concurrent);
     gproji_pool_give_all(&an.pool);
     return done;
