@@ -5318,27 +5318,28 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 }
 
 /* ============================================================================================================
-   >>symbolic   Predicts the shape of L from the graph alone. Uses platform, memory, kernels, dense, ordering, dissection.
+   >>symbolic   Predicts the shape of L from the graph alone. Uses platform, memory, kernels, dense, ordering,
+   dissection.
 
-   A factorisation whose shape is known beforehand allocates once and never searches. The steps, with the papers that they
-   follow: elimination tree (Liu 1986), postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their
+   A factorisation whose shape is known beforehand allocates once and never searches. The steps, with the papers that
+   they follow: elimination tree (Liu 1986), postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their
    relaxation (Ashcraft, Grimes 1989), row structures, tasks, and the memory layout for the multifrontal method (Duff,
    Reid 1983; Liu 1992).
 
-   The graph has nodes (see >>ordering); counts, flops and offsets are in variables. A node's *position* is its rank in the
-   elimination order, and its variables have consecutive columns of L. A *front* eliminates one supernode: `width` pivot
-   columns, consecutive in L, and under them `below` rows, the contribution block, which belong to `row_nodes` whole nodes
-   with ascending positions. Invariants: a front's parent has a larger number and holds the front's first row node among
-   its pivots; all rows in a front are pivots or rows in its parent. */
+   The graph has nodes (see >>ordering); counts, flops and offsets are in variables. A node's *position* is its rank in
+   the elimination order, and its variables have consecutive columns of L. A *front* eliminates one supernode: `width`
+   pivot columns, consecutive in L, and under them `below` rows, the contribution block, which belong to `row_nodes`
+   whole nodes with ascending positions. Invariants: a front's parent has a larger number and holds the front's first
+   row node among its pivots; all rows in a front are pivots or rows in its parent. */
 typedef struct gproji_front {
     int64_t panel;   /* offset in the values of L: the panel, */
     int64_t entries; /* with this many numbers, */
     int64_t update;  /* and the update matrix */
     int64_t rows;    /* row nodes: row_node[rows..rows + row_nodes - 1] */
-    int64_t side;    /* sum over `below` of all earlier fronts: offset of the partial right-hand side */
+    int64_t side;    /* offset in the partial right-hand sides: `below` numbers */
     int32_t row_nodes;
     int32_t first_position, end_position; /* pivot nodes */
-    int32_t first;                        /* first column of L */
+    int32_t first;                        /* first pivot column */
     int32_t width;
     int32_t below;
     int32_t update_rows; /* `below`, rounded up: rows of the update matrix */
@@ -5359,11 +5360,11 @@ typedef struct gproji_symbolic {
     int32_t level_start[GPROJI_TASK_LEVELS + 2]; /* the tasks on each level; the top is a level with one task */
     int32_t *order;                              /* nodes: the node at each position */
     int32_t *position;                           /* nodes */
-    int32_t *column;                             /* nodes + 1, by position: first column of L */
+    int32_t *column;                             /* nodes + 1, by position: first column in L */
     int32_t *front_of;                           /* nodes, by position: the eliminating front */
     gproji_front *front;                         /* fronts */
     int32_t *row_node;                           /* row nodes of all fronts, as positions */
-    int32_t *row_at;                             /* for each row node, its first padded row in the front's panel, */
+    int32_t *row_at;                             /* for each row node: first padded row in the front's panel, */
     int32_t *relative;                           /* and in the parent's panel */
     int32_t *schedule;                           /* fronts: those of task 0 in order, of task 1, ..., of the top */
     int32_t *task_start;                         /* tasks + 2: where each task begins in `schedule` */
@@ -5371,7 +5372,7 @@ typedef struct gproji_symbolic {
     int64_t work_size;                           /* and for update matrices that do not fit in between */
     int64_t side_size;                           /* sum over all fronts' `below` */
     int64_t factor_entries, exact_entries;
-    int32_t most_rows; /* padded rows of the largest panel */
+    int32_t most_rows; /* padded rows in the largest panel */
     double flops;
 } gproji_symbolic;
 
@@ -5388,7 +5389,7 @@ typedef struct gproji_analysis {
     bool keep_order;   /* no postorder: the order is the caller's, to the letter */
     /* by position: */
     int32_t *parent;        /* elimination tree; -1: root */
-    int32_t *count;         /* variables in the column of L, the diagonal included */
+    int32_t *count;         /* variables in a column of L, the diagonal included */
     int32_t *rows;          /* nodes in the column, likewise */
     int32_t *a, *b, *c, *d; /* named where they are used */
     int32_t *chain;         /* next position in the same supernode, or -1 */
@@ -5468,20 +5469,20 @@ GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int3
 }
 
 /* Column counts for a postordered tree (Gilbert, Ng, Peyton 1994). Row i of L is a subtree of the elimination tree with
-   root i. A row's weight is added at the subtree's leaves, and taken off above its root and at each node that joins two
-   branches; a column's count is then a sum over descendants. */
+   root i. A row's weight is added at the leaves there, and subtracted above the root and at each node that joins two
+   branches; sums over descendants then give each column the weight in it. */
 GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     const gproji_graph *graph = an->graph;
     const int32_t *order = an->out->order, *position = an->out->position;
     int32_t n = graph->nodes, k;
     int32_t *first = an->a;    /* first position in the subtree under each position */
     int32_t *last = an->b;     /* by row: the leaf met last, or -1 */
-    int32_t *ancestor = an->c; /* union-find: finished positions lead to their root among them */
+    int32_t *ancestor = an->c; /* union-find: finished positions lead to the root above them */
     int64_t e;
     for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, an->count[k] = an->rows[k] = 0;
     for (k = 0; k < n; ++k) {
         int32_t i;
-        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* a leaf of its own row */
+        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* row k has no other node */
         for (i = k; i >= 0 && first[i] < 0; i = an->parent[i]) first[i] = k;
     }
     for (k = 0; k < n; ++k) {
@@ -5508,8 +5509,8 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     }
 }
 
-/* Finds elimination tree, column counts and their sums for the order in `out`, which becomes a postorder unless it must be
-   kept. apart: see gproji_elimination_tree. */
+/* Finds elimination tree, column counts and their sums for the order in `out`, which becomes a postorder unless it must
+   be kept. apart: see gproji_elimination_tree. */
 GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
@@ -5518,7 +5519,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     gproji_invert(n, out->order, out->position);
     gproji_elimination_tree(graph, apart, out->order, out->position, an->parent, an->a);
     if (an->keep_order) {
-        /* Without a postorder, walks along the subtree of every row: O(entries of L). */
+        /* Without a postorder, walks along every row's subtree: O(entries of L). */
         int32_t *mark = an->a;
         for (i = 0; i < n; ++i) {
             int32_t node = out->order[i];
@@ -5591,7 +5592,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
     if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
         if (!gproji_condense(condensed, heap, an->graph)) return false;
         /* 1. Forecast for the plane, up to a factor. If n nodes with weight w have d neighbours each, a separator has
-           about sqrt(n d) nodes, and the flops are about the cube of its weight. Closed meshes need two lines first. */
+           about sqrt(n d) nodes, and flops are about its weight cubed. Closed meshes need two lines first. */
         for (i = 0; i < rest->nodes; ++i) {
             double weight = rest->weight[i];
             all += weight, next += weight * (double)(rest->start[i + 1] - rest->start[i]);
@@ -5605,7 +5606,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
             counted = true;
         }
     }
-    /* 2. Minimum degree, which counts flops on its way; then dissection if these are many. */
+    /* 2. Minimum degree, which counts flops as it goes; then dissection if these are many. */
     order = gproji_take_ints(&an->pool, out->nodes);
     if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
     if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
@@ -5618,8 +5619,9 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
     return true;
 }
 
-/* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written once,
-   added to the parent once). Wide panels compute faster. Fitted to measurements; chooses supernodes, nothing else. */
+/* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written
+   once, added to the parent once). Wide panels compute faster. Fitted to measurements; chooses supernodes, nothing
+   else. */
 GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
     double rows = width + below;
     double flops = width * (below * rows + width * width / 3.0);
@@ -5629,8 +5631,8 @@ GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
 /* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
 GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     int32_t n = an->graph->nodes, k, p, s = -1, kept = 0, *super_of = an->a;
-    int32_t *joined = an->b;                /* 1: has become part of an ancestor */
-    int32_t *host = an->c, *number = an->d; /* the supernode that s is now part of; the new number */
+    int32_t *joined = an->b;                /* 1: has joined an ancestor */
+    int32_t *into = an->c, *number = an->d; /* the supernode that s has become; the new number */
     /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
@@ -5656,7 +5658,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     if (!relax) return;
     /* 2. Relaxation: children join their parents if that is cheaper, although it puts zeros into the factor. */
     for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
-    for (p = 0; p < an->supernodes; ++p) { /* children come before parents: those of p are final */
+    for (p = 0; p < an->supernodes; ++p) { /* children come before parents: p's are final */
         int32_t *link = &an->child[p];
         double cost = gproji_front_cost(an->width[p], an->below[p]);
         while (*link >= 0) {
@@ -5681,7 +5683,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
         }
     }
     /* 3. The supernodes that are left get new numbers in the same order. */
-    for (s = an->supernodes - 1; s >= 0; --s) host[s] = joined[s] ? host[an->super_parent[s]] : s;
+    for (s = an->supernodes - 1; s >= 0; --s) into[s] = joined[s] ? into[an->super_parent[s]] : s;
     for (s = 0; s < an->supernodes; ++s) {
         number[s] = kept;
         if (!joined[s]) kept++;
@@ -5689,7 +5691,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     for (s = 0; s < an->supernodes; ++s) {
         int32_t up = an->super_parent[s], to = number[s];
         if (joined[s]) continue; /* to <= s: all that is overwritten has moved already */
-        an->super_parent[to] = up < 0 ? -1 : number[host[up]];
+        an->super_parent[to] = up < 0 ? -1 : number[into[up]];
         an->head[to] = an->head[s], an->tail[to] = an->tail[s];
         an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
     }
@@ -5736,7 +5738,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
-    for (f = count - 1; f >= 0; --f) { /* descending, so that lists of children ascend */
+    for (f = count - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
         front->sibling = out->front[front->parent].child;
@@ -5748,12 +5750,12 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     return true;
 }
 
-/* Finds the row nodes in every front, with their padded rows in its panel and in the parent's. */
+/* Finds the row nodes in every front, and their padded rows in this front's panel and in the parent's. */
 GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
     int32_t f, i, *mark = an->a, *parent = an->b; /* parent: a copy, dense in the cache */
-    int64_t total = 0, e, r, *end;                /* end: of the rows found so far in each front */
+    int64_t total = 0, e, r, *end;                /* end: behind the rows found so far in each front */
     end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
     if (!end) return false;
     for (f = 0; f < out->fronts; ++f) {
@@ -5765,7 +5767,8 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     out->row_at = gproji_take_ints(an->keep, total);
     out->relative = gproji_take_ints(an->keep, total);
     if (!out->row_node || !out->row_at || !out->relative) return false;
-    /* 1. Row i belongs to all fronts on the paths from its entries in A up to its own front. Ascending i sorts lists. */
+    /* 1. Row i belongs to all fronts on the paths from A's entries in that row up to the front that eliminates i.
+       Ascending i sorts the lists. */
     for (i = 0; i < out->nodes; ++i) {
         int32_t node = out->order[i], own = out->front_of[i];
         gproji_expect_neighbours(graph, out->order, i);
@@ -5789,7 +5792,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
             at += graph->weight[out->order[out->row_node[r]]];
         }
     }
-    /* 3. Padded rows in the parent: first come its pivots, then its rows, and one merge finds these in sorted lists. */
+    /* 3. Padded rows in the parent: pivots come first, then rows; these are found by merging two sorted lists. */
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *up = parent[f] < 0 ? NULL : &out->front[parent[f]];
         int64_t q = up ? up->rows : 0;
@@ -5803,9 +5806,8 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     return true;
 }
 
-/* The update matrices of a front's children, one after the other in the order of the schedule. Distances are from the end
-   of the memory that panels and update matrices share. Families that are alive form a ring, ascending, which an empty one
-   closes. */
+/* The update matrices of one front's children, adjacent, in scheduled order. Distances count from the end of the memory
+   that panels and update matrices share. Families that are alive form a ring, ascending, which an empty one closes. */
 typedef struct gproji_family {
     int64_t low, high;
     int32_t before, after; /* in the ring */
@@ -5816,7 +5818,7 @@ enum {
 };
 
 /* Gives the children of front f the first gap that is large enough. Their `update` becomes the distance to their far
-   ends. task: of each front. */
+   ends. task: for each front. */
 GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
     int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, level, c;
     int64_t size = 0;
@@ -5838,7 +5840,8 @@ GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const 
                 out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
 }
 
-/* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1; zeros on entry. */
+/* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1; zeros on entry.
+   */
 GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
                                             const int32_t *task, gproji_family *family) {
     int64_t at = base, most;
@@ -5849,9 +5852,9 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
         front->panel = at;
         at += front->entries;
     }
-    /* 2. An update matrix lives from its front's turn to its parent's: it may lie where later panels come, but not its
-       parent's. Placing from the end backwards in time begins with the largest ones, and leaves little more memory than
-       the last panels need. */
+    /* 2. An update matrix lives from its front's turn to the parent's: it may lie where later panels come, but not the
+       parent's. Placing from the end, backwards in time, begins with the largest ones, and takes little more memory
+       than the last panels need. */
     family[ring].low = INT64_MAX;
     family[ring].before = family[ring].after = ring;
     most = at;
@@ -5894,7 +5897,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     for (f = 0; f < count; ++f)
         if (parent[f] >= 0) flops[parent[f]] += flops[f];
     gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
-    /* 2. Tasks: on each level whole subtrees with at most a share of all flops, small ones together. Threads that work
+    /* 2. Tasks: on each level whole subtrees up to a share in all flops, small ones together. Threads that work
        on one front together must pass it to each other, which pays for large ones only; the second level has several
        smaller ones instead. Small problems are one task. */
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
@@ -5933,8 +5936,8 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     return true;
 }
 
-/* Analyses a graph whose nodes weigh `columns` altogether; the options' permutation is one of nodes. concurrent: may tasks
-   overlap in time? That takes more memory, and changes nothing else. `keep` holds the arrays in `out`. False: no memory. */
+/* Analyses a graph whose nodes weigh `columns` altogether; the options permute nodes. concurrent: may tasks overlap in
+   time? That takes more memory, and changes nothing else. `keep` holds the arrays in `out`. False: no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
                                     const gproj_cholesky_options *options, bool concurrent, gproji_symbolic *out) {
     gproji_analysis an;
@@ -5990,16 +5993,16 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
 
    Multifrontal (Duff, Reid 1983; Liu 1992). For each front, children first: clear its panel and update matrix,
    extend-add the children's update matrices, add A's values, eliminate the pivots, and subtract their effect from the
-   contribution block. Right-hand sides that are known take part while the front is in the cache. A larger front does not
-   clear its update matrix: the pivots' effect is written there first, and the rest is added afterwards.
+   contribution block. Right-hand sides that are known take part while the front is in the cache. A larger front does
+   not clear its update matrix: the pivots' effect is written there first, and the rest is added afterwards.
 
    Threads: whole subtrees are tasks, on a second level those above; the few large fronts on top follow one by one, and
    the work inside each is cut into strips. The cuts depend on the matrix alone, so results are the same bits for any
    number of threads. Solves sweep over the same tasks: a front adds to its parent's partial right-hand side, not to a
    common vector.
 
-   A matrix in compressed columns is compressed further: columns with the same entries become one node. The system section
-   brings its own nodes, and adds its values to each front on request (gproji_load).
+   A matrix in compressed columns is compressed further: columns with the same entries become one node. The system
+   section brings its own nodes, and adds its values to each front on request (gproji_load).
 
    Invariants: the numerical part takes its memory at once, before the first factorisation; the analysis has fixed each
    update matrix's place in it, so tasks share nothing but read-only data. */
@@ -6008,30 +6011,30 @@ enum {
     GPROJI_FRESH = 1 << 12,  /* fronts with more values do not clear their update matrix */
     GPROJI_CACHED = 1 << 16, /* a front with at most this many values stays in the L2 cache */
     GPROJI_NEAR = 1 << 18,   /* a factor with at most this many values is not worth prefetching */
-    GPROJI_PREFETCHED = 8192 /* values of the next panel that are prefetched */
+    GPROJI_PREFETCHED = 8192 /* values in the next panel that are prefetched */
 };
 
-/* Adds the matrix's values for a front to its panel and update matrix (see gproji_panel_column), in the columns that
-   belong to the padded rows [from, to): all rows, or the pivots', or all after these. Each value is added once, in a front
-   that has both of its variables. Called from several threads. */
+/* Adds the matrix's values for a front to the panel and the update matrix (see gproji_panel_column), in the columns
+   that belong to the padded rows [from, to): all rows, or the pivots', or all after these. Each value is added once, in
+   a front that has the row and the column. Called from several threads. */
 typedef void (*gproji_load)(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to);
 
-/* The entries of a matrix in compressed columns, sorted by fronts. */
+/* A matrix in compressed columns: entries sorted by fronts. */
 typedef struct gproji_entries {
     int64_t count;
     int64_t *number;      /* count: index in the caller's arrays */
     int64_t *target;      /* count: offset in L */
-    int64_t *start;       /* fronts + 1: where each front's entries begin */
+    int64_t *start;       /* fronts + 1: start of each front's entries */
     const double *values; /* A's, during gproj_cholesky_factor */
 } gproji_entries;
 
-/* Arguments of a sweep over the tasks. */
+/* Arguments for a sweep over the tasks. */
 typedef struct gproji_sweep {
     gproji_load load; /* NULL: the matrix has been factored */
-    void *user;       /* of `load` */
+    void *user;       /* for `load` */
     int32_t level;
     const double *given; /* right-hand sides, */
-    double *found;       /* and solutions: in the order of A */
+    double *found;       /* and solutions: in A's order */
 } gproji_sweep;
 
 struct gproj_cholesky {
@@ -6041,10 +6044,10 @@ struct gproj_cholesky {
     bool analysed, factored;
     int32_t failed_column;
     gproji_pool kept;    /* holds the analysis */
-    gproji_pool numeric; /* holds the arrays of factorisation and solution */
+    gproji_pool numeric; /* holds the arrays for factorisation and solution */
     const gproji_kernels *kernels;
     gproji_symbolic symbolic;
-    int32_t *permutation;   /* columns: the column of A at each column of L */
+    int32_t *permutation;   /* columns: the column of A that becomes each column of L */
     gproji_piece *piece;    /* scatter runs; front f's update matrix: piece[piece_start[f]..piece_start[f + 1]) */
     int64_t *piece_start;   /* fronts + 1 */
     gproji_entries entries; /* empty for an analysis by blocks */
@@ -6054,9 +6057,9 @@ struct gproj_cholesky {
     int32_t sides; /* and those in this sweep */
 
     double *values;   /* symbolic.values_size + work_size: panels, and update matrices while they are needed */
-    double *inverse;  /* columns: inverses of the diagonal of L */
-    int32_t *failed;  /* tasks + 1: the column of L where the task failed, or -1 */
-    double *solution; /* columns * room, in the order of L */
+    double *inverse;  /* columns: 1 / L's diagonal */
+    int32_t *failed;  /* tasks + 1: the column of L that failed, or -1 */
+    double *solution; /* columns * room, in L's order */
     double *side;     /* symbolic.side_size * room: partial right-hand sides, from each front to its parent */
     double *rows;     /* (tasks + 1) * 2 * symbolic.most_rows: work, for two right-hand sides in each task */
 };
@@ -6130,8 +6133,8 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 
 /* -- analysis -- */
 
-/* Analyses a graph, with the options' permutation of nodes, and prepares the permutation and the scatter runs. Node i has
-   the columns member[member_start[i]..] of A; without `member` these numbers themselves. False: no memory. */
+/* Analyses a graph, and prepares the permutation and the scatter runs. Node i has the columns
+   member[member_start[i]..]; without `member` these numbers themselves. The options permute nodes. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
                                                    const gproj_cholesky_options *options, const int32_t *member_start,
                                                    const int32_t *member) {
@@ -6140,7 +6143,8 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     int32_t f, k, i, at = 0;
     if (!gproji_analyse(&c->kept, graph, member_start[graph->nodes], options, c->parallel.run != NULL, &c->symbolic))
         return false;
-    for (f = 0; f < sy->fronts; ++f) most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+    for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
+        most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
@@ -6148,6 +6152,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     for (k = 0; k < sy->nodes; ++k)
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
+    /* Consecutive rows that stay consecutive in the parent's panel are one run: kernels add whole runs. */
     start[0] = 0;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f], *up = front->parent < 0 ? NULL : &sy->front[front->parent];
@@ -6161,7 +6166,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     return c->piece != NULL;
 }
 
-/* Maps columns of L to padded rows in front f's panel: at[name[k]] for each column k that has one; without `name` at[k]. */
+/* at[name[k]] = the padded row in front f's panel for column k of L, wherever there is one; without `name` at[k]. */
 GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const int32_t *name, int32_t *at) {
     const gproji_symbolic *sy = &c->symbolic;
     const gproji_front *front = &sy->front[f];
@@ -6174,8 +6179,8 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph (see
-   gproji_graph). The options' permutation is one of nodes. */
+/* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph
+   (see gproji_graph). The options permute nodes. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
                                                           const int32_t *node_size, const int64_t *adjacency_start,
                                                           const int32_t *adjacency,
@@ -6235,19 +6240,19 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
     return GPROJ_OK;
 }
 
-/* A matrix in compressed columns on its way to a graph of nodes. */
+/* From a matrix in compressed columns to a graph with few nodes. */
 typedef struct gproji_compression {
     gproji_pool pool;
     int32_t n;
-    int64_t *start;     /* n + 1: neighbours of the columns, */
+    int64_t *start;     /* n + 1: each column's neighbours, */
     int32_t *neighbour; /* without the diagonal and without repetition */
     uint32_t *hash;     /* n: sum over the column and its neighbours */
     int32_t *mark;      /* n */
     int32_t *order;     /* n: the order to keep, or NULL */
-    int32_t *node_of;   /* n: the node of each column, or -1 */
-    int32_t *member;    /* n: the columns of each node */
+    int32_t *node_of;   /* n: each column's node, or -1 */
+    int32_t *member;    /* n: each node's columns */
     int32_t *member_start;
-    gproji_graph graph; /* of the nodes */
+    gproji_graph graph; /* the nodes' */
 } gproji_compression;
 
 /* Finds the neighbours in both triangles, and the order to keep if the options ask for one. */
@@ -6263,7 +6268,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     x->order = given || natural ? gproji_take_ints(&x->pool, n) : NULL;
     if (!x->start || !x->neighbour || !x->hash || !x->mark || ((given || natural) && !x->order))
         return gproji_fail_memory(error);
-    /* 1. Counting sort: start[j + 1] is where the next neighbour of column j goes. */
+    /* 1. Counting sort: start[j + 1] is where column j's next neighbour goes. */
     for (j = 0; j < n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p)
             if (row[p] != j) x->start[j + 2]++, x->start[row[p] + 2]++;
@@ -6302,7 +6307,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     return GPROJ_OK;
 }
 
-/* Has column i the neighbours of column j, which are marked, and is it one of them? */
+/* Has column i the same neighbours as column j, whose are marked, and is it one of these? */
 GPROJI_INTERNAL bool gproji_compression_same(const gproji_compression *x, int32_t j, int32_t i) {
     int64_t p;
     if (x->hash[i] != x->hash[j] || x->start[i + 1] - x->start[i] != x->start[j + 1] - x->start[j]) return false;
@@ -6346,7 +6351,7 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
         }
     }
     x->member_start[nodes] = at;
-    /* 2. A node's neighbours are those of its first member. */
+    /* 2. A node's neighbours are its first member's. */
     for (k = 0; k < n; ++k) x->mark[k] = -1;
     for (k = 0; k < nodes; ++k) {
         j = x->member[x->member_start[k]];
@@ -6364,15 +6369,14 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     return true;
 }
 
-/* Sorts the entries by fronts and finds their offsets in L. An entry belongs to the front that eliminates its row or its
-   column, whichever comes first. False: no memory. */
+/* Sorts the entries by fronts and finds their offsets in L. An entry belongs to the front that eliminates the row or
+   the column, whichever comes first. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
                                                    const int32_t *row) {
     const gproji_symbolic *sy = &c->symbolic;
     gproji_entries *to = &c->entries;
-    int32_t f, j, k, *column_of = x->mark; /* columns of A: their columns of L */
-    int32_t *front_of = x->node_of,
-            *row_of = x->member; /* columns of L: their fronts; their padded rows in one front */
+    int32_t f, j, k, *column_of = x->mark;               /* from columns of A to columns of L */
+    int32_t *front_of = x->node_of, *row_of = x->member; /* by columns of L: fronts; padded rows in one front */
     int64_t p;
     to->count = x->n ? start[x->n] : 0;
     to->number = (int64_t *)gproji_pool_take(&c->kept, to->count, sizeof(int64_t));
@@ -6382,7 +6386,7 @@ GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_com
     gproji_invert(x->n, c->permutation, column_of);
     for (f = 0; f < sy->fronts; ++f)
         for (k = 0; k < sy->front[f].width; ++k) front_of[sy->front[f].first + k] = f;
-    /* 1. Counting sort; `target` holds the two columns of L, the later one times 2^32. */
+    /* 1. Counting sort; `target` holds two columns of L, the later one times 2^32. */
     for (j = 0; j < x->n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p)
             to->start[front_of[gproji_min(column_of[j], column_of[row[p]])] + 2]++;
@@ -6437,7 +6441,7 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     return code;
 }
 
-/* -- memory of the numerical part -- */
+/* -- numerical memory -- */
 
 /* `count` doubles that begin at a cache line. */
 GPROJI_INTERNAL double *gproji_take_aligned(gproji_pool *pool, int64_t count) {
@@ -6456,7 +6460,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->failed = gproji_take_ints(&c->numeric, tasks);
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
-    c->room = c->batch;
+    c->room = c->batch; /* at least: see gproji_cholesky_widen */
     if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
@@ -6487,7 +6491,7 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
 /* Is the factor too large for the cache? */
 GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_NEAR; }
 
-/* Prefetches a front's panel, and entries of right-hand sides: a small front would wait for its first ones. */
+/* Prefetches a front's panel and right-hand sides: small fronts would wait for their first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f, int32_t sides) {
     const gproji_front *front = &c->symbolic.front[f];
     const int32_t *permutation = c->permutation + front->first;
@@ -6509,7 +6513,7 @@ typedef struct gproji_gathering {
     int32_t chunk;    /* columns in one task */
 } gproji_gathering;
 
-/* Extend-adds the children's update matrices to one chunk of columns. A task. */
+/* Extend-adds the children's update matrices to one chunk. A task. */
 GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
     const gproj_cholesky *c = gathering->c;
@@ -6558,21 +6562,21 @@ GPROJI_INLINE double *gproji_front_side(const gproj_cholesky *c, const gproji_fr
     return c->side + front->side * c->batch + (int64_t)side * front->below;
 }
 
-/* Sets the padded rows z to 0; returns where its pivot rows begin. */
+/* Sets the padded rows z to 0; returns the first pivot row. */
 GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
     int32_t shift = gproji_panel_shift(front->width);
     memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
     return z + shift;
 }
 
-/* Fills the padded rows z: the front's part of a right-hand side, and extend-adds the children's partial ones. */
+/* Fills the padded rows z: the front's part in a right-hand side, then extend-adds the children's partial ones. */
 GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
     const gproji_symbolic *sy = &c->symbolic;
     const double *b = c->sweep.given + (size_t)side * (size_t)sy->columns;
     double *pivots = gproji_start_rows(front, z);
     const int32_t *permutation = c->permutation + front->first;
     int32_t f, i, k;
-    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]];
+    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]]; /* rows below begin at 0: others hold their b */
     for (f = front->child; f >= 0; f = sy->front[f].sibling) {
         const gproji_front *child = &sy->front[f];
         const double *from = gproji_front_side(c, child, side), *end = from + child->below;
@@ -6613,6 +6617,8 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
         gproji_panel panel = gproji_front_panel(c, front);
         if (k + 1 < end) gproji_prefetch_front(c, sy->schedule[k + 1], c->sides);
         if (c->sweep.load) {
+            /* Beyond the first cache, clearing an update matrix is a pass over memory: the pivots' effect goes first.
+               */
             int32_t pivot_end = panel.shape.end, rows = pivot_end + panel.update_rows;
             panel.fresh = front->below > 0 && front->entries + gproji_update_entries(front->update_rows) > GPROJI_FRESH;
             gproji_gather(c, sy->schedule[k], &panel, parallel, 0, panel.fresh ? pivot_end : rows);
@@ -6624,7 +6630,7 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
             if (front->below > 0) gproji_panel_update(parallel, &panel);
             if (panel.fresh) gproji_gather(c, sy->schedule[k], &panel, parallel, pivot_end, rows);
         }
-        for (side = 0; side < c->sides; side += 2) {
+        for (side = 0; side < c->sides; side += 2) { /* a kernel reads L once for two */
             bool two = side + 1 < c->sides;
             gproji_enter_front(c, front, side, z);
             if (two) gproji_enter_front(c, front, side + 1, y);
@@ -6652,6 +6658,7 @@ GPROJI_INTERNAL void gproji_backward_task(void *data, int32_t index) {
             double *x = c->solution + offset, *found = c->sweep.found + offset, *pivots = gproji_start_rows(front, z);
             double *to = pivots + front->width;
             memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
+            /* The parent has solved for all rows below. */
             if (sy->columns == sy->nodes) /* positions are columns */
                 for (r = 0; r < front->row_nodes; ++r) to[r] = x[node[r]];
             else
@@ -6664,8 +6671,8 @@ GPROJI_INTERNAL void gproji_backward_task(void *data, int32_t index) {
     }
 }
 
-/* Sweeps up all levels: factors the matrix that `load` adds to the fronts, if any, and solves L y = b for up to c->batch
-   right-hand sides; c->solution holds y in the order of L. Returns the first failing column of L, or -1. */
+/* Sweeps up all levels: factors the matrix that `load` adds to the fronts, if any, and solves L y = b for up to
+   c->batch right-hand sides; c->solution holds y in L's order. Returns the first failing column of L, or -1. */
 GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load load, void *user, int32_t sides,
                                               const double *b) {
     const int32_t *start = c->symbolic.level_start;
@@ -6674,6 +6681,7 @@ GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load loa
     c->sweep.user = user;
     c->sides = sides;
     c->sweep.given = b;
+    /* Tasks on one level run to their ends although one has failed, so that the answer does not depend on timing. */
     for (level = 0; level <= GPROJI_TASK_LEVELS && failed < 0; ++level) {
         c->sweep.level = level;
         gproji_for(&c->parallel, start[level + 1] - start[level], gproji_forward_task, c);
@@ -6691,7 +6699,7 @@ GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
         gproji_for(&c->parallel, start[c->sweep.level + 1] - start[c->sweep.level], gproji_backward_task, c);
 }
 
-/* L y = b for any number of right-hand sides, y in the order of L; may be in place. */
+/* L y = b for any number of right-hand sides, y in L's order; may be in place. */
 GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, const double *b, double *y) {
     size_t n = (size_t)c->symbolic.columns;
     int32_t r, sides;
@@ -6702,7 +6710,7 @@ GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, c
     }
 }
 
-/* L' x = y for one right-hand side in the order of L; may be in place. */
+/* L' x = y for one right-hand side in L's order; may be in place. */
 GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
     memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
     c->sides = 1;
@@ -6808,19 +6816,21 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 /* ============================================================================================================
    >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, symbolic, cholesky.
 
-   An interior-point method finds which variables are at their bounds; Newton steps on the others, with exchanges for the
-   few mistakes, make the solution exact. All matrices are
+   An interior-point method finds which variables are at their bounds; Newton steps on the others, with exchanges for
+   the few mistakes, make the solution exact. All matrices are
        A'A + damping^2 I + D + a diagonal,
    so one pattern is analysed once. D is 1e-12 times the diagonal, and only in the matrix, never in the gradient: each
    step belongs to the proximal point method (Rockafellar 1976), which solves the undamped problem even if A'A is
    singular; dependent columns stay near their start instead of being driven to a corner.
 
    The interior-point method is Mehrotra's (1992) with Gondzio's correctors (1996) and equal steps for x and the
-   multipliers. Each finite bound is a pair: a slack s > 0 and a multiplier z > 0, sought with s z = 0. The step dx solves
+   multipliers. Each finite bound is a pair: a slack s > 0 and a multiplier z > 0, sought with s z = 0. The step dx
+   solves
        (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
-   + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block principal
-   pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the interior-point method
-   goes on to a better guess. So the method cannot cycle, and it ends at a limit for factorisations in any case. */
+   + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block
+   principal pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the
+   interior-point method goes on to a better guess. So the method cannot cycle, and it ends at a limit for
+   factorisations in any case. */
 enum {
     GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
     GPROJI_SQUARES_ROUNDS = 12, /* exchanges, one factorisation each */
@@ -6834,19 +6844,19 @@ enum {
 
 enum {
     GPROJI_VARIABLE_FREE,
-    GPROJI_VARIABLE_LOWER, /* held at its lower bound */
+    GPROJI_VARIABLE_LOWER, /* held at the lower bound */
     GPROJI_VARIABLE_UPPER,
-    GPROJI_VARIABLE_FIXED /* its bounds are equal */
+    GPROJI_VARIABLE_FIXED /* both bounds are equal */
 };
 
-/* The matrix A by rows; its columns are the caller's. */
+/* A by rows; the caller has it by columns. */
 typedef struct gproji_sparse_rows {
     int64_t *start; /* rows + 1 */
     int32_t *column;
     double *value;
 } gproji_sparse_rows;
 
-/* The matrix of the normal equations: its lower triangle by columns, the diagonal first. */
+/* The normal equations' matrix: lower triangle by columns, the diagonal first. */
 typedef struct gproji_normal_matrix {
     gproj_cholesky *cholesky;
     int32_t factorisations;
@@ -6859,7 +6869,7 @@ typedef struct gproji_normal_matrix {
     double *barrier; /* columns: added to the diagonal by the interior-point method */
 } gproji_normal_matrix;
 
-/* A direction of the interior-point method. */
+/* A direction for the interior-point method. */
 typedef struct gproji_direction {
     double *x;      /* columns: dx */
     double *target; /* pairs: t */
@@ -6947,8 +6957,8 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return GPROJ_OK;
 }
 
-/* Reads a bound as a finite number: `none`, -NONE or NONE, if there is no bound. False for NaN and for a bound on the wrong
-   side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
+/* Reads a bound as a finite number: `none`, -NONE or NONE, if there is no bound. False for NaN and for a bound on the
+   wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
 GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
     uint64_t bits;
     *out = none;
@@ -7032,7 +7042,7 @@ GPROJI_INTERNAL void gproji_squares_multiply(gproji_squares *s, int64_t *mark) {
     normal->start[s->columns] = at;
 }
 
-/* Assembles A'A and analyses its pattern. */
+/* Assembles A'A and analyses the pattern. */
 GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
     gproji_normal_matrix *normal = &s->normal;
@@ -7110,8 +7120,8 @@ GPROJI_INTERNAL bool gproji_squares_factor(gproji_squares *s) {
 
 /* -- gradients -- */
 
-/* gradient = A' residual + damping^2 x. Returns the largest entry of these sums with absolute values, scaled by `unit`: a
-   column with small entries must not drown beside one with large entries. */
+/* gradient = A' residual + damping^2 x. Returns the largest entry of these sums with absolute values, scaled by `unit`:
+   a column with small entries must not drown beside one with large entries. */
 GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *x) {
     const gproj_least_squares *p = s->problem;
     double largest = 0;
@@ -7161,7 +7171,8 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
 
 /* -- Newton steps and exchanges -- */
 
-/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest scaled entry there. */
+/* step = the displacement that makes the gradient 0 at the free variables. Returns the gradient's largest scaled entry
+   there. */
 GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
     double largest = 0;
     int32_t j;
@@ -7208,7 +7219,7 @@ GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
     return false;
 }
 
-/* Frees all variables that are not fixed, and returns their number. */
+/* Frees all variables that are not fixed; returns how many. */
 GPROJI_INTERNAL int32_t gproji_squares_free_all(gproji_squares *s) {
     int32_t j, count = 0;
     for (j = 0; j < s->columns; ++j) {
@@ -7270,7 +7281,7 @@ GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
     return true;
 }
 
-/* gradient = g - sum +-z, the part without multipliers. Returns its largest scaled entry relative to `scale`. */
+/* gradient = g - sum +-z, the part without multipliers. Returns the largest scaled entry relative to `scale`. */
 GPROJI_INTERNAL double gproji_squares_imbalance(gproji_squares *s) {
     const gproji_interior *in = &s->interior;
     double largest = 0;
@@ -7442,7 +7453,7 @@ GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
     int64_t e;
     if (!(s->best_kkt <= 1e-9)) return false;
     /* 1. noise[j], scaled: the part of the gradient that tells nothing, from rounding or twice the remaining violation;
-       -1 if the variable is fixed, or held by its bound beyond doubt. */
+       -1 if the variable is fixed, or held at a bound beyond doubt. */
     for (j = 0; j < s->columns; ++j) {
         bool held = s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
         extent = gproji_fmax(extent, fabs(s->best[j]) / s->unit[j]);
@@ -7453,8 +7464,8 @@ GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
             noise[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
         noise[j] = s->unit[j] * gproji_fmax(noise[j], 2 * fabs(s->gradient[j]));
     }
-    /* 2. A row with a clear residual that drowns in the gradients of all variables that could mend it, because other rows
-       round by more or its own entries cancel: nobody knows whether that row has a better solution. */
+    /* 2. A row with a clear residual that drowns in the gradients of all variables that could mend it, because other
+       rows round by more or entries in the same place cancel: nobody knows whether that row has a better solution. */
     for (i = 0; s->columns > 0 && i < p->rows; ++i) {
         int64_t end = s->rows.start[i + 1];
         double largest = 0, part = 0, around = 0, residual = fabs(s->residual[i]);
