@@ -5559,7 +5559,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
 enum {
     GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
     GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
-    GPROJI_DISSECT_LEAST = 600,         /* nodes in a graph worth a forecast; half as many are added to the graph's */
+    GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
@@ -5599,6 +5599,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
         }
         square = rest->nodes > 0 ? next / 8 * all / rest->nodes : 0;
         forecast = (gproji_rim(rest) > 1 ? 1 : 2) * square * sqrt(square);
+        /* The second term stands for the time that dissection takes in any case. */
         if (forecast > (double)GPROJI_DISSECT_FORECAST * (out->nodes + GPROJI_DISSECT_LEAST / 2)) {
             if (!gproji_dissect_order(an, condensed)) return false;
             /* Meshes have 15 to 40 times the forecast. Beyond that the graph is no mesh, and minimum degree may win. */
@@ -5620,8 +5621,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
 }
 
 /* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written
-   once, added to the parent once). Wide panels compute faster. Fitted to measurements; chooses supernodes, nothing
-   else. */
+   once, added to the parent once). Wide panels compute faster. Fitted to measurements. */
 GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
     double rows = width + below;
     double flops = width * (below * rows + width * width / 3.0);
@@ -5755,7 +5755,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
     int32_t f, i, *mark = an->a, *parent = an->b; /* parent: a copy, dense in the cache */
-    int64_t total = 0, e, r, *end;                /* end: behind the rows found so far in each front */
+    int64_t total = 0, e, r, *end;                /* end: where each front's next row goes */
     end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
     if (!end) return false;
     for (f = 0; f < out->fronts; ++f) {
@@ -5833,15 +5833,14 @@ GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const 
     family[f].before = before, family[f].after = after;
     family[before].after = family[after].before = f;
     family[f].low = family[f].high = family[before].high;
-    for (level = 0; level <= GPROJI_TASK_LEVELS;
-         ++level) /* as scheduled: backwards in time the last child goes first */
+    /* Children as scheduled: backwards in time the last one goes first. */
+    for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
         for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
             if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
                 out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
 }
 
-/* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1; zeros on entry.
-   */
+/* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1 zeros. */
 GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
                                             const int32_t *task, gproji_family *family) {
     int64_t at = base, most;
@@ -5897,9 +5896,9 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     for (f = 0; f < count; ++f)
         if (parent[f] >= 0) flops[parent[f]] += flops[f];
     gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
-    /* 2. Tasks: on each level whole subtrees up to a share in all flops, small ones together. Threads that work
-       on one front together must pass it to each other, which pays for large ones only; the second level has several
-       smaller ones instead. Small problems are one task. */
+    /* 2. Tasks: on each level whole subtrees that stay within a share of all flops, small ones together. Threads on one
+       front must pass it to each other, which pays for large fronts only; the second level has several smaller tasks
+       instead. Small problems are one task. */
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
     share[1] = gproji_fmin(sum / 4, 5e8); /* some milliseconds */
     out->tasks = 0;
@@ -6281,7 +6280,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
         }
         x->mark[j] = -1;
     }
-    /* 2. Repeated entries leave. Hash values are sums: no matter in which order neighbours come. */
+    /* 2. Repeated entries leave. Hash values are sums: equal for equal neighbours in whatever order. */
     for (j = 0, p = 0; j < n; ++j) {
         int64_t end = x->start[j + 1];
         x->start[j] = to;
@@ -6393,8 +6392,8 @@ GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_com
     for (f = 0; f < sy->fronts; ++f) to->start[f + 2] += to->start[f + 1];
     for (j = 0; j < x->n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p) {
-            int32_t early = gproji_min(column_of[j], column_of[row[p]]),
-                    late = gproji_max(column_of[j], column_of[row[p]]);
+            int32_t early = gproji_min(column_of[j], column_of[row[p]]);
+            int32_t late = gproji_max(column_of[j], column_of[row[p]]);
             int64_t at = to->start[front_of[early] + 1]++;
             to->number[at] = p;
             to->target[at] = early | (int64_t)late << 32;
@@ -6460,7 +6459,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
     c->failed = gproji_take_ints(&c->numeric, tasks);
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
-    c->room = c->batch; /* at least: see gproji_cholesky_widen */
+    c->room = c->batch;
     if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
@@ -6518,8 +6517,8 @@ GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
     const gproj_cholesky *c = gathering->c;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t from = gathering->from + index * gathering->chunk, to = gproji_min(from + gathering->chunk, gathering->to),
-            i;
+    int32_t i, from = gathering->from + index * gathering->chunk;
+    int32_t to = gproji_min(from + gathering->chunk, gathering->to);
     if (from < gathering->panel->shape.end || !gathering->panel->fresh)
         gproji_clear_columns(gathering->panel, from, to); /* right before the additions: both in the cache */
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
@@ -6617,8 +6616,7 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
         gproji_panel panel = gproji_front_panel(c, front);
         if (k + 1 < end) gproji_prefetch_front(c, sy->schedule[k + 1], c->sides);
         if (c->sweep.load) {
-            /* Beyond the first cache, clearing an update matrix is a pass over memory: the pivots' effect goes first.
-               */
+            /* Clearing a large update matrix would be one more pass over it: the pivots' effect goes first. */
             int32_t pivot_end = panel.shape.end, rows = pivot_end + panel.update_rows;
             panel.fresh = front->below > 0 && front->entries + gproji_update_entries(front->update_rows) > GPROJI_FRESH;
             gproji_gather(c, sy->schedule[k], &panel, parallel, 0, panel.fresh ? pivot_end : rows);
