@@ -6245,7 +6245,7 @@ typedef struct gproji_compression {
     int32_t n;
     int64_t *start;     /* n + 1: each column's neighbours, */
     int32_t *neighbour; /* without the diagonal and without repetition */
-    uint32_t *hash;     /* n: sum over the column and its neighbours */
+    uint32_t *hash;     /* n: a sum over the column and the neighbours */
     int32_t *mark;      /* n */
     int32_t *order;     /* n: the order to keep, or NULL */
     int32_t *node_of;   /* n: each column's node, or -1 */
@@ -6350,7 +6350,7 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
         }
     }
     x->member_start[nodes] = at;
-    /* 2. A node's neighbours are its first member's. */
+    /* 2. A node's neighbours are the first member's. */
     for (k = 0; k < n; ++k) x->mark[k] = -1;
     for (k = 0; k < nodes; ++k) {
         j = x->member[x->member_start[k]];
