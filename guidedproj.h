@@ -5319,60 +5319,61 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
 }
 
 /* ============================================================================================================
-   >>symbolic   What a factorisation will look like, from the graph alone. Uses platform, memory, kernels, dense,
-   ordering, dissection.
+   >>symbolic   Predicts the shape of L from the graph alone. Uses platform, memory, kernels, dense, ordering,
+   dissection.
 
-   Works on the graph of nodes; counts, flops and offsets are in variables. In this order: elimination tree (Liu 1986),
-   postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their relaxation (Ashcraft, Grimes 1989), row
-   structures, then the layout of the multifrontal method (Duff, Reid 1983; Liu 1992): which fronts make up a task, and
-   where each front's panel and its update matrix are in the memory.
+   A factorisation whose shape is known beforehand allocates once and never searches. The steps, with the papers that
+   they follow: elimination tree (Liu 1986), postorder, column counts (Gilbert, Ng, Peyton 1994), supernodes and their
+   relaxation (Ashcraft, Grimes 1989), row structures, tasks, and the memory layout for the multifrontal method (Duff,
+   Reid 1983; Liu 1992).
 
-   A "place" is a node's position in the order of elimination; its variables have consecutive columns of L. A front
-   (supernode) has `width` pivot columns, consecutive in L, and `below` rows under them, which belong to `row_nodes`
-   whole nodes with ascending places. Invariants: a front's parent has a larger number and holds the front's first row
-   node among its pivots; all rows of a front are pivots or rows of its parent. */
+   The graph has nodes (see >>ordering); counts, flops and offsets are in variables. A node's *position* is its rank in
+   the elimination order, and its variables have consecutive columns of L. A *front* eliminates one supernode: `width`
+   pivot columns, consecutive in L, and under them `below` rows, the contribution block, which belong to `row_nodes`
+   whole nodes with ascending positions. Invariants: a front's parent has a larger number and holds the front's first
+   row node among its pivots; all rows in a front are pivots or rows in its parent. */
 typedef struct gproji_front {
-    int64_t panel;   /* where its panel begins in the values of L */
-    int64_t entries; /* of its panel */
-    int64_t update;  /* where its update matrix begins, among the values of L */
-    int64_t rows;    /* its row nodes are row_node[rows..rows+row_nodes-1] */
-    int64_t side;    /* `below` rows of all fronts before it: where it keeps its part of a right-hand side */
+    int64_t panel;   /* offset in the values of L: the panel, */
+    int64_t entries; /* with this many numbers, */
+    int64_t update;  /* and the update matrix */
+    int64_t rows;    /* row nodes: row_node[rows..rows + row_nodes - 1] */
+    int64_t side;    /* offset in the partial right-hand sides: `below` numbers */
     int32_t row_nodes;
-    int32_t first_place, end_place; /* its pivot nodes */
-    int32_t first;                  /* its first column of L */
+    int32_t first_position, end_position; /* pivot nodes */
+    int32_t first;                        /* first pivot column */
     int32_t width;
     int32_t below;
-    int32_t update_rows; /* `below`, rounded up: the rows of its update matrix */
+    int32_t update_rows; /* `below`, rounded up: rows of the update matrix */
     int32_t parent;      /* -1: none */
     int32_t child;       /* first child, or -1 */
     int32_t sibling;     /* next child of the same parent, or -1 */
 } gproji_front;
 
 enum {
-    GPROJI_STAGES = 2 /* of tasks; those of a stage need nothing of each other */
+    GPROJI_TASK_LEVELS = 2 /* within one level, tasks are independent */
 };
 
 typedef struct gproji_symbolic {
     int32_t columns;
     int32_t nodes;
     int32_t fronts;
-    int32_t tasks;                          /* tasks of all stages; the fronts on top of them are one more group */
-    int32_t stage_start[GPROJI_STAGES + 2]; /* the groups of each stage; that on top is one of its own */
-    int32_t *order;                         /* nodes: the node at each place */
-    int32_t *place;                         /* nodes: the place of each node */
-    int32_t *column;                        /* nodes + 1: the first column of L of the node at each place */
-    int32_t *front_of;                      /* nodes: the front of each place */
-    gproji_front *front;                    /* fronts */
-    int32_t *row_node;                      /* row nodes of all fronts: their places */
-    int32_t *row_at;                        /* for each of them, its first storage row in the front's panel */
-    int32_t *relative;                      /* for each of them, its first storage row in the parent's panel */
-    int32_t *schedule;                      /* fronts: those of task 0 in order, of task 1, ..., those on top */
-    int32_t *task_start;                    /* tasks + 2: where the groups begin in `schedule` */
-    int64_t values_size;                    /* doubles for all panels */
-    int64_t work_size;                      /* doubles after them, for the update matrices that do not fit in between */
-    int64_t side_size;                      /* `below` rows of all fronts */
+    int32_t tasks;                               /* on all levels; task number `tasks` are the fronts on top */
+    int32_t level_start[GPROJI_TASK_LEVELS + 2]; /* the tasks on each level; the top is a level with one task */
+    int32_t *order;                              /* nodes: the node at each position */
+    int32_t *position;                           /* nodes */
+    int32_t *column;                             /* nodes + 1, by position: first column in L */
+    int32_t *front_of;                           /* nodes, by position: the eliminating front */
+    gproji_front *front;                         /* fronts */
+    int32_t *row_node;                           /* row nodes of all fronts, as positions */
+    int32_t *row_at;                             /* for each row node: first padded row in the front's panel, */
+    int32_t *relative;                           /* and in the parent's panel */
+    int32_t *schedule;                           /* fronts: those of task 0 in order, of task 1, ..., of the top */
+    int32_t *task_start;                         /* tasks + 2: where each task begins in `schedule` */
+    int64_t values_size;                         /* doubles for all panels, */
+    int64_t work_size;                           /* and for update matrices that do not fit in between */
+    int64_t side_size;                           /* sum over all fronts' `below` */
     int64_t factor_entries, exact_entries;
-    int32_t most_rows; /* storage rows of the largest panel */
+    int32_t most_rows; /* padded rows in the largest panel */
     double flops;
 } gproji_symbolic;
 
@@ -5380,46 +5381,36 @@ enum {
     GPROJI_NODES_AHEAD = 8 /* see gproji_expect_neighbours */
 };
 
-/* Arrays of the analysis that are not kept; all have `nodes` entries and are indexed by place or supernode. */
+/* Scratch for an analysis; all arrays have `nodes` entries. */
 typedef struct gproji_analysis {
     const gproji_graph *graph;
     gproji_symbolic *out;
-    bool concurrent;        /* several tasks may be at work at the same time */
-    gproji_pool *keep;      /* for what is kept */
-    gproji_pool pool;       /* for what is not */
-    int32_t *parent;        /* elimination tree, by place; -1: root */
-    int32_t *count;         /* weight of a place's column of L, its own weight included */
-    int32_t *rows;          /* the same in nodes */
-    int32_t *a, *b, *c, *d; /* of several uses */
-    /* supernodes */
+    gproji_pool *keep; /* holds the arrays in `out` */
+    gproji_pool pool;  /* holds the arrays here */
+    bool keep_order;   /* no postorder: the order is the caller's, to the letter */
+    /* by position: */
+    int32_t *parent;        /* elimination tree; -1: root */
+    int32_t *count;         /* variables in a column of L, the diagonal included */
+    int32_t *rows;          /* nodes in the column, likewise */
+    int32_t *a, *b, *c, *d; /* named where they are used */
+    int32_t *chain;         /* next position in the same supernode, or -1 */
+    /* by supernode: */
     int32_t supernodes;
-    int32_t *head, *tail; /* first and last place of the chain of its nodes */
-    int32_t *chain;       /* by place: next place of the same supernode, or -1 */
+    int32_t *head, *tail; /* first and last position in the chain */
     int32_t *width, *below, *below_nodes;
     int32_t *super_parent, *child, *sibling;
 } gproji_analysis;
 
-GPROJI_INTERNAL bool gproji_analysis_take(gproji_analysis *an) {
-    int64_t n = an->graph->nodes;
-    int32_t **all[16];
-    int32_t i;
-    all[0] = &an->parent, all[1] = &an->count, all[2] = &an->rows, all[3] = &an->a;
-    all[4] = &an->b, all[5] = &an->c, all[6] = &an->d, all[7] = &an->head;
-    all[8] = &an->tail, all[9] = &an->chain, all[10] = &an->width, all[11] = &an->below;
-    all[12] = &an->below_nodes, all[13] = &an->super_parent, all[14] = &an->child, all[15] = &an->sibling;
-    for (i = 0; i < 16; ++i) {
-        *all[i] = (int32_t *)gproji_pool_take(&an->pool, n, sizeof(int32_t));
-        if (!*all[i]) return false;
-    }
-    return true;
+GPROJI_INTERNAL int32_t *gproji_take_ints(gproji_pool *pool, int64_t count) {
+    return (int32_t *)gproji_pool_take(pool, count, sizeof(int32_t));
 }
 
-GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t *place) {
+GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t *position) {
     int32_t k;
-    for (k = 0; k < count; ++k) place[order[k]] = k;
+    for (k = 0; k < count; ++k) position[order[k]] = k;
 }
 
-/* Nodes in the order of elimination come from all over the memory: asks for the neighbours of those that follow. */
+/* Prefetches the neighbours that a walk in elimination order reads soon: they are scattered over the memory. */
 GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const int32_t *order, int32_t k) {
     if (k + 2 * GPROJI_NODES_AHEAD < graph->nodes) {
         GPROJI_PREFETCH(graph->start + order[k + 2 * GPROJI_NODES_AHEAD]);
@@ -5427,10 +5418,10 @@ GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const in
     }
 }
 
-/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` places are not adjacent to each other. ancestor: work,
+/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` positions are not adjacent to each other. ancestor: work,
    shortcuts towards the root. */
 GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t apart, const int32_t *order,
-                                             const int32_t *place, int32_t *parent, int32_t *ancestor) {
+                                             const int32_t *position, int32_t *parent, int32_t *ancestor) {
     int32_t k, i, above;
     int64_t e;
     for (k = 0; k < graph->nodes; ++k) {
@@ -5438,16 +5429,16 @@ GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t 
         if (k < apart) continue;
         gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            for (i = place[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
+            for (i = position[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
                 above = ancestor[i];
-                ancestor[i] = k;
+                ancestor[i] = k; /* compresses the path: later walks jump to k */
                 if (above < 0) parent[i] = k;
             }
         }
     }
 }
 
-/* Lists of children of a forest, ascending. Returns the first root; the roots are siblings. */
+/* Lists the children in a forest, ascending. Returns the first root; the roots are siblings. */
 GPROJI_INTERNAL int32_t gproji_children(int32_t count, const int32_t *parent, int32_t *child, int32_t *sibling) {
     int32_t k, roots = -1;
     for (k = 0; k < count; ++k) child[k] = -1;
@@ -5459,7 +5450,7 @@ GPROJI_INTERNAL int32_t gproji_children(int32_t count, const int32_t *parent, in
     return roots;
 }
 
-/* sequence[k] = the k-th node in postorder of the forest given by its lists of children, which are used up. */
+/* sequence[k] = the k-th node in postorder. Uses up the lists of children. */
 GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int32_t *child, const int32_t *sibling,
                                       int32_t *sequence) {
     int32_t count = 0, root;
@@ -5478,49 +5469,21 @@ GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int3
     }
 }
 
-/* Renumbers places by the postorder of the elimination tree: every subtree gets consecutive places. */
-GPROJI_INTERNAL void gproji_apply_postorder(gproji_analysis *an) {
-    gproji_symbolic *out = an->out;
-    int32_t n = out->nodes, k, *sequence = an->c, *renamed = an->d;
-    int32_t roots = gproji_children(n, an->parent, an->a, an->b);
-    gproji_postorder(roots, an->parent, an->a, an->b, sequence);
-    gproji_invert(n, sequence, renamed);
-    for (k = 0; k < n; ++k) {
-        int32_t up = an->parent[sequence[k]];
-        an->a[k] = out->order[sequence[k]];
-        an->b[k] = up < 0 ? -1 : renamed[up];
-    }
-    memcpy(out->order, an->a, (size_t)n * sizeof(int32_t));
-    memcpy(an->parent, an->b, (size_t)n * sizeof(int32_t));
-    gproji_invert(n, out->order, out->place);
-}
-
-/* The last node of the path from i to the root that `ancestor` leads to; shortens the path. */
-GPROJI_INTERNAL int32_t gproji_find(int32_t *ancestor, int32_t i) {
-    int32_t root = i, next;
-    while (ancestor[root] != root) root = ancestor[root];
-    for (; ancestor[i] != root; i = next) {
-        next = ancestor[i];
-        ancestor[i] = root;
-    }
-    return root;
-}
-
-/* Column counts of a postordered tree (Gilbert, Ng, Peyton 1994). Row i of L is a subtree of the elimination tree with
-   root i; its weight is added at its leaves, taken off where two of its branches meet and above its root, so that sums
-   over subtrees give each column what its rows weigh. */
+/* Column counts for a postordered tree (Gilbert, Ng, Peyton 1994). Row i of L is a subtree of the elimination tree with
+   root i. A row's weight is added at the leaves there, and subtracted above the root and at each node that joins two
+   branches; sums over descendants then give each column the weight in it. */
 GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     const gproji_graph *graph = an->graph;
-    const int32_t *order = an->out->order, *place = an->out->place;
+    const int32_t *order = an->out->order, *position = an->out->position;
     int32_t n = graph->nodes, k;
-    int32_t *first = an->a;    /* first place of the subtree of each place */
-    int32_t *last = an->b;     /* last leaf met of each row's subtree, or -1 */
-    int32_t *ancestor = an->c; /* see gproji_find */
+    int32_t *first = an->a;    /* first position in the subtree under each position */
+    int32_t *last = an->b;     /* by row: the leaf met last, or -1 */
+    int32_t *ancestor = an->c; /* union-find: finished positions lead to the root above them */
     int64_t e;
     for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, an->count[k] = an->rows[k] = 0;
     for (k = 0; k < n; ++k) {
         int32_t i;
-        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* a leaf of its own row */
+        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* row k has no other node */
         for (i = k; i >= 0 && first[i] < 0; i = an->parent[i]) first[i] = k;
     }
     for (k = 0; k < n; ++k) {
@@ -5528,12 +5491,13 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
         if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
         gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            int32_t i = place[graph->adjacent[e]], weight, meet;
-            if (i <= k || first[k] <= last[i]) continue; /* k is no leaf of the subtree of row i */
+            int32_t i = position[graph->adjacent[e]], weight, meet, at, next;
+            if (i <= k || first[k] <= last[i]) continue; /* k is no leaf in the subtree of row i */
             weight = graph->weight[order[i]];
             an->count[k] += weight, an->rows[k] += 1;
-            if (last[i] >= 0) {
-                meet = gproji_find(ancestor, last[i]);
+            if (last[i] >= 0) { /* the branches of two leaves meet at their lowest common ancestor */
+                for (meet = last[i]; ancestor[meet] != meet;) meet = ancestor[meet];
+                for (at = last[i]; ancestor[at] != meet; at = next) next = ancestor[at], ancestor[at] = meet;
                 an->count[meet] -= weight, an->rows[meet] -= 1;
             }
             last[i] = k;
@@ -5546,33 +5510,135 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     }
 }
 
-/* The same for any numbering, by walking along the subtree of every row: O(entries of L). */
-GPROJI_INTERNAL void gproji_column_counts_by_rows(gproji_analysis *an) {
+/* Finds elimination tree, column counts and their sums for the order in `out`, which becomes a postorder unless it must
+   be kept. apart: see gproji_elimination_tree. */
+GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
+    gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
-    int32_t n = graph->nodes, i, k, *mark = an->a;
+    int32_t n = out->nodes, i, k;
     int64_t e;
-    for (i = 0; i < n; ++i) {
-        int32_t node = an->out->order[i];
-        mark[i] = i;
-        an->count[i] = graph->weight[node], an->rows[i] = 1;
-        for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
-            k = an->out->place[graph->adjacent[e]];
-            for (; k < i && mark[k] != i; k = an->parent[k]) {
-                mark[k] = i;
-                an->count[k] += graph->weight[node], an->rows[k] += 1;
-            }
+    gproji_invert(n, out->order, out->position);
+    gproji_elimination_tree(graph, apart, out->order, out->position, an->parent, an->a);
+    if (an->keep_order) {
+        /* Without a postorder, walks along every row's subtree: O(entries of L). */
+        int32_t *mark = an->a;
+        for (i = 0; i < n; ++i) {
+            int32_t node = out->order[i];
+            mark[i] = i;
+            an->count[i] = graph->weight[node], an->rows[i] = 1;
+            for (e = graph->start[node]; e < graph->start[node + 1]; ++e)
+                for (k = out->position[graph->adjacent[e]]; k < i && mark[k] != i; k = an->parent[k]) {
+                    mark[k] = i;
+                    an->count[k] += graph->weight[node], an->rows[k] += 1;
+                }
         }
+    } else {
+        /* Renumbers by postorder: every subtree gets consecutive positions, and L keeps its entries. */
+        int32_t *sequence = an->c, *renamed = an->d;
+        gproji_postorder(gproji_children(n, an->parent, an->a, an->b), an->parent, an->a, an->b, sequence);
+        gproji_invert(n, sequence, renamed);
+        for (k = 0; k < n; ++k) {
+            int32_t up = an->parent[sequence[k]];
+            an->a[k] = out->order[sequence[k]];
+            an->b[k] = up < 0 ? -1 : renamed[up];
+        }
+        memcpy(out->order, an->a, (size_t)n * sizeof(int32_t));
+        memcpy(an->parent, an->b, (size_t)n * sizeof(int32_t));
+        gproji_invert(n, out->order, out->position);
+        gproji_column_counts(an);
+    }
+    /* Sums entries and flops for exact L, without the zeros that relaxed supernodes add. */
+    out->exact_entries = 0;
+    out->flops = 0;
+    for (k = 0; k < n; ++k) {
+        int64_t w = graph->weight[out->order[k]], below = an->count[k] - w;
+        out->exact_entries += w * (w + 1) / 2 + w * below;
+        out->flops += gproji_front_flops((double)w, (double)below);
     }
 }
 
-/* Cuts the places into chains k, k + 1, ... of columns with the same rows below: the supernodes without zeros. */
-GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
-    int32_t n = an->graph->nodes, k, s = -1, *super_of = an->a;
+enum {
+    GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
+    GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
+    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
+};
+
+/* Orders condensed nodes first and the others by dissection, and counts the factor. Condenses the graph unless that has
+   been done. */
+GPROJI_INTERNAL bool gproji_dissect_order(gproji_analysis *an, gproji_condensation *condensed) {
+    gproji_heap *heap = an->keep->heap;
+    int32_t *order = an->out->order, *rest, k, total = an->out->columns;
+    if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
+    for (k = 0; k < condensed->count; ++k) {
+        order[k] = condensed->first[k];
+        total -= an->graph->weight[order[k]];
+    }
+    rest = order + condensed->count;
+    if (!gproji_dissect(heap, &condensed->rest, total, rest)) return false;
+    for (k = 0; k < condensed->rest.nodes; ++k) rest[k] = condensed->first[condensed->count + rest[k]];
+    gproji_count_factor(an, condensed->count);
+    return true;
+}
+
+/* Takes the better one of minimum degree and dissection. Dissection takes longer and spares flops: it runs if that pays
+   within about four factorisations. Minimum degree tells, unless a forecast is clear enough to skip it. */
+GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensation *condensed) {
+    gproji_symbolic *out = an->out;
+    gproji_heap *heap = an->keep->heap;
+    const gproji_graph *rest = &condensed->rest;
+    int32_t *order, i;
+    bool counted = false;
+    double flops, all = 0, next = 0, square, forecast;
+    if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_condense(condensed, heap, an->graph)) return false;
+        /* 1. Forecast for the plane, up to a factor. If n nodes with weight w have d neighbours each, a separator has
+           about sqrt(n d) nodes, and flops are about its weight cubed. Closed meshes need two lines first. */
+        for (i = 0; i < rest->nodes; ++i) {
+            double weight = rest->weight[i];
+            all += weight, next += weight * (double)(rest->start[i + 1] - rest->start[i]);
+        }
+        square = rest->nodes > 0 ? next / 8 * all / rest->nodes : 0;
+        forecast = (gproji_rim(rest) > 1 ? 1 : 2) * square * sqrt(square);
+        /* The second term stands for the time that dissection takes in any case. */
+        if (forecast > (double)GPROJI_DISSECT_FORECAST * (out->nodes + GPROJI_DISSECT_LEAST / 2)) {
+            if (!gproji_dissect_order(an, condensed)) return false;
+            /* Meshes have 15 to 40 times the forecast. Beyond that the graph is no mesh, and minimum degree may win. */
+            if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
+            counted = true;
+        }
+    }
+    /* 2. Minimum degree, which counts flops as it goes; then dissection if these are many. */
+    order = gproji_take_ints(&an->pool, out->nodes);
+    if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
+    if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
+        if (!gproji_dissect_order(an, condensed)) return false;
+        counted = true;
+    }
+    if (counted && out->flops < flops) return true;
+    if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
+    gproji_count_factor(an, 0);
+    return true;
+}
+
+/* Estimates a front's time, in units near a processor cycle: a fixed part, arithmetic, panel, update matrix (written
+   once, added to the parent once). Wide panels compute faster. Fitted to measurements. */
+GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
+    double rows = width + below;
+    double flops = width * (below * rows + width * width / 3.0);
+    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
+}
+
+/* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
+GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
+    int32_t n = an->graph->nodes, k, p, s = -1, kept = 0, *super_of = an->a;
+    int32_t *joined = an->b;                /* 1: has joined an ancestor */
+    int32_t *into = an->c, *number = an->d; /* the supernode that s has become; the new number */
+    /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
-        bool joins = k > 0 && an->parent[k - 1] == k && an->rows[k - 1] == an->rows[k] + 1;
         an->chain[k] = -1;
-        if (joins) {
+        if (k > 0 && an->parent[k - 1] == k && an->rows[k - 1] == an->rows[k] + 1) {
             an->chain[k - 1] = k;
         } else {
             ++s;
@@ -5590,46 +5656,14 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an) {
         int32_t up = an->parent[an->tail[s]];
         an->super_parent[s] = up < 0 ? -1 : super_of[up];
     }
-}
-
-/* What a front costs, in units of about a processor cycle: a fixed part, arithmetic, its panel, its update matrix
-   (written once, added to the parent once). Wide panels compute faster. Fitted to measurements; only the choice of
-   supernodes depends on it. */
-GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
-    double rows = width + below;
-    double flops = width * (below * rows + width * width / 3.0);
-    return 200.0 + flops / 20.0 + 2.0 * width * rows + 20.0 * width + 0.7 * below * below + 4.0 * below;
-}
-
-/* Keeps the supernodes that are not joined to their parent, numbered anew in the same order. joined: 0 or 1 for each on
-   entry; work. */
-GPROJI_INTERNAL void gproji_keep_supernodes(gproji_analysis *an, int32_t *joined) {
-    int32_t s, kept = 0, *host = an->c, *number = an->d; /* host: the supernode that s is now part of */
-    for (s = an->supernodes - 1; s >= 0; --s) host[s] = joined[s] ? host[an->super_parent[s]] : s;
-    for (s = 0; s < an->supernodes; ++s) {
-        number[s] = kept;
-        if (!joined[s]) kept++;
-    }
-    for (s = 0; s < an->supernodes; ++s) {
-        int32_t up = an->super_parent[s], to = number[s];
-        if (joined[s]) continue; /* to <= s: what is overwritten has been moved already */
-        an->super_parent[to] = up < 0 ? -1 : number[host[up]];
-        an->head[to] = an->head[s], an->tail[to] = an->tail[s];
-        an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
-    }
-    an->supernodes = kept;
-}
-
-/* Joins children to their parents where that is cheaper, although it puts zeros into the factor. Parents come after
-   their children, so p's children are final when p's turn comes; the children of a joined child become p's. */
-GPROJI_INTERNAL void gproji_relax_supernodes(gproji_analysis *an) {
-    int32_t p, *joined = an->b; /* is the supernode part of another one */
+    if (!relax) return;
+    /* 2. Relaxation: children join their parents if that is cheaper, although it puts zeros into the factor. */
     for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
-    for (p = 0; p < an->supernodes; ++p) {
+    for (p = 0; p < an->supernodes; ++p) { /* children come before parents: p's are final */
         int32_t *link = &an->child[p];
         double cost = gproji_front_cost(an->width[p], an->below[p]);
         while (*link >= 0) {
-            int32_t c = *link, width = an->width[p] + an->width[c];
+            int32_t c = *link, width = an->width[p] + an->width[c], *end;
             double both = gproji_front_cost(width, an->below[p]);
             if (both > cost + gproji_front_cost(an->width[c], an->below[c])) {
                 link = &an->sibling[c];
@@ -5640,31 +5674,39 @@ GPROJI_INTERNAL void gproji_relax_supernodes(gproji_analysis *an) {
             an->width[p] = width;
             an->chain[an->tail[c]] = an->head[p];
             an->head[p] = an->head[c];
-            if (an->child[c] >= 0) { /* its children take its place in the list */
-                int32_t *end = &an->child[c];
-                *link = an->child[c];
-                while (*end >= 0) end = &an->sibling[*end];
-                *end = an->sibling[c];
-            } else {
-                *link = an->sibling[c];
-            }
+            *link = an->child[c]; /* grandchildren replace c in the list: they are candidates too */
+            for (end = link; *end >= 0;) end = &an->sibling[*end];
+            *end = an->sibling[c];
         }
         if (an->super_parent[p] >= 0) {
             an->sibling[p] = an->child[an->super_parent[p]];
             an->child[an->super_parent[p]] = p;
         }
     }
-    gproji_keep_supernodes(an, joined);
+    /* 3. The supernodes that are left get new numbers in the same order. */
+    for (s = an->supernodes - 1; s >= 0; --s) into[s] = joined[s] ? into[an->super_parent[s]] : s;
+    for (s = 0; s < an->supernodes; ++s) {
+        number[s] = kept;
+        if (!joined[s]) kept++;
+    }
+    for (s = 0; s < an->supernodes; ++s) {
+        int32_t up = an->super_parent[s], to = number[s];
+        if (joined[s]) continue; /* to <= s: all that is overwritten has moved already */
+        an->super_parent[to] = up < 0 ? -1 : number[into[up]];
+        an->head[to] = an->head[s], an->tail[to] = an->tail[s];
+        an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
+    }
+    an->supernodes = kept;
 }
 
-/* Turns the supernodes into fronts: in postorder of their tree, and the places with them, unless `keep_order`. */
-GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an, bool keep_order) {
+/* Turns supernodes into fronts, and renumbers them and the positions by postorder unless the order must be kept. */
+GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t n = out->nodes, count = an->supernodes, k, f, at = 0, column = 0;
     int32_t *sequence = an->a, *number = an->b, *order = an->c;
     int32_t roots = gproji_children(count, an->super_parent, an->child, an->sibling);
     gproji_postorder(roots, an->super_parent, an->child, an->sibling, sequence);
-    if (keep_order)
+    if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
     gproji_invert(count, sequence, number);
     out->fronts = count;
@@ -5673,101 +5715,22 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an, bool keep_order) {
     for (f = 0; f < count; ++f) {
         int32_t s = sequence[f], up = an->super_parent[s];
         gproji_front *front = &out->front[f];
-        front->first_place = at;
+        gproji_shape shape = gproji_shape_of(an->width[s], an->below[s]);
+        int64_t w = front->width = an->width[s];
+        front->first_position = at;
         front->first = column;
-        front->width = an->width[s];
         front->below = an->below[s];
         front->row_nodes = an->below_nodes[s];
         front->parent = up < 0 ? -1 : number[up];
+        front->child = front->sibling = -1;
         for (k = an->head[s]; k >= 0; k = an->chain[k]) {
             order[at] = out->order[k];
             out->front_of[at] = f;
             out->column[at] = column;
             column += an->graph->weight[order[at++]];
         }
-        front->end_place = at;
+        front->end_position = at;
         GPROJ_ASSERT(column == front->first + front->width);
-    }
-    out->column[n] = column;
-    memcpy(out->order, order, (size_t)n * sizeof(int32_t));
-    gproji_invert(n, out->order, out->place);
-    return true;
-}
-
-/* The rows of every front: row i belongs to all fronts on the paths from its entries in A up to its own front. Going
-   through the rows in ascending order leaves every list sorted. */
-GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
-    gproji_symbolic *out = an->out;
-    const gproji_graph *graph = an->graph;
-    int32_t f, i, *mark = an->a, *parent = an->b;
-    int64_t total = 0, e, r, *end; /* of what each front has got */
-    end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
-    if (!end) return false;
-    for (f = 0; f < out->fronts; ++f) {
-        out->front[f].rows = end[f] = total;
-        total += out->front[f].row_nodes;
-        mark[f] = -1, parent[f] = out->front[f].parent;
-    }
-    out->row_node = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
-    out->row_at = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
-    out->relative = (int32_t *)gproji_pool_take(an->keep, total, sizeof(int32_t));
-    if (!out->row_node || !out->row_at || !out->relative) return false;
-    for (i = 0; i < out->nodes; ++i) {
-        int32_t node = out->order[i], own = out->front_of[i];
-        gproji_expect_neighbours(graph, out->order, i);
-        for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
-            int32_t k = out->place[graph->adjacent[e]];
-            if (k >= i) continue;
-            for (f = out->front_of[k]; f != own && mark[f] != i; f = parent[f]) {
-                mark[f] = i;
-                GPROJ_ASSERT(end[f] < out->front[f].rows + out->front[f].row_nodes);
-                out->row_node[end[f]++] = i;
-            }
-        }
-    }
-    for (f = 0; f < out->fronts; ++f) {
-        const gproji_front *front = &out->front[f];
-        int32_t at = front->width + gproji_panel_shift(front->width);
-        GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
-        for (r = front->rows; r < front->rows + front->row_nodes; ++r) {
-            out->row_at[r] = at;
-            at += graph->weight[out->order[out->row_node[r]]];
-        }
-    }
-    return true;
-}
-
-/* Where the rows of every front stand in its parent's panel: both lists are sorted. */
-GPROJI_INTERNAL void gproji_find_relative(gproji_symbolic *out) {
-    int32_t f;
-    for (f = 0; f < out->fronts; ++f) {
-        const gproji_front *front = &out->front[f], *parent;
-        int64_t r = front->rows, end = r + front->row_nodes, q;
-        if (front->parent < 0) continue;
-        parent = &out->front[front->parent];
-        for (; r < end && out->row_node[r] < parent->end_place; ++r)
-            out->relative[r] = out->column[out->row_node[r]] - parent->first + gproji_panel_shift(parent->width);
-        for (q = parent->rows; r < end; ++r) {
-            while (out->row_node[q] != out->row_node[r]) ++q;
-            out->relative[r] = out->row_at[q];
-        }
-    }
-}
-
-/* Strides, children and sides of the fronts; sums. */
-GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
-    int32_t f;
-    for (f = 0; f < out->fronts; ++f) out->front[f].child = out->front[f].sibling = -1;
-    for (f = out->fronts - 1; f >= 0; --f) {
-        gproji_front *front = &out->front[f];
-        if (front->parent < 0) continue;
-        front->sibling = out->front[front->parent].child;
-        out->front[front->parent].child = f;
-    }
-    for (f = 0; f < out->fronts; ++f) {
-        gproji_front *front = &out->front[f];
-        int64_t w = front->width;
-        gproji_shape shape = gproji_shape_of(front->width, front->below);
         front->entries = gproji_shape_entries(shape);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->side = out->side_size;
@@ -5776,94 +5739,89 @@ GPROJI_INTERNAL void gproji_size_panels(gproji_symbolic *out) {
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
-}
-
-/* The fronts in an order in which children come before parents and subtrees are consecutive. */
-GPROJI_INTERNAL void gproji_front_sequence(gproji_analysis *an, int32_t *sequence) {
-    gproji_symbolic *out = an->out;
-    int32_t f, roots, *parent = an->b;
-    for (f = 0; f < out->fronts; ++f) parent[f] = out->front[f].parent;
-    roots = gproji_children(out->fronts, parent, an->child, an->sibling);
-    gproji_postorder(roots, parent, an->child, an->sibling, sequence);
-}
-
-/* The tasks of a stage: of the fronts without a group (-1) the whole subtrees with at most so many flops, small ones
-   together. flops: of each front's subtree. Returns how many tasks there are now. */
-GPROJI_INTERNAL int32_t gproji_make_stage(const gproji_symbolic *out, const int32_t *sequence, const double *flops,
-                                          double share, int32_t tasks, int32_t *group) {
-    double filled = 0;
-    int32_t k;
-    for (k = 0; k < out->fronts; ++k) {
-        int32_t f = sequence[k], parent = out->front[f].parent;
-        if (group[f] >= 0 || flops[f] > share) continue;
-        group[f] = tasks;
-        if (parent >= 0 && flops[parent] <= share) continue;
-        filled += flops[f]; /* a whole subtree is complete */
-        if (filled > share / 2) tasks++, filled = 0;
+    for (f = count - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
+        gproji_front *front = &out->front[f];
+        if (front->parent < 0) continue;
+        front->sibling = out->front[front->parent].child;
+        out->front[front->parent].child = f;
     }
-    return tasks + (filled > 0);
+    out->column[n] = column;
+    memcpy(out->order, order, (size_t)n * sizeof(int32_t));
+    gproji_invert(n, out->order, out->position);
+    return true;
 }
 
-/* Groups the fronts in stages. In each of them subtrees with at most a share of all flops are tasks; what is above the
-   last ones is the last group. Threads that work on one front together must pass it to each other, which pays for large
-   ones only; of smaller ones, those of the second stage, there are several. Small problems are one task. group: fronts
-   entries. */
-GPROJI_INTERNAL bool gproji_make_tasks(gproji_analysis *an, const int32_t *sequence, int32_t *group) {
+/* Finds the row nodes in every front, and their padded rows in this front's panel and in the parent's. */
+GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
-    double *flops, sum = 0, share[GPROJI_STAGES];
-    int32_t f, stage;
-    flops = (double *)gproji_pool_take(&an->pool, out->fronts, sizeof(double));
-    if (!flops) return false;
+    const gproji_graph *graph = an->graph;
+    int32_t f, i, *mark = an->a, *parent = an->b; /* parent: a copy, dense in the cache */
+    int64_t total = 0, e, r, *end;                /* end: where each front's next row goes */
+    end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
+    if (!end) return false;
     for (f = 0; f < out->fronts; ++f) {
-        flops[f] = gproji_front_flops(out->front[f].width, out->front[f].below);
-        sum += flops[f];
-        group[f] = -1;
+        out->front[f].rows = end[f] = total;
+        total += out->front[f].row_nodes;
+        mark[f] = -1, parent[f] = out->front[f].parent;
     }
-    for (f = 0; f < out->fronts; ++f)
-        if (out->front[f].parent >= 0) flops[out->front[f].parent] += flops[f];
-    share[0] = sum > 2e7 ? sum / 24 : sum * 2;
-    share[1] = gproji_fmin(sum / 4, 5e8); /* some milliseconds */
-    out->tasks = 0;
-    for (stage = 0; stage < GPROJI_STAGES; ++stage) {
-        out->stage_start[stage] = out->tasks;
-        out->tasks = gproji_make_stage(out, sequence, flops, share[stage], out->tasks, group);
+    out->row_node = gproji_take_ints(an->keep, total);
+    out->row_at = gproji_take_ints(an->keep, total);
+    out->relative = gproji_take_ints(an->keep, total);
+    if (!out->row_node || !out->row_at || !out->relative) return false;
+    /* 1. Row i belongs to all fronts on the paths from A's entries in that row up to the front that eliminates i.
+       Ascending i sorts the lists. */
+    for (i = 0; i < out->nodes; ++i) {
+        int32_t node = out->order[i], own = out->front_of[i];
+        gproji_expect_neighbours(graph, out->order, i);
+        for (e = graph->start[node]; e < graph->start[node + 1]; ++e) {
+            int32_t k = out->position[graph->adjacent[e]];
+            if (k >= i) continue;
+            for (f = out->front_of[k]; f != own && mark[f] != i; f = parent[f]) {
+                mark[f] = i;
+                GPROJ_ASSERT(end[f] < out->front[f].rows + out->front[f].row_nodes);
+                out->row_node[end[f]++] = i;
+            }
+        }
     }
-    out->stage_start[GPROJI_STAGES] = out->tasks;
-    out->stage_start[GPROJI_STAGES + 1] = out->tasks + 1;
-    for (f = 0; f < out->fronts; ++f)
-        if (group[f] < 0) group[f] = out->tasks;
+    /* 2. Padded rows in the front's own panel, under its pivots. */
+    for (f = 0; f < out->fronts; ++f) {
+        const gproji_front *front = &out->front[f];
+        int32_t at = front->width + gproji_panel_shift(front->width);
+        GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
+        for (r = front->rows; r < end[f]; ++r) {
+            out->row_at[r] = at;
+            at += graph->weight[out->order[out->row_node[r]]];
+        }
+    }
+    /* 3. Padded rows in the parent: pivots come first, then rows; these are found by merging two sorted lists. */
+    for (f = 0; f < out->fronts; ++f) {
+        const gproji_front *up = parent[f] < 0 ? NULL : &out->front[parent[f]];
+        int64_t q = up ? up->rows : 0;
+        for (r = out->front[f].rows; up && r < end[f]; ++r) {
+            i = out->row_node[r];
+            while (i >= up->end_position && out->row_node[q] != i) ++q;
+            out->relative[r] =
+                i < up->end_position ? out->column[i] - up->first + gproji_panel_shift(up->width) : out->row_at[q];
+        }
+    }
     return true;
 }
 
-/* `schedule` and `task_start` from the groups. */
-GPROJI_INTERNAL bool gproji_make_schedule(gproji_analysis *an, const int32_t *sequence, const int32_t *group) {
-    gproji_symbolic *out = an->out;
-    int32_t k, g;
-    out->schedule = (int32_t *)gproji_pool_take(an->keep, out->fronts, sizeof(int32_t));
-    out->task_start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
-    if (!out->schedule || !out->task_start) return false;
-    for (k = 0; k < out->fronts; ++k) out->task_start[group[k] + 2]++;
-    for (g = 0; g <= out->tasks; ++g) out->task_start[g + 2] += out->task_start[g + 1];
-    for (k = 0; k < out->fronts; ++k) out->schedule[out->task_start[group[sequence[k]] + 1]++] = sequence[k];
-    return true;
-}
-
-/* The update matrices of a front's children, one after the other, in the order of the schedule: backwards in time the
-   last one is the first to go. Distances are from the end of the memory that panels and update matrices share. The
-   families that are there are a ring, ascending, closed by one more that has nothing. */
+/* The update matrices of one front's children, adjacent, in scheduled order. Distances count from the end of the memory
+   that panels and update matrices share. Families that are alive form a ring, ascending, which an empty one closes. */
 typedef struct gproji_family {
     int64_t low, high;
     int32_t before, after; /* in the ring */
 } gproji_family;
 
 enum {
-    GPROJI_FAMILY_TRIES = 64 /* gaps in which a family's place is looked for */
+    GPROJI_FAMILY_TRIES = 64 /* gaps that are tried before the end is taken */
 };
 
-/* Gives a front's children the first gap that is large enough; their `update` becomes the distance of their far ends.
-   Fronts' groups: `group`. */
-GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *group, gproji_family *family) {
-    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, stage, c;
+/* Gives the children of front f the first gap that is large enough. Their `update` becomes the distance to their far
+   ends. task: for each front. */
+GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
+    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, level, c;
     int64_t size = 0;
     for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
         size += gproji_update_entries(out->front[c].update_rows);
@@ -5876,40 +5834,43 @@ GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const 
     family[f].before = before, family[f].after = after;
     family[before].after = family[after].before = f;
     family[f].low = family[f].high = family[before].high;
-    for (stage = 0; stage <= GPROJI_STAGES; ++stage) /* in the order of the schedule */
+    /* Children as scheduled: backwards in time the last one goes first. */
+    for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
         for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-            if (group[c] >= out->stage_start[stage] && group[c] < out->stage_start[stage + 1])
+            if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
                 out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
 }
 
-/* The memory of schedule[begin..end-1] from `base` on; returns its end. The panels follow each other. An update matrix
-   lives from its front's turn to its parent's: it may be where later panels come, but not its parent's. So they are
-   placed from the end of the memory on, backwards in time, which begins with the largest ones, and leaves them little
-   more than what the last panels need. family: fronts + 1; zeros on entry. */
+/* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1 zeros. */
 GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
-                                            const int32_t *group, gproji_family *family) {
+                                            const int32_t *task, gproji_family *family) {
     int64_t at = base, most;
-    int32_t k, c;
-    family[out->fronts].low = INT64_MAX;
-    family[out->fronts].before = family[out->fronts].after = out->fronts;
+    int32_t ring = out->fronts, k, c;
+    /* 1. Panels follow each other. */
     for (k = begin; k < end; ++k) {
         gproji_front *front = &out->front[out->schedule[k]];
         front->panel = at;
         at += front->entries;
     }
+    /* 2. An update matrix lives from its front's turn to the parent's: it may lie where later panels come, but not the
+       parent's. Placing from the end, backwards in time, begins with the largest ones, and takes little more memory
+       than the last panels need. */
+    family[ring].low = INT64_MAX;
+    family[ring].before = family[ring].after = ring;
     most = at;
     for (k = end - 1; k >= begin; --k) {
         int32_t f = out->schedule[k], parent = out->front[f].parent;
         gproji_family *own = parent < 0 ? NULL : &family[parent];
-        gproji_place_family(out, f, group, family);
+        gproji_place_family(out, f, task, family);
         if (at + family[f].high > most) most = at + family[f].high;
         at = out->front[f].panel;
-        if (!own || own->high == own->low) continue; /* its parent is in another group */
+        if (!own || own->high == own->low) continue; /* the parent belongs to another task */
         own->high -= gproji_update_entries(out->front[f].update_rows);
         if (own->high > own->low) continue;
         family[own->before].after = own->after;
         family[own->after].before = own->before;
     }
+    /* 3. Distances from the end become offsets. */
     for (k = begin; k < end; ++k) {
         int32_t f = out->schedule[k];
         for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
@@ -5918,195 +5879,110 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     return most;
 }
 
-/* Where all panels and update matrices are. Groups that may be at work at the same time share nothing; else one comes
-   after the other. */
-GPROJI_INTERNAL bool gproji_place_all(gproji_analysis *an, const int32_t *group) {
+/* Cuts the fronts into tasks, schedules them, and gives panels and update matrices their memory. concurrent: may tasks
+   overlap in time? */
+GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     gproji_symbolic *out = an->out;
-    int32_t g;
+    int32_t count = out->fronts, f, k, level, *sequence = an->a, *parent = an->b, *task = an->c, *start;
+    double *flops = (double *)gproji_pool_take(&an->pool, count, sizeof(double)), sum = 0, share[GPROJI_TASK_LEVELS];
+    gproji_family *family = (gproji_family *)gproji_pool_take_zeroed(&an->pool, (int64_t)count + 1, sizeof *family);
     int64_t end = 0;
-    gproji_family *family =
-        (gproji_family *)gproji_pool_take_zeroed(&an->pool, (int64_t)out->fronts + 1, sizeof(gproji_family));
-    if (!family) return false;
-    if (an->concurrent)
-        for (g = 0; g <= out->tasks; ++g)
-            end = gproji_place_fronts(out, out->task_start[g], out->task_start[g + 1], end, group, family);
+    if (!flops || !family) return false;
+    /* 1. Flops of each front's subtree, and a sequence in which subtrees are consecutive. */
+    for (f = 0; f < count; ++f) {
+        flops[f] = gproji_front_flops(out->front[f].width, out->front[f].below);
+        sum += flops[f];
+        task[f] = -1, parent[f] = out->front[f].parent;
+    }
+    for (f = 0; f < count; ++f)
+        if (parent[f] >= 0) flops[parent[f]] += flops[f];
+    gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
+    /* 2. Tasks: on each level whole subtrees that stay within a share of all flops, small ones together. Threads on one
+       front must pass it to each other, which pays for large fronts only; the second level has several smaller tasks
+       instead. Small problems are one task. */
+    share[0] = sum > 2e7 ? sum / 24 : sum * 2;
+    share[1] = gproji_fmin(sum / 4, 5e8); /* some milliseconds */
+    out->tasks = 0;
+    for (level = 0; level < GPROJI_TASK_LEVELS; ++level) {
+        double filled = 0;
+        out->level_start[level] = out->tasks;
+        for (k = 0; k < count; ++k) {
+            f = sequence[k];
+            if (task[f] >= 0 || flops[f] > share[level]) continue;
+            task[f] = out->tasks;
+            if (parent[f] >= 0 && flops[parent[f]] <= share[level]) continue;
+            filled += flops[f]; /* a whole subtree is complete */
+            if (filled > share[level] / 2) out->tasks++, filled = 0;
+        }
+        if (filled > 0) out->tasks++;
+    }
+    out->level_start[GPROJI_TASK_LEVELS] = out->tasks;
+    out->level_start[GPROJI_TASK_LEVELS + 1] = out->tasks + 1;
+    for (f = 0; f < count; ++f)
+        if (task[f] < 0) task[f] = out->tasks;
+    /* 3. Schedule: the sequence, stably sorted by tasks. */
+    out->schedule = gproji_take_ints(an->keep, count);
+    out->task_start = start = (int32_t *)gproji_pool_take_zeroed(an->keep, out->tasks + 3, sizeof(int32_t));
+    if (!out->schedule || !start) return false;
+    for (f = 0; f < count; ++f) start[task[f] + 2]++;
+    for (k = 0; k <= out->tasks; ++k) start[k + 2] += start[k + 1];
+    for (k = 0; k < count; ++k) out->schedule[start[task[sequence[k]] + 1]++] = sequence[k];
+    /* 4. Memory: tasks that may overlap in time share nothing; else one follows the other. */
+    if (concurrent)
+        for (k = 0; k <= out->tasks; ++k) end = gproji_place_fronts(out, start[k], start[k + 1], end, task, family);
     else
-        end = gproji_place_fronts(out, 0, out->fronts, 0, group, family);
+        end = gproji_place_fronts(out, 0, count, 0, task, family);
     out->work_size = end - out->values_size;
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an) {
-    gproji_symbolic *out = an->out;
-    int32_t *sequence = an->a, *group = an->c;
-    gproji_size_panels(out);
-    gproji_front_sequence(an, sequence);
-    return gproji_make_tasks(an, sequence, group) && gproji_make_schedule(an, sequence, group) &&
-           gproji_place_all(an, group);
-}
-
-/* Entries and flops of the factor without any zeros of relaxed supernodes. */
-GPROJI_INTERNAL void gproji_sum_counts(gproji_analysis *an) {
-    gproji_symbolic *out = an->out;
-    int32_t k;
-    out->exact_entries = 0;
-    out->flops = 0;
-    for (k = 0; k < out->nodes; ++k) {
-        int64_t w = an->graph->weight[out->order[k]], below = an->count[k] - w;
-        out->exact_entries += w * (w + 1) / 2 + w * below;
-        out->flops += gproji_front_flops((double)w, (double)below);
-    }
-}
-
-/* Elimination tree, column counts and their sums for the order in `out`, which becomes a postorder of the tree unless
-   `keep_order`. apart: see gproji_elimination_tree. */
-GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart, bool keep_order) {
-    gproji_symbolic *out = an->out;
-    gproji_invert(out->nodes, out->order, out->place);
-    gproji_elimination_tree(an->graph, apart, out->order, out->place, an->parent, an->a);
-    if (keep_order) {
-        gproji_column_counts_by_rows(an);
-    } else {
-        gproji_apply_postorder(an);
-        gproji_column_counts(an);
-    }
-    gproji_sum_counts(an);
-}
-
-enum {
-    GPROJI_DISSECT_FLOPS = 35000,   /* per node; see gproji_better_order */
-    GPROJI_DISSECT_FORECAST = 1200, /* per node; see gproji_forecast */
-    GPROJI_DISSECT_LEAST = 600,     /* nodes of a graph for which a forecast is made; half of them count once more */
-    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
-};
-
-/* Condensed nodes, then the others by dissection. */
-GPROJI_INTERNAL bool gproji_dissected_order(gproji_analysis *an, const gproji_condensation *condensed) {
-    int32_t *order = an->out->order, *rest = order + condensed->count, k, total = an->out->columns;
-    for (k = 0; k < condensed->count; ++k) {
-        order[k] = condensed->first[k];
-        total -= an->graph->weight[order[k]];
-    }
-    if (!gproji_dissect(an->keep->heap, &condensed->rest, total, rest)) return false;
-    for (k = 0; k < condensed->rest.nodes; ++k) rest[k] = condensed->first[condensed->count + rest[k]];
-    return true;
-}
-
-/* What dissection will cost in the plane, up to a factor: where n nodes of weight w have d neighbours each, a separator
-   has about sqrt(n d) nodes, and the flops are about the cube of its weight; around closed meshes the first ones need two
-   lines. On meshes the flops are 15 to 40 times what this says. */
-GPROJI_INTERNAL double gproji_forecast(const gproji_graph *graph) {
-    double all = 0, next = 0, square;
-    int32_t i;
-    for (i = 0; i < graph->nodes; ++i) {
-        double weight = graph->weight[i];
-        all += weight, next += weight * (double)(graph->start[i + 1] - graph->start[i]);
-    }
-    square = graph->nodes > 0 ? next / 8 * all / graph->nodes : 0;
-    return (gproji_rim(graph) > 1 ? 1 : 2) * square * sqrt(square);
-}
-
-/* The better one of minimum degree and dissection, counted, with the condensed graph at hand. Dissection takes
-   longer and spares flops: it is tried where that pays within about four factorisations, which minimum degree tells, and
-   alone where the forecast says so and what comes out is as on meshes. */
-GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, bool keep_order, gproji_condensation *condensed) {
-    gproji_symbolic *out = an->out;
-    gproji_heap *heap = an->keep->heap;
-    int32_t *order;
-    bool counted = false;
-    double flops, forecast;
-    if (out->nodes >= GPROJI_DISSECT_LEAST && out->nodes <= GPROJI_DISSECT_MOST) {
-        if (!gproji_condense(condensed, heap, an->graph)) return false;
-        forecast = gproji_forecast(&condensed->rest);
-        if (forecast > (double)GPROJI_DISSECT_FORECAST * (out->nodes + GPROJI_DISSECT_LEAST / 2)) {
-            if (!gproji_dissected_order(an, condensed)) return false;
-            gproji_count_factor(an, condensed->count, keep_order);
-            if (out->flops > 10 * forecast && out->flops < 60 * forecast) return true;
-            counted = true;
-        }
-    }
-    order = (int32_t *)gproji_pool_take(&an->pool, out->nodes, sizeof(int32_t));
-    if (!order || !gproji_amd_order(heap, an->graph, out->columns, order, &flops)) return false;
-    if (!counted && flops > (double)GPROJI_DISSECT_FLOPS * out->nodes && out->nodes <= GPROJI_DISSECT_MOST) {
-        if (!condensed->number && !gproji_condense(condensed, heap, an->graph)) return false;
-        if (!gproji_dissected_order(an, condensed)) return false;
-        gproji_count_factor(an, condensed->count, keep_order);
-        counted = true;
-    }
-    if (counted && out->flops < flops) return true;
-    if (out->nodes > 0) memcpy(out->order, order, (size_t)out->nodes * sizeof(int32_t));
-    gproji_count_factor(an, 0, keep_order);
-    return true;
-}
-
-/* Finds an order, and gives back the condensed graph. Without `best`, by dissection. */
-GPROJI_INTERNAL bool gproji_condensed_order(gproji_analysis *an, bool keep_order, bool best) {
-    gproji_condensation condensed;
-    bool done;
-    memset(&condensed, 0, sizeof condensed);
-    gproji_pool_start(&condensed.pool, an->keep->heap);
-    if (best) {
-        done = gproji_better_order(an, keep_order, &condensed);
-    } else {
-        done = gproji_condense(&condensed, an->keep->heap, an->graph) && gproji_dissected_order(an, &condensed);
-        if (done) gproji_count_factor(an, condensed.count, keep_order);
-    }
-    gproji_pool_give_all(&condensed.pool);
-    return done;
-}
-
-/* The order of elimination asked for, its tree and its counts. permutation: of nodes. */
-GPROJI_INTERNAL bool gproji_choose_order(gproji_analysis *an, const gproj_cholesky_options *options,
-                                         const int32_t *permutation) {
-    gproji_symbolic *out = an->out;
-    gproj_ordering ordering = options->ordering;
-    int32_t k;
-    if (ordering == GPROJ_ORDERING_DISSECTION && out->nodes > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
-    if (ordering == GPROJ_ORDERING_BEST || ordering == GPROJ_ORDERING_DISSECTION)
-        return gproji_condensed_order(an, options->disable_postorder, ordering == GPROJ_ORDERING_BEST);
-    if (ordering == GPROJ_ORDERING_AMD) {
-        if (!gproji_amd_order(an->keep->heap, an->graph, out->columns, out->order, NULL)) return false;
-    } else {
-        for (k = 0; k < out->nodes; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? permutation[k] : k;
-    }
-    gproji_count_factor(an, 0, options->disable_postorder);
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_analyse_steps(gproji_analysis *an, const gproj_cholesky_options *options,
-                                          const int32_t *permutation) {
-    gproji_symbolic *out = an->out;
-    out->order = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
-    out->place = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
-    out->column = (int32_t *)gproji_pool_take(an->keep, (int64_t)out->nodes + 1, sizeof(int32_t));
-    out->front_of = (int32_t *)gproji_pool_take(an->keep, out->nodes, sizeof(int32_t));
-    if (!out->order || !out->place || !out->column || !out->front_of) return false;
-    if (!gproji_analysis_take(an) || !gproji_choose_order(an, options, permutation)) return false;
-    gproji_find_supernodes(an);
-    if (!options->disable_relaxation && !options->disable_postorder) gproji_relax_supernodes(an);
-    if (!gproji_make_fronts(an, options->disable_postorder) || !gproji_find_rows(an)) return false;
-    gproji_find_relative(out);
-    return gproji_layout(an);
-}
-
-/* Analyses a graph whose nodes weigh `columns` altogether. permutation: of the nodes, for GPROJ_ORDERING_GIVEN.
-   concurrent: may tasks be at work at the same time? It takes more memory, and changes nothing else. All that `out`
-   holds is taken from the pool. False when there is no memory. */
+/* Analyses a graph whose nodes weigh `columns` altogether; the options permute nodes. concurrent: may tasks overlap in
+   time? That takes more memory, and changes nothing else. `keep` holds the arrays in `out`. False: no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
-                                    const gproj_cholesky_options *options, const int32_t *permutation, bool concurrent,
-                                    gproji_symbolic *out) {
+                                    const gproj_cholesky_options *options, bool concurrent, gproji_symbolic *out) {
     gproji_analysis an;
+    gproji_condensation condensed;
+    gproj_ordering ordering = options->ordering;
+    int32_t **part[16], *space, k;
+    int64_t n = graph->nodes;
     bool done;
     memset(&an, 0, sizeof an);
+    memset(&condensed, 0, sizeof condensed);
     memset(out, 0, sizeof *out);
-    an.graph = graph;
-    an.out = out;
-    an.concurrent = concurrent;
-    an.keep = keep;
+    an.graph = graph, an.out = out, an.keep = keep, an.keep_order = options->disable_postorder;
     gproji_pool_start(&an.pool, keep->heap);
+    gproji_pool_start(&condensed.pool, keep->heap);
+    /* 1. Memory for everything that has an entry for each node. */
     out->columns = columns;
     out->nodes = graph->nodes;
-    done = gproji_analyse_steps(&an, options, permutation);
+    out->order = gproji_take_ints(keep, n);
+    out->position = gproji_take_ints(keep, n);
+    out->column = gproji_take_ints(keep, n + 1);
+    out->front_of = gproji_take_ints(keep, n);
+    space = gproji_take_ints(&an.pool, 16 * n);
+    done = out->order && out->position && out->column && out->front_of && space;
+    part[0] = &an.parent, part[1] = &an.count, part[2] = &an.rows, part[3] = &an.a, part[4] = &an.b, part[5] = &an.c;
+    part[6] = &an.d, part[7] = &an.chain, part[8] = &an.head, part[9] = &an.tail, part[10] = &an.width;
+    part[11] = &an.below, part[12] = &an.below_nodes, part[13] = &an.super_parent, part[14] = &an.child;
+    part[15] = &an.sibling;
+    for (k = 0; done && k < 16; ++k) *part[k] = space + k * n;
+    /* 2. Order, elimination tree, column counts. */
+    if (ordering == GPROJ_ORDERING_DISSECTION && n > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
+    if (done && ordering == GPROJ_ORDERING_BEST) {
+        done = gproji_better_order(&an, &condensed);
+    } else if (done && ordering == GPROJ_ORDERING_DISSECTION) {
+        done = gproji_dissect_order(&an, &condensed);
+    } else if (done) {
+        if (ordering == GPROJ_ORDERING_AMD)
+            done = gproji_amd_order(keep->heap, graph, columns, out->order, NULL);
+        else
+            for (k = 0; k < n; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[k] : k;
+        if (done) gproji_count_factor(&an, 0);
+    }
+    gproji_pool_give_all(&condensed.pool);
+    /* 3. Supernodes, fronts, memory. */
+    if (done) gproji_find_supernodes(&an, !options->disable_relaxation && !an.keep_order);
+    done = done && gproji_make_fronts(&an) && gproji_find_rows(&an) && gproji_layout(&an, concurrent);
     gproji_pool_give_all(&an.pool);
     return done;
 }
@@ -6115,71 +5991,77 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    >>cholesky   The sparse Cholesky factorisation P A P' = L L'. Uses platform, memory, error, parallel, kernels,
    dense, ordering, symbolic.
 
-   Multifrontal (Duff, Reid 1983; Liu 1992). A front's pivot columns stand in the factor itself, its update matrix where
-   panels will be that come after its parent's. Both are cleared, the children's update matrices and A's values are
-   added, the pivots are eliminated and their effect on the rows below is taken off. All that happens while the front is
-   in the cache; right-hand sides that are known then take part. A larger front's update matrix is not cleared: it begins
-   with the pivots' effect, and what is added comes after that.
+   Multifrontal (Duff, Reid 1983; Liu 1992). For each front, children first: clear its panel and update matrix,
+   extend-add the children's update matrices, add A's values, eliminate the pivots, and subtract their effect from the
+   contribution block. Right-hand sides that are known take part while the front is in the cache. A larger front does
+   not clear its update matrix: the pivots' effect is written there first, and the rest is added afterwards.
 
-   Threads: whole subtrees are tasks, and in a second stage what is above some of them; the few large fronts above these
-   come one after the other, and the work inside each of them is cut into strips. All that depends on the matrix alone. A
-   solution goes up and down the same tasks: a front adds to its parent's part of a right-hand side, not to a common
-   vector.
+   Threads: whole subtrees are tasks, on a second level those above; the few large fronts on top follow one by one, and
+   the work inside each is cut into strips. The cuts depend on the matrix alone, so results are the same bits for any
+   number of threads. Solves sweep over the same tasks: a front adds to its parent's partial right-hand side, not to a
+   common vector.
 
-   A matrix in compressed columns is first compressed: columns with the same entries become one node. The system section
-   gives its nodes itself and adds its values to each front when it is asked (gproji_load).
+   A matrix in compressed columns is compressed further: columns with the same entries become one node. The system
+   section brings its own nodes, and adds its values to each front on request (gproji_load).
 
-   Invariants: all memory of the numerical part is taken at once, before the first factorisation; a front's update
-   matrix has its place in it from the analysis on, so tasks share nothing but read-only data. */
+   Invariants: the numerical part takes its memory at once, before the first factorisation; the analysis has fixed each
+   update matrix's place in it, so tasks share nothing but read-only data. */
 enum {
-    GPROJI_SOLVE_BATCH = 4,  /* right-hand sides solved together at most */
-    GPROJI_FRESH = 1 << 12,  /* the update matrices of fronts with more values begin with the pivots' effect */
-    GPROJI_CACHED = 1 << 16, /* a front with no more values than that stays in the L2 cache */
-    GPROJI_NEAR = 1 << 18,   /* a factor with no more values than that is not worth fetching ahead */
-    GPROJI_PREFETCHED = 8192 /* values of the next panel that are fetched ahead */
+    GPROJI_SOLVE_BATCH = 4,  /* most right-hand sides solved together */
+    GPROJI_FRESH = 1 << 12,  /* fronts with more values do not clear their update matrix */
+    GPROJI_CACHED = 1 << 16, /* a front with at most this many values stays in the L2 cache */
+    GPROJI_NEAR = 1 << 18,   /* a factor with at most this many values is not worth prefetching */
+    GPROJI_PREFETCHED = 8192 /* values in the next panel that are prefetched */
 };
 
-/* Adds the matrix's values that belong to a front to its panel and update matrix (see gproji_panel_column): to the columns
-   that belong to the storage rows [from, to), which are all of them, those of the pivots or all after these. Each value
-   once, in a front that has both of its variables. Called from several threads. */
+/* Adds the matrix's values for a front to the panel and the update matrix (see gproji_panel_column), in the columns
+   that belong to the padded rows [from, to): all rows, or the pivots', or all after these. Each value is added once, in
+   a front that has the row and the column. Called from several threads. */
 typedef void (*gproji_load)(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to);
+
+/* A matrix in compressed columns: entries sorted by fronts. */
+typedef struct gproji_entries {
+    int64_t count;
+    int64_t *number;      /* count: index in the caller's arrays */
+    int64_t *target;      /* count: offset in L */
+    int64_t *start;       /* fronts + 1: start of each front's entries */
+    const double *values; /* A's, during gproj_cholesky_factor */
+} gproji_entries;
+
+/* Arguments for a sweep over the tasks. */
+typedef struct gproji_sweep {
+    gproji_load load; /* NULL: the matrix has been factored */
+    void *user;       /* for `load` */
+    int32_t level;
+    const double *given; /* right-hand sides, */
+    double *found;       /* and solutions: in A's order */
+} gproji_sweep;
 
 struct gproj_cholesky {
     gproji_heap own;
     gproj_parallel parallel;
     gproj_error error;
-    bool analysed;
-    bool factored;
+    bool analysed, factored;
     int32_t failed_column;
-    gproji_pool kept;    /* what the analysis has made */
-    gproji_pool numeric; /* what factorisation and solution need */
+    gproji_pool kept;    /* holds the analysis */
+    gproji_pool numeric; /* holds the arrays for factorisation and solution */
     const gproji_kernels *kernels;
     gproji_symbolic symbolic;
-    int32_t *permutation; /* columns: the column of A at each column of L */
-    gproji_piece *piece; /* how front f's update matrix goes to its parent: piece[piece_start[f]..piece_start[f + 1]) */
-    int64_t *piece_start; /* fronts + 1 */
-    /* A matrix in compressed columns; NULL for an analysis by blocks. Its entries in the order of the fronts: */
-    int64_t entries;
-    int64_t *entry;       /* entries: the number of each in the caller's arrays */
-    int64_t *target;      /* entries: where its value goes in L */
-    int64_t *entry_start; /* fronts + 1: where each front's entries begin */
-    const double *source; /* during gproj_cholesky_factor: the values of A */
+    int32_t *permutation;   /* columns: the column of A that becomes each column of L */
+    gproji_piece *piece;    /* scatter runs; front f's update matrix: piece[piece_start[f]..piece_start[f + 1]) */
+    int64_t *piece_start;   /* fronts + 1 */
+    gproji_entries entries; /* empty for an analysis by blocks */
+    gproji_sweep sweep;
+    int32_t batch; /* right-hand sides solved together at most, */
+    int32_t room;  /* those that `solution` and `side` can hold, */
+    int32_t sides; /* and those in this sweep */
 
-    gproji_load load; /* during a factorisation */
-    void *load_user;
-    int32_t batch;       /* right-hand sides solved together, at most GPROJI_SOLVE_BATCH */
-    int32_t room;        /* for how many `solution` and `side` have room */
-    int32_t sides;       /* those at work */
-    const double *given; /* the right-hand sides; each front takes its part of them, */
-    double *found;       /* and puts its part of the solutions here: both in the order of A */
-
-    double *values;   /* symbolic.values_size + work_size: all panels, and update matrices while they are needed */
-    double *inverse;  /* columns: the inverses of the diagonal of L */
-    int32_t stage;    /* at work */
-    int32_t *failed;  /* tasks + 1: the column of L where the group failed, or -1 */
-    double *solution; /* columns * batch: right-hand sides in the order of L */
-    double *side;     /* symbolic.side_size * batch: what fronts take off the rows below their pivots */
-    double *rows; /* (tasks + 1) * 2 * symbolic.most_rows: one front's part of two right-hand sides, for each group */
+    double *values;   /* symbolic.values_size + work_size: panels, and update matrices while they are needed */
+    double *inverse;  /* columns: 1 / L's diagonal */
+    int32_t *failed;  /* tasks + 1: the column of L that failed, or -1 */
+    double *solution; /* columns * room, in L's order */
+    double *side;     /* symbolic.side_size * room: partial right-hand sides, from each front to its parent */
+    double *rows;     /* (tasks + 1) * 2 * symbolic.most_rows: work, for two right-hand sides in each task */
 };
 
 /* -- life -- */
@@ -6188,14 +6070,10 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
     gproji_pool_give_all(&c->numeric);
     gproji_pool_give_all(&c->kept);
     memset(&c->symbolic, 0, sizeof c->symbolic);
+    memset(&c->entries, 0, sizeof c->entries);
     c->analysed = c->factored = false;
     c->failed_column = -1;
     c->permutation = NULL;
-    c->piece = NULL;
-    c->piece_start = NULL;
-    c->entry = c->target = c->entry_start = NULL;
-    c->source = NULL;
-    c->entries = 0;
     c->values = NULL;
     c->batch = GPROJI_SOLVE_BATCH;
 }
@@ -6229,12 +6107,8 @@ GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *choles
     return cholesky ? cholesky->permutation : NULL;
 }
 
-/* A number of bytes, also where the address space cannot hold it. */
-GPROJI_INTERNAL size_t gproji_size_of(double bytes) {
-    return bytes < (double)(SIZE_MAX / 2) ? (size_t)bytes : SIZE_MAX / 2;
-}
-
 GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *cholesky) {
+    static const double most = (double)(SIZE_MAX / 2); /* for predictions beyond the address space */
     gproj_cholesky_info info;
     const gproji_symbolic *sy;
     double work;
@@ -6248,59 +6122,51 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.factor_entries = sy->factor_entries;
     info.exact_entries = sy->exact_entries;
     info.flops = sy->flops;
-    info.factor_bytes = gproji_size_of(8.0 * (double)sy->values_size);
+    info.factor_bytes = (size_t)gproji_fmin(8.0 * (double)sy->values_size, most);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
            (sy->tasks + 1.0) * 2 * sy->most_rows +
-           2.0 * (double)cholesky->piece_start[sy->fronts]; /* a piece: 2 numbers */
-    info.work_bytes = gproji_size_of(8.0 * work);
+           2.0 * (double)cholesky->piece_start[sy->fronts]; /* a scatter run has 16 bytes */
+    info.work_bytes = (size_t)gproji_fmin(8.0 * work, most);
     info.failed_column = cholesky->failed_column;
     return info;
 }
 
 /* -- analysis -- */
 
-/* The order of L's columns: the members of the nodes, node by node. member[member_start[i]..] are the columns of A in
-   node i. */
-GPROJI_INTERNAL bool gproji_cholesky_permute(gproj_cholesky *c, const int32_t *member_start, const int32_t *member) {
+/* Analyses a graph, and prepares the permutation and the scatter runs. Node i has the columns
+   member[member_start[i]..]; without `member` these numbers themselves. The options permute nodes. False: no memory. */
+GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
+                                                   const gproj_cholesky_options *options, const int32_t *member_start,
+                                                   const int32_t *member) {
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t k, i, at = 0;
-    c->permutation = (int32_t *)gproji_pool_take(&c->kept, sy->columns, sizeof(int32_t));
-    if (!c->permutation) return false;
+    int64_t most = 0, *start;
+    int32_t f, k, i, at = 0;
+    if (!gproji_analyse(&c->kept, graph, member_start[graph->nodes], options, c->parallel.run != NULL, &c->symbolic))
+        return false;
+    for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
+        most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+    c->permutation = gproji_take_ints(&c->kept, sy->columns);
+    c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
+    c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
+    if (!c->permutation || !start || !c->piece) return false;
     for (k = 0; k < sy->nodes; ++k)
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
-    return true;
-}
-
-/* The pieces of front f on its way to its parent; returns their number. */
-GPROJI_INTERNAL int32_t gproji_front_pieces(const gproj_cholesky *c, int32_t f, gproji_piece *piece) {
-    const gproji_symbolic *sy = &c->symbolic;
-    const gproji_front *front = &sy->front[f], *parent;
-    if (front->parent < 0) return 0;
-    parent = &sy->front[front->parent];
-    return gproji_find_pieces(c->kernels, front->row_nodes, sy->row_at + front->rows,
-                              front->width + gproji_panel_shift(front->width), front->below, sy->relative + front->rows,
-                              parent->width + gproji_panel_shift(parent->width), piece);
-}
-
-/* The pieces of all fronts. */
-GPROJI_INTERNAL bool gproji_cholesky_find_pieces(gproj_cholesky *c) {
-    const gproji_symbolic *sy = &c->symbolic;
-    int64_t most = 0;
-    int32_t f;
-    for (f = 0; f < sy->fronts; ++f) most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
-    c->piece_start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
-    c->piece = c->piece_start ? (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece) : NULL;
-    if (!c->piece) return false;
-    c->piece_start[0] = 0;
-    for (f = 0; f < sy->fronts; ++f)
-        c->piece_start[f + 1] = c->piece_start[f] + gproji_front_pieces(c, f, c->piece + c->piece_start[f]);
-    c->piece = (gproji_piece *)gproji_pool_shrink(&c->kept, c->piece_start[sy->fronts], sizeof *c->piece);
+    /* Consecutive rows that stay consecutive in the parent's panel are one run: kernels add whole runs. */
+    start[0] = 0;
+    for (f = 0; f < sy->fronts; ++f) {
+        const gproji_front *front = &sy->front[f], *up = front->parent < 0 ? NULL : &sy->front[front->parent];
+        start[f + 1] = start[f];
+        if (!up) continue;
+        start[f + 1] += gproji_find_pieces(
+            c->kernels, front->row_nodes, sy->row_at + front->rows, front->width + gproji_panel_shift(front->width),
+            front->below, sy->relative + front->rows, up->width + gproji_panel_shift(up->width), c->piece + start[f]);
+    }
+    c->piece = (gproji_piece *)gproji_pool_shrink(&c->kept, start[sy->fronts], sizeof *c->piece);
     return c->piece != NULL;
 }
 
-/* The storage rows of a front in its panel: at[name[k]] for the columns k of L that have one. name: columns; NULL: a
-   column's name is its number. */
+/* at[name[k]] = the padded row in front f's panel for column k of L, wherever there is one; without `name` at[k]. */
 GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const int32_t *name, int32_t *at) {
     const gproji_symbolic *sy = &c->symbolic;
     const gproji_front *front = &sy->front[f];
@@ -6313,8 +6179,8 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* An analysis by blocks, for the system: `node_count` nodes, node i being node_size[i] >= 1 consecutive variables, and
-   their graph (see gproji_graph). The options' permutation is one of the nodes. */
+/* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph
+   (see gproji_graph). The options permute nodes. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
                                                           const int32_t *node_size, const int64_t *adjacency_start,
                                                           const int32_t *adjacency,
@@ -6322,7 +6188,6 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     gproj_cholesky_options choice;
     gproji_graph graph;
     int32_t i, *start, columns = 0;
-    bool done = false;
     memset(&choice, 0, sizeof choice);
     if (options) choice = *options;
     gproji_cholesky_forget(c);
@@ -6337,20 +6202,15 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     if (start) {
         start[0] = 0;
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        done = gproji_analyse(&c->kept, &graph, columns, &choice, choice.permutation, c->parallel.run != NULL,
-                              &c->symbolic) &&
-               gproji_cholesky_permute(c, start, NULL) && gproji_cholesky_find_pieces(c);
+        c->analysed = gproji_cholesky_analyse_graph(c, &graph, &choice, start, NULL);
+        gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
     }
-    gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
-    if (!done) {
-        gproji_cholesky_forget(c);
-        return gproji_fail_memory(&c->error);
-    }
-    c->analysed = true;
-    return GPROJ_OK;
+    if (c->analysed) return GPROJ_OK;
+    gproji_cholesky_forget(c);
+    return gproji_fail_memory(&c->error);
 }
 
-/* Are the arrays a matrix in compressed columns? */
+/* Checks that the arrays are a matrix in compressed columns. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, const int64_t *start,
                                                  const int32_t *row) {
     int32_t j;
@@ -6380,34 +6240,35 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
     return GPROJ_OK;
 }
 
-/* A matrix in compressed columns on its way to a graph of nodes. */
+/* From a matrix in compressed columns to a graph with few nodes. */
 typedef struct gproji_compression {
     gproji_pool pool;
     int32_t n;
-    int64_t *start;     /* n + 1: neighbours of the columns, */
+    int64_t *start;     /* n + 1: each column's neighbours, */
     int32_t *neighbour; /* without the diagonal and without repetition */
-    uint32_t *hash;     /* n: sum over the column and its neighbours */
+    uint32_t *hash;     /* n: a sum over the column and the neighbours */
     int32_t *mark;      /* n */
-    int32_t *node_of;   /* n: the node of each column, or -1 */
-    int32_t nodes;
-    int32_t *member_start; /* nodes + 1 */
-    int32_t *member;       /* n: the columns of each node */
-    int32_t *weight;       /* nodes */
-    int64_t *node_start;   /* nodes + 1: the graph of the nodes */
-    int32_t *adjacent;
-    int32_t *order;      /* n: the order given, or NULL */
-    int32_t *node_order; /* nodes: the same for the nodes */
+    int32_t *order;     /* n: the order to keep, or NULL */
+    int32_t *node_of;   /* n: each column's node, or -1 */
+    int32_t *member;    /* n: each node's columns */
+    int32_t *member_start;
+    gproji_graph graph; /* the nodes' */
 } gproji_compression;
 
-/* Both triangles of the pattern without repeated entries. */
-GPROJI_INTERNAL bool gproji_compression_graph(gproji_compression *x, const int64_t *start, const int32_t *row) {
-    int32_t n = x->n, j;
+/* Finds the neighbours in both triangles, and the order to keep if the options ask for one. */
+GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const int64_t *start, const int32_t *row,
+                                                    const gproj_cholesky_options *options, gproj_error *error) {
+    bool given = options->ordering == GPROJ_ORDERING_GIVEN, natural = options->ordering == GPROJ_ORDERING_NATURAL;
+    int32_t n = x->n, j, k;
     int64_t p, q, to = 0;
     x->start = (int64_t *)gproji_pool_take_zeroed(&x->pool, (int64_t)n + 2, sizeof(int64_t));
-    x->neighbour = (int32_t *)gproji_pool_take(&x->pool, 2 * (n ? start[n] : 0), sizeof(int32_t));
+    x->neighbour = gproji_take_ints(&x->pool, 2 * (n ? start[n] : 0));
     x->hash = (uint32_t *)gproji_pool_take(&x->pool, n, sizeof(uint32_t));
-    x->mark = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    if (!x->start || !x->neighbour || !x->hash || !x->mark) return false;
+    x->mark = gproji_take_ints(&x->pool, n);
+    x->order = given || natural ? gproji_take_ints(&x->pool, n) : NULL;
+    if (!x->start || !x->neighbour || !x->hash || !x->mark || ((given || natural) && !x->order))
+        return gproji_fail_memory(error);
+    /* 1. Counting sort: start[j + 1] is where column j's next neighbour goes. */
     for (j = 0; j < n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p)
             if (row[p] != j) x->start[j + 2]++, x->start[row[p] + 2]++;
@@ -6420,7 +6281,8 @@ GPROJI_INTERNAL bool gproji_compression_graph(gproji_compression *x, const int64
         }
         x->mark[j] = -1;
     }
-    for (j = 0, p = 0; j < n; ++j) { /* repeated entries leave */
+    /* 2. Repeated entries leave. Hash values are sums: equal for equal neighbours in whatever order. */
+    for (j = 0, p = 0; j < n; ++j) {
         int64_t end = x->start[j + 1];
         x->start[j] = to;
         x->hash[j] = (uint32_t)j * 2654435761u;
@@ -6434,10 +6296,18 @@ GPROJI_INTERNAL bool gproji_compression_graph(gproji_compression *x, const int64
         p = end;
     }
     x->start[n] = to;
-    return true;
+    /* 3. The order to keep. */
+    for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
+    for (k = 0; x->order && k < n; ++k) {
+        j = given ? (options->permutation ? options->permutation[k] : -1) : k;
+        if (j < 0 || j >= n || x->mark[j] >= 0)
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the order given is no permutation");
+        x->mark[j] = x->order[k] = j;
+    }
+    return GPROJ_OK;
 }
 
-/* Has column i, a neighbour of the marked column j, the same neighbours? */
+/* Has column i the same neighbours as column j, whose are marked, and is it one of these? */
 GPROJI_INTERNAL bool gproji_compression_same(const gproji_compression *x, int32_t j, int32_t i) {
     int64_t p;
     if (x->hash[i] != x->hash[j] || x->start[i + 1] - x->start[i] != x->start[j + 1] - x->start[j]) return false;
@@ -6446,190 +6316,132 @@ GPROJI_INTERNAL bool gproji_compression_same(const gproji_compression *x, int32_
     return x->mark[i] == j;
 }
 
-GPROJI_INTERNAL void gproji_compression_mark(gproji_compression *x, int32_t j) {
-    int64_t p;
-    x->mark[j] = j;
-    for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
-}
-
-/* Finds the nodes: in a given order, runs of columns with the same neighbours; else all such columns. */
-GPROJI_INTERNAL void gproji_compression_nodes(gproji_compression *x) {
-    int32_t j, k, first = -1, at = 0;
-    int64_t p;
-    for (j = 0; j < x->n; ++j) x->mark[j] = x->node_of[j] = -1;
-    for (k = 0; k < x->n; ++k) {
+/* Merges columns with the same neighbours into nodes, and builds their graph. False: no memory. */
+GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
+    int32_t n = x->n, j, k, i, first = -1, nodes = 0, at = 0, *adjacent, *weight;
+    int64_t p, to = 0, *start;
+    x->node_of = gproji_take_ints(&x->pool, n);
+    x->member = gproji_take_ints(&x->pool, n);
+    x->member_start = gproji_take_ints(&x->pool, (int64_t)n + 1);
+    weight = gproji_take_ints(&x->pool, n);
+    adjacent = gproji_take_ints(&x->pool, x->start[n]);
+    start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
+    if (!x->node_of || !x->member || !x->member_start || !weight || !adjacent || !start) return false;
+    /* 1. Nodes: an order to keep allows contiguous columns only, else all with the same neighbours. */
+    for (j = 0; j < n; ++j) x->mark[j] = x->node_of[j] = -1;
+    for (k = 0; k < n; ++k) {
         j = x->order ? x->order[k] : k;
         if (x->node_of[j] >= 0) continue;
         if (x->order && first >= 0 && gproji_compression_same(x, first, j)) {
-            x->node_of[j] = x->nodes - 1;
+            x->node_of[j] = nodes - 1;
             x->member[at++] = j;
             continue;
         }
         first = j;
-        x->member_start[x->nodes] = at;
-        x->node_of[j] = x->nodes++;
+        x->member_start[nodes] = at;
+        x->node_of[j] = nodes++;
         x->member[at++] = j;
-        gproji_compression_mark(x, j);
-        if (x->order) continue;
-        for (p = x->start[j]; p < x->start[j + 1]; ++p) {
-            int32_t i = x->neighbour[p];
+        x->mark[j] = j;
+        for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
+        for (p = x->start[j]; !x->order && p < x->start[j + 1]; ++p) {
+            i = x->neighbour[p];
             if (x->node_of[i] >= 0 || !gproji_compression_same(x, j, i)) continue;
-            x->node_of[i] = x->nodes - 1;
+            x->node_of[i] = nodes - 1;
             x->member[at++] = i;
         }
     }
-    x->member_start[x->nodes] = at;
-}
-
-/* The graph of the nodes, from the neighbours of their first members. */
-GPROJI_INTERNAL bool gproji_compression_compress(gproji_compression *x) {
-    int32_t n = x->n, k, i;
-    int64_t p, to = 0;
-    x->node_of = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->member = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->member_start = (int32_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int32_t));
-    x->weight = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->node_order = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->node_start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
-    if (!x->node_of || !x->member || !x->member_start || !x->weight || !x->node_order || !x->node_start) return false;
-    gproji_compression_nodes(x);
-    x->adjacent = (int32_t *)gproji_pool_take(&x->pool, x->start[n], sizeof(int32_t));
-    if (!x->adjacent) return false;
-    for (k = 0; k < x->n; ++k) x->mark[k] = -1;
-    for (k = 0; k < x->nodes; ++k) {
-        int32_t column = x->member[x->member_start[k]];
-        x->weight[k] = x->member_start[k + 1] - x->member_start[k];
-        x->node_order[k] = k; /* nodes are numbered in the order given */
-        x->node_start[k] = to;
-        for (p = x->start[column]; p < x->start[column + 1]; ++p) {
+    x->member_start[nodes] = at;
+    /* 2. A node's neighbours are the first member's. */
+    for (k = 0; k < n; ++k) x->mark[k] = -1;
+    for (k = 0; k < nodes; ++k) {
+        j = x->member[x->member_start[k]];
+        weight[k] = x->member_start[k + 1] - x->member_start[k];
+        start[k] = to;
+        for (p = x->start[j]; p < x->start[j + 1]; ++p) {
             i = x->node_of[x->neighbour[p]];
             if (i == k || x->mark[i] == k) continue;
             x->mark[i] = k;
-            x->adjacent[to++] = i;
+            adjacent[to++] = i;
         }
     }
-    x->node_start[x->nodes] = to;
+    start[nodes] = to;
+    x->graph.nodes = nodes, x->graph.start = start, x->graph.adjacent = adjacent, x->graph.weight = weight;
     return true;
 }
 
-/* mark: n entries of work. */
-GPROJI_INTERNAL bool gproji_is_permutation(int32_t n, const int32_t *permutation, int32_t *mark) {
-    int32_t k;
-    for (k = 0; k < n; ++k) mark[k] = 0;
-    for (k = 0; k < n; ++k) {
-        if (permutation[k] < 0 || permutation[k] >= n || mark[permutation[k]]) return false;
-        mark[permutation[k]] = 1;
-    }
-    return true;
-}
-
-/* The front that holds entry (i, j), by columns of A: that of the one eliminated first. */
-GPROJI_INTERNAL int32_t gproji_front_of_entry(const gproj_cholesky *c, const gproji_compression *x, int32_t i,
-                                              int32_t j) {
-    const int32_t *place = c->symbolic.place;
-    return c->symbolic.front_of[gproji_min(place[x->node_of[i]], place[x->node_of[j]])];
-}
-
-/* Sorts the entries by the front that holds them: `entry` and `entry_start`; `target` gets the two columns of L, the
-   smaller one + 2^32 times the larger one. */
-GPROJI_INTERNAL bool gproji_cholesky_sort_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
-                                                  const int32_t *row) {
-    int32_t fronts = c->symbolic.fronts, f, j, *place = x->mark; /* columns of A: their column of L */
+/* Sorts the entries by fronts and finds their offsets in L. An entry belongs to the front that eliminates the row or
+   the column, whichever comes first. False: no memory. */
+GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
+                                                   const int32_t *row) {
+    const gproji_symbolic *sy = &c->symbolic;
+    gproji_entries *to = &c->entries;
+    int32_t f, j, k, *column_of = x->mark;               /* from columns of A to columns of L */
+    int32_t *front_of = x->node_of, *row_of = x->member; /* by columns of L: fronts; padded rows in one front */
     int64_t p;
-    c->entry = (int64_t *)gproji_pool_take(&c->kept, c->entries, sizeof(int64_t));
-    c->target = (int64_t *)gproji_pool_take(&c->kept, c->entries, sizeof(int64_t));
-    c->entry_start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)fronts + 2, sizeof(int64_t));
-    if (!c->entry || !c->target || !c->entry_start) return false;
-    gproji_invert(x->n, c->permutation, place);
+    to->count = x->n ? start[x->n] : 0;
+    to->number = (int64_t *)gproji_pool_take(&c->kept, to->count, sizeof(int64_t));
+    to->target = (int64_t *)gproji_pool_take(&c->kept, to->count, sizeof(int64_t));
+    to->start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 2, sizeof(int64_t));
+    if (!to->number || !to->target || !to->start) return false;
+    gproji_invert(x->n, c->permutation, column_of);
+    for (f = 0; f < sy->fronts; ++f)
+        for (k = 0; k < sy->front[f].width; ++k) front_of[sy->front[f].first + k] = f;
+    /* 1. Counting sort; `target` holds two columns of L, the later one times 2^32. */
     for (j = 0; j < x->n; ++j)
-        for (p = start[j]; p < start[j + 1]; ++p) c->entry_start[gproji_front_of_entry(c, x, row[p], j) + 2]++;
-    for (f = 0; f < fronts; ++f) c->entry_start[f + 2] += c->entry_start[f + 1];
+        for (p = start[j]; p < start[j + 1]; ++p)
+            to->start[front_of[gproji_min(column_of[j], column_of[row[p]])] + 2]++;
+    for (f = 0; f < sy->fronts; ++f) to->start[f + 2] += to->start[f + 1];
     for (j = 0; j < x->n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p) {
-            int32_t a = place[j], b = place[row[p]];
-            int64_t at = c->entry_start[gproji_front_of_entry(c, x, row[p], j) + 1]++;
-            c->entry[at] = p;
-            c->target[at] = gproji_min(a, b) | (int64_t)gproji_max(a, b) << 32;
+            int32_t early = gproji_min(column_of[j], column_of[row[p]]);
+            int32_t late = gproji_max(column_of[j], column_of[row[p]]);
+            int64_t at = to->start[front_of[early] + 1]++;
+            to->number[at] = p;
+            to->target[at] = early | (int64_t)late << 32;
         }
-    return true;
-}
-
-/* Turns the columns in `target` into places in the values of L. */
-GPROJI_INTERNAL void gproji_cholesky_find_targets(gproj_cholesky *c, gproji_compression *x) {
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t *position = x->node_order; /* nodes, by place: first storage row in the front at hand */
-    int32_t f;
-    int64_t r;
+    /* 2. Columns of L become offsets. */
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f];
         gproji_shape shape = gproji_shape_of(front->width, front->below);
-        for (r = front->rows; r < front->rows + front->row_nodes; ++r) position[sy->row_node[r]] = sy->row_at[r];
-        for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) {
-            int32_t early = (int32_t)(c->target[r] & INT32_MAX), late = (int32_t)(c->target[r] >> 32), at, place;
-            if (late < front->first + front->width) {
-                at = late - front->first + shape.shift;
-            } else {
-                place = sy->place[x->node_of[c->permutation[late]]];
-                at = position[place] + late - sy->column[place];
-            }
-            c->target[r] = front->panel + gproji_shape_offset(shape, early - front->first + shape.shift) + at;
+        gproji_map_rows(c, f, NULL, row_of);
+        for (p = to->start[f]; p < to->start[f + 1]; ++p) {
+            int32_t early = (int32_t)(to->target[p] & INT32_MAX), late = (int32_t)(to->target[p] >> 32);
+            to->target[p] = front->panel + gproji_shape_offset(shape, row_of[early]) + row_of[late];
         }
     }
-}
-
-/* The steps of an analysis between taking and giving back its memory. */
-GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_steps(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
-                                                         const int32_t *row, const gproj_cholesky_options *choice) {
-    gproji_graph graph;
-    int32_t k;
-    if (!gproji_compression_graph(x, start, row)) return gproji_fail_memory(&c->error);
-    if (choice->ordering == GPROJ_ORDERING_GIVEN || choice->ordering == GPROJ_ORDERING_NATURAL) {
-        x->order = (int32_t *)gproji_pool_take(&x->pool, x->n, sizeof(int32_t));
-        if (!x->order) return gproji_fail_memory(&c->error);
-        for (k = 0; k < x->n; ++k) x->order[k] = k;
-    }
-    if (choice->ordering == GPROJ_ORDERING_GIVEN && x->n > 0) {
-        if (!choice->permutation || !gproji_is_permutation(x->n, choice->permutation, x->mark))
-            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "the order given is no permutation");
-        memcpy(x->order, choice->permutation, (size_t)x->n * sizeof(int32_t));
-    }
-    if (!gproji_compression_compress(x)) return gproji_fail_memory(&c->error);
-    graph.nodes = x->nodes, graph.start = x->node_start, graph.adjacent = x->adjacent, graph.weight = x->weight;
-    if (!gproji_analyse(&c->kept, &graph, x->n, choice, x->node_order, c->parallel.run != NULL, &c->symbolic) ||
-        !gproji_cholesky_permute(c, x->member_start, x->member) || !gproji_cholesky_find_pieces(c) ||
-        !gproji_cholesky_sort_entries(c, x, start, row))
-        return gproji_fail_memory(&c->error);
-    gproji_cholesky_find_targets(c, x);
-    return GPROJ_OK;
+    return true;
 }
 
 GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
                                             const int32_t *row, const gproj_cholesky_options *options) {
+    gproj_cholesky *c = cholesky;
     gproj_cholesky_options choice;
-    gproji_compression compression;
+    gproji_compression x;
     gproj_code code;
-    if (!cholesky) return GPROJ_ERROR_ARGUMENT;
-    gproji_cholesky_forget(cholesky);
-    gproji_error_clear(&cholesky->error);
-    code = gproji_cholesky_check(cholesky, n, start, row);
+    if (!c) return GPROJ_ERROR_ARGUMENT;
+    gproji_cholesky_forget(c);
+    gproji_error_clear(&c->error);
+    code = gproji_cholesky_check(c, n, start, row);
     if (code != GPROJ_OK) return code;
     memset(&choice, 0, sizeof choice);
     if (options) choice = *options;
-    memset(&compression, 0, sizeof compression);
-    compression.n = n;
-    gproji_pool_start(&compression.pool, &cholesky->own);
-    cholesky->entries = n ? start[n] : 0;
-    code = gproji_cholesky_analyse_steps(cholesky, &compression, start, row, &choice);
-    gproji_pool_give_all(&compression.pool);
-    if (code != GPROJ_OK)
-        gproji_cholesky_forget(cholesky);
-    else
-        cholesky->analysed = true;
+    memset(&x, 0, sizeof x);
+    x.n = n;
+    gproji_pool_start(&x.pool, &c->own);
+    code = gproji_compression_begin(&x, start, row, &choice, &c->error);
+    if (choice.ordering == GPROJ_ORDERING_GIVEN)
+        choice.ordering = GPROJ_ORDERING_NATURAL; /* nodes come in this order */
+    if (code == GPROJ_OK && !(gproji_compression_merge(&x) &&
+                              gproji_cholesky_analyse_graph(c, &x.graph, &choice, x.member_start, x.member) &&
+                              gproji_cholesky_place_entries(c, &x, start, row)))
+        code = gproji_fail_memory(&c->error);
+    gproji_pool_give_all(&x.pool);
+    if (code != GPROJ_OK) gproji_cholesky_forget(c);
+    c->analysed = code == GPROJ_OK;
     return code;
 }
 
-/* -- factorisation -- */
+/* -- numerical memory -- */
 
 /* `count` doubles that begin at a cache line. */
 GPROJI_INTERNAL double *gproji_take_aligned(gproji_pool *pool, int64_t count) {
@@ -6637,16 +6449,16 @@ GPROJI_INTERNAL double *gproji_take_aligned(gproji_pool *pool, int64_t count) {
     return block ? (double *)(void *)(block + (64 - (uintptr_t)block % 64) % 64) : NULL;
 }
 
-/* Takes the memory of the numerical part, once for an analysis. */
+/* Takes the memory, once for an analysis. */
 GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     const gproji_symbolic *sy = &c->symbolic;
-    int64_t groups = (int64_t)sy->tasks + 1;
+    int64_t tasks = (int64_t)sy->tasks + 1;
     if (c->values) return true;
     c->inverse = gproji_take_aligned(&c->numeric, sy->columns);
-    c->rows = gproji_take_aligned(&c->numeric, 2 * groups * sy->most_rows);
+    c->rows = gproji_take_aligned(&c->numeric, 2 * tasks * sy->most_rows);
     c->solution = gproji_take_aligned(&c->numeric, (int64_t)sy->columns * c->batch);
     c->side = gproji_take_aligned(&c->numeric, sy->side_size * c->batch);
-    c->failed = (int32_t *)gproji_pool_take(&c->numeric, groups, sizeof(int32_t));
+    c->failed = gproji_take_ints(&c->numeric, tasks);
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
     if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
@@ -6656,7 +6468,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     return false;
 }
 
-/* Makes room for more right-hand sides; what had been taken for fewer is given back with the analysis. */
+/* Makes room for more right-hand sides. The memory for fewer is given back with the analysis. */
 GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
     double *solution, *side;
     if (batch <= c->room) return true;
@@ -6669,62 +6481,7 @@ GPROJI_INTERNAL bool gproji_cholesky_widen(gproj_cholesky *c, int32_t batch) {
     return true;
 }
 
-/* A front on its way to its panel. */
-typedef struct gproji_gathering {
-    const gproj_cholesky *c;
-    const gproji_front *front;
-    const gproji_panel *panel;
-    int32_t from, to;
-} gproji_gathering;
-
-/* Adds the children's to the columns that belong to the storage rows [from, to). These are cleared before, as long as they
-   are in the cache, unless they have the pivots' effect already. */
-GPROJI_INTERNAL void gproji_gather_columns(const gproji_gathering *gathering, int32_t from, int32_t to) {
-    const gproj_cholesky *c = gathering->c;
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t i;
-    if (from < gathering->panel->shape.end || !gathering->panel->fresh)
-        gproji_clear_columns(gathering->panel, from, to);
-    for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
-        const gproji_front *child = &sy->front[i];
-        gproji_addition add;
-        add.panel = gathering->panel, add.update = c->values + child->update, add.rows = child->update_rows;
-        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        gproji_add_columns(&add, from, to);
-    }
-}
-
-/* Some of these columns. A task. */
-GPROJI_INTERNAL void gproji_gather_task(void *data, int32_t index) {
-    const gproji_gathering *gathering = (const gproji_gathering *)data;
-    int32_t begin = gathering->from + index * GPROJI_TASK_COLUMNS;
-    gproji_gather_columns(gathering, begin, gproji_min(begin + GPROJI_TASK_COLUMNS, gathering->to));
-}
-
-/* The matrix and what the children add, in the columns that belong to the storage rows [from, to): see gproji_load.
-   parallel: NULL within a task. */
-GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gproji_panel *panel,
-                                   const gproj_parallel *parallel, int32_t from, int32_t to) {
-    const gproji_front *front = &c->symbolic.front[f];
-    int64_t rows = panel->shape.end + panel->update_rows - from, entries = rows * (to - from);
-    gproji_gathering gathering;
-    gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
-    if (front->child < 0 || entries <= GPROJI_CACHED)
-        gproji_gather_columns(&gathering, from, to);
-    else
-        gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
-                         gproji_gather_task, &gathering);
-    c->load(c->load_user, f, panel, from, to);
-}
-
-/* Adds A's values to a front, where A is in compressed columns. */
-GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_panel *panel, int32_t from, int32_t to) {
-    const gproj_cholesky *c = (const gproj_cholesky *)user;
-    int64_t r;
-    (void)to;
-    if (from >= panel->shape.end) return; /* a column of A has its entries in a column of L */
-    for (r = c->entry_start[f]; r < c->entry_start[f + 1]; ++r) c->values[c->target[r]] += c->source[c->entry[r]];
-}
+/* -- one front -- */
 
 GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const gproji_front *front) {
     return gproji_make_panel(c->kernels, front->width, front->below, c->values + front->panel,
@@ -6734,54 +6491,97 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
 /* Is the factor too large for the cache? */
 GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_NEAR; }
 
-/* Begins to bring the panel of the front that comes next into the cache: of many small ones, each would wait for its
-   first entries. */
-GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f) {
-    const gproji_front *front = &c->symbolic.front[f];
-    int64_t size = front->entries < GPROJI_PREFETCHED ? front->entries : (int64_t)GPROJI_PREFETCHED;
-    if (gproji_is_far(c)) gproji_prefetch_values(c->values + front->panel, size);
-}
-
-/* The same, and its part of the right-hand sides. */
-GPROJI_INLINED void gproji_prefetch_forward(const gproj_cholesky *c, int32_t f) {
+/* Prefetches a front's panel and right-hand sides: small fronts would wait for their first entries. */
+GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f, int32_t sides) {
     const gproji_front *front = &c->symbolic.front[f];
     const int32_t *permutation = c->permutation + front->first;
-    const double *b = c->given;
+    const double *b = c->sweep.given;
     int32_t side, k;
-    gproji_prefetch_front(c, f);
-    for (side = 0; gproji_is_far(c) && side < c->sides; ++side, b += c->symbolic.columns)
+    if (!gproji_is_far(c)) return;
+    gproji_prefetch_values(c->values + front->panel,
+                           front->entries < GPROJI_PREFETCHED ? front->entries : (int64_t)GPROJI_PREFETCHED);
+    for (side = 0; side < sides; ++side, b += c->symbolic.columns)
         for (k = 0; k < front->width; ++k) GPROJI_PREFETCH(b + permutation[k]);
 }
 
-/* Eliminates one front. Returns -1 or the failing column of L. parallel: NULL within a task. */
-GPROJI_INTERNAL int32_t gproji_factor_front(gproj_cholesky *c, int32_t f, const gproj_parallel *parallel) {
-    const gproji_front *front = &c->symbolic.front[f];
-    gproji_panel panel = gproji_front_panel(c, front);
-    int32_t pivot_end = panel.shape.end, rows = pivot_end + panel.update_rows, failed;
-    panel.fresh = front->below > 0 && front->entries + gproji_update_entries(front->update_rows) > GPROJI_FRESH;
-    gproji_gather(c, f, &panel, parallel, 0, panel.fresh ? pivot_end : rows);
-    failed = gproji_panel_factor(parallel, &panel);
-    if (failed >= 0) return front->first + failed;
-    if (front->below > 0) gproji_panel_update(parallel, &panel);
-    if (panel.fresh) gproji_gather(c, f, &panel, parallel, pivot_end, rows);
-    return -1;
+/* The children's update matrices on their way to a panel. */
+typedef struct gproji_gathering {
+    const gproj_cholesky *c;
+    const gproji_front *front;
+    const gproji_panel *panel;
+    int32_t from, to; /* padded rows: whose columns */
+    int32_t chunk;    /* columns in one task */
+} gproji_gathering;
+
+/* Extend-adds the children's update matrices to one chunk. A task. */
+GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
+    const gproji_gathering *gathering = (const gproji_gathering *)data;
+    const gproj_cholesky *c = gathering->c;
+    const gproji_symbolic *sy = &c->symbolic;
+    int32_t i, from = gathering->from + index * gathering->chunk;
+    int32_t to = gproji_min(from + gathering->chunk, gathering->to);
+    if (from < gathering->panel->shape.end || !gathering->panel->fresh)
+        gproji_clear_columns(gathering->panel, from, to); /* right before the additions: both in the cache */
+    for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
+        const gproji_front *child = &sy->front[i];
+        gproji_addition add;
+        add.panel = gathering->panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
+        gproji_add_columns(&add, from, to);
+    }
 }
 
-/* -- right-hand sides -- */
+/* Assembles the columns that belong to the padded rows [from, to): see gproji_load. parallel: NULL within a task. */
+GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gproji_panel *panel,
+                                   const gproj_parallel *parallel, int32_t from, int32_t to) {
+    const gproji_front *front = &c->symbolic.front[f];
+    int64_t rows = panel->shape.end + panel->update_rows - from, entries = rows * (to - from);
+    gproji_gathering gathering;
+    gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
+    gathering.chunk = front->child < 0 || entries <= GPROJI_CACHED ? to - from : GPROJI_TASK_COLUMNS;
+    if (gathering.chunk >= to - from)
+        gproji_gather_chunk(&gathering, 0);
+    else
+        gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
+                         gproji_gather_chunk, &gathering);
+    c->sweep.load(c->sweep.user, f, panel, from, to);
+}
+
+/* A gproji_load for a matrix in compressed columns. */
+GPROJI_INTERNAL void gproji_load_columns(void *user, int32_t f, const gproji_panel *panel, int32_t from, int32_t to) {
+    const gproj_cholesky *c = (const gproj_cholesky *)user;
+    const gproji_entries *entries = &c->entries;
+    int64_t r;
+    (void)to;
+    if (from >= panel->shape.end) return; /* all entries are in pivot columns */
+    for (r = entries->start[f]; r < entries->start[f + 1]; ++r)
+        c->values[entries->target[r]] += entries->values[entries->number[r]];
+}
 
 GPROJI_INLINE double *gproji_front_side(const gproj_cholesky *c, const gproji_front *front, int32_t side) {
     return c->side + front->side * c->batch + (int64_t)side * front->below;
 }
 
-/* What the children take off the front's rows, added to its storage rows z. */
-GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
+/* Sets the padded rows z to 0; returns the first pivot row. */
+GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
+    int32_t shift = gproji_panel_shift(front->width);
+    memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
+    return z + shift;
+}
+
+/* Fills the padded rows z: the front's part in a right-hand side, then extend-adds the children's partial ones. */
+GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t f, i;
+    const double *b = c->sweep.given + (size_t)side * (size_t)sy->columns;
+    double *pivots = gproji_start_rows(front, z);
+    const int32_t *permutation = c->permutation + front->first;
+    int32_t f, i, k;
+    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]]; /* rows below begin at 0: others hold their b */
     for (f = front->child; f >= 0; f = sy->front[f].sibling) {
         const gproji_front *child = &sy->front[f];
         const double *from = gproji_front_side(c, child, side), *end = from + child->below;
         const int32_t *relative = sy->relative + child->rows, *at = sy->row_at + child->rows;
-        if (child->below == child->row_nodes) /* nodes of one variable */
+        if (child->below == child->row_nodes) /* each node has one variable */
             for (; from < end; ++from, ++relative) z[*relative] += *from;
         for (; from < end; from += i, ++relative, ++at) {
             int32_t count =
@@ -6791,24 +6591,7 @@ GPROJI_INTERNAL void gproji_add_sides(const gproj_cholesky *c, const gproji_fron
     }
 }
 
-/* Sets the storage rows of z to 0; returns where its pivot rows begin. */
-GPROJI_INLINE double *gproji_start_rows(const gproji_front *front, double *z) {
-    int32_t shift = gproji_panel_shift(front->width);
-    memset(z, 0, (size_t)(shift + front->width + front->update_rows) * sizeof(double));
-    return z + shift;
-}
-
-/* The storage rows z of a front: its part of a right-hand side, and what its children take off. */
-GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_front *front, int32_t side, double *z) {
-    const double *b = c->given + (size_t)side * (size_t)c->symbolic.columns;
-    double *pivots = gproji_start_rows(front, z);
-    const int32_t *permutation = c->permutation + front->first;
-    int32_t k;
-    for (k = 0; k < front->width; ++k) pivots[k] = b[permutation[k]];
-    gproji_add_sides(c, front, side, z);
-}
-
-/* The unknowns of a front, and what it takes off the rows below. */
+/* Keeps the front's unknowns, and the partial right-hand side for its parent. */
 GPROJI_INTERNAL void gproji_leave_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
                                         const double *z) {
     const double *pivots = z + gproji_panel_shift(front->width);
@@ -6817,150 +6600,129 @@ GPROJI_INTERNAL void gproji_leave_front(const gproj_cholesky *c, const gproji_fr
     memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof(double));
 }
 
-/* One front of L y = b, for all right-hand sides, two at a time. z: work, 2 * most_rows. */
-GPROJI_INTERNAL void gproji_forward_front(const gproj_cholesky *c, const gproji_front *front, double *z) {
-    gproji_panel panel = gproji_front_panel(c, front);
-    double *y = z + c->symbolic.most_rows;
-    int32_t side;
-    for (side = 0; side < c->sides; side += 2) {
-        bool two = side + 1 < c->sides;
-        gproji_enter_front(c, front, side, z);
-        if (two) gproji_enter_front(c, front, side + 1, y);
-        gproji_panel_forward(&panel, z, two ? y : NULL);
-        gproji_leave_front(c, front, side, z);
-        if (two) gproji_leave_front(c, front, side + 1, y);
-    }
-}
+/* -- sweeps over all fronts -- */
 
-/* One front of L' x = y. */
-GPROJI_INTERNAL void gproji_backward_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
-                                           double *z) {
+/* Goes up through one task's fronts: eliminates them if there is a matrix to load, and solves L y = b with each, two
+   right-hand sides at a time. A panel is read from memory once. */
+GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
+    gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    size_t column = (size_t)side * (size_t)sy->columns;
-    double *x = c->solution + column, *found = c->found + column, *pivots = gproji_start_rows(front, z), *to;
-    const int32_t *node = sy->row_node + front->rows, *permutation = c->permutation + front->first;
-    int32_t i, k;
-    gproji_panel panel = gproji_front_panel(c, front);
-    memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
-    to = pivots + front->width;
-    if (sy->columns == sy->nodes) /* a node's place is its column */
-        for (k = 0; k < front->row_nodes; ++k) to[k] = x[node[k]];
-    else
-        for (k = 0; k < front->row_nodes; ++k)
-            for (i = sy->column[node[k]]; i < sy->column[node[k] + 1]; ++i) *to++ = x[i];
-    gproji_panel_backward(&panel, gproji_is_far(c), z);
-    memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
-    for (k = 0; k < front->width; ++k) found[permutation[k]] = pivots[k];
+    const int32_t *level = sy->level_start + c->sweep.level;
+    int32_t task = level[0] + index, k, end = sy->task_start[task + 1], side, failed = -1;
+    double *z = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, *y = z + sy->most_rows;
+    /* A level with one task lends it all threads; else each has a task. */
+    const gproj_parallel *parallel = c->sweep.level > 0 && level[1] - level[0] == 1 ? &c->parallel : NULL;
+    for (k = sy->task_start[task]; k < end; ++k) {
+        const gproji_front *front = &sy->front[sy->schedule[k]];
+        gproji_panel panel = gproji_front_panel(c, front);
+        if (k + 1 < end) gproji_prefetch_front(c, sy->schedule[k + 1], c->sides);
+        if (c->sweep.load) {
+            /* Clearing a large update matrix would be one more pass over it: the pivots' effect goes first. */
+            int32_t pivot_end = panel.shape.end, rows = pivot_end + panel.update_rows;
+            panel.fresh = front->below > 0 && front->entries + gproji_update_entries(front->update_rows) > GPROJI_FRESH;
+            gproji_gather(c, sy->schedule[k], &panel, parallel, 0, panel.fresh ? pivot_end : rows);
+            failed = gproji_panel_factor(parallel, &panel);
+            if (failed >= 0) {
+                failed += front->first;
+                break;
+            }
+            if (front->below > 0) gproji_panel_update(parallel, &panel);
+            if (panel.fresh) gproji_gather(c, sy->schedule[k], &panel, parallel, pivot_end, rows);
+        }
+        for (side = 0; side < c->sides; side += 2) { /* a kernel reads L once for two */
+            bool two = side + 1 < c->sides;
+            gproji_enter_front(c, front, side, z);
+            if (two) gproji_enter_front(c, front, side + 1, y);
+            gproji_panel_forward(&panel, z, two ? y : NULL);
+            gproji_leave_front(c, front, side, z);
+            if (two) gproji_leave_front(c, front, side + 1, y);
+        }
+    }
+    c->failed[task] = failed;
 }
 
-/* The fronts of one group, up or down. A panel is read once, and is still in the cache for the second and later
-   right-hand sides. Tasks. */
-GPROJI_INTERNAL void gproji_forward_group(void *data, int32_t index) {
+/* Goes down through one task's fronts: solves L' x = y. */
+GPROJI_INTERNAL void gproji_backward_task(void *data, int32_t index) {
     const gproj_cholesky *c = (const gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = sy->stage_start[c->stage] + index;
-    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
-    int32_t k;
-    for (k = sy->task_start[group]; k < sy->task_start[group + 1]; ++k) {
-        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
-        gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
+    int32_t task = sy->level_start[c->sweep.level] + index, begin = sy->task_start[task], k, side, i, r;
+    double *z = c->rows + 2 * (size_t)task * (size_t)sy->most_rows;
+    for (k = sy->task_start[task + 1] - 1; k >= begin; --k) {
+        const gproji_front *front = &sy->front[sy->schedule[k]];
+        const int32_t *node = sy->row_node + front->rows, *permutation = c->permutation + front->first;
+        gproji_panel panel = gproji_front_panel(c, front);
+        if (k > begin) gproji_prefetch_front(c, sy->schedule[k - 1], 0);
+        for (side = 0; side < c->sides; ++side) {
+            size_t offset = (size_t)side * (size_t)sy->columns;
+            double *x = c->solution + offset, *found = c->sweep.found + offset, *pivots = gproji_start_rows(front, z);
+            double *to = pivots + front->width;
+            memcpy(pivots, x + front->first, (size_t)front->width * sizeof(double));
+            /* The parent has solved for all rows below. */
+            if (sy->columns == sy->nodes) /* positions are columns */
+                for (r = 0; r < front->row_nodes; ++r) to[r] = x[node[r]];
+            else
+                for (r = 0; r < front->row_nodes; ++r)
+                    for (i = sy->column[node[r]]; i < sy->column[node[r] + 1]; ++i) *to++ = x[i];
+            gproji_panel_backward(&panel, gproji_is_far(c), z);
+            memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
+            for (r = 0; r < front->width; ++r) found[permutation[r]] = pivots[r];
+        }
     }
 }
 
-GPROJI_INTERNAL void gproji_backward_group(void *data, int32_t index) {
-    const gproj_cholesky *c = (const gproj_cholesky *)data;
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = sy->stage_start[c->stage] + index;
-    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
-    int32_t k, side;
-    for (k = sy->task_start[group + 1] - 1; k >= sy->task_start[group]; --k) {
-        if (k > sy->task_start[group]) gproji_prefetch_front(c, sy->schedule[k - 1]);
-        for (side = 0; side < c->sides; ++side) gproji_backward_front(c, &sy->front[sy->schedule[k]], side, z);
+/* Sweeps up all levels: factors the matrix that `load` adds to the fronts, if any, and solves L y = b for up to
+   c->batch right-hand sides; c->solution holds y in L's order. Returns the first failing column of L, or -1. */
+GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load load, void *user, int32_t sides,
+                                              const double *b) {
+    const int32_t *start = c->symbolic.level_start;
+    int32_t level, t, failed = -1;
+    c->sweep.load = load;
+    c->sweep.user = user;
+    c->sides = sides;
+    c->sweep.given = b;
+    /* Tasks on one level run to their ends although one has failed, so that the answer does not depend on timing. */
+    for (level = 0; level <= GPROJI_TASK_LEVELS && failed < 0; ++level) {
+        c->sweep.level = level;
+        gproji_for(&c->parallel, start[level + 1] - start[level], gproji_forward_task, c);
+        for (t = start[level]; t < start[level + 1]; ++t)
+            if (c->failed[t] >= 0 && (failed < 0 || c->failed[t] < failed)) failed = c->failed[t];
     }
+    return failed;
 }
 
-/* Runs the tasks of a stage, or the group on top. `task` gets the cholesky, and its group's number in the stage. */
-GPROJI_INTERNAL void gproji_run_stage(gproj_cholesky *c, int32_t stage, gproj_task task) {
-    const int32_t *start = c->symbolic.stage_start + stage;
-    c->stage = stage;
-    gproji_for(&c->parallel, start[1] - start[0], task, c);
-}
-
-/* From L y = b, solved already, to x. */
+/* Sweeps down all levels: from y in c->solution to x. */
 GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
-    int32_t stage;
-    c->found = x;
-    for (stage = GPROJI_STAGES; stage >= 0; --stage) gproji_run_stage(c, stage, gproji_backward_group);
+    const int32_t *start = c->symbolic.level_start;
+    c->sweep.found = x;
+    for (c->sweep.level = GPROJI_TASK_LEVELS; c->sweep.level >= 0; --c->sweep.level)
+        gproji_for(&c->parallel, start[c->sweep.level + 1] - start[c->sweep.level], gproji_backward_task, c);
 }
 
-/* Solves L y = b for up to c->batch right-hand sides; y stays in c->solution, in the order of L. */
-GPROJI_INTERNAL void gproji_cholesky_start(gproj_cholesky *c, int32_t count, const double *b) {
-    int32_t stage;
-    c->sides = count;
-    c->given = b;
-    for (stage = 0; stage <= GPROJI_STAGES; ++stage) gproji_run_stage(c, stage, gproji_forward_group);
-}
-
-/* Solves for up to c->batch right-hand sides. */
-GPROJI_INTERNAL void gproji_cholesky_solve_batch(gproj_cholesky *c, int32_t count, const double *b, double *x) {
-    gproji_cholesky_start(c, count, b);
-    gproji_cholesky_finish(c, x);
-}
-
-/* L y = b for any number of right-hand sides, y in the order of L; may be in place. */
+/* L y = b for any number of right-hand sides, y in L's order; may be in place. */
 GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, const double *b, double *y) {
     size_t n = (size_t)c->symbolic.columns;
     int32_t r, sides;
     for (r = 0; r < count; r += sides) {
         sides = gproji_min(count - r, c->batch);
-        gproji_cholesky_start(c, sides, b + (size_t)r * n);
+        gproji_cholesky_sweep(c, NULL, NULL, sides, b + (size_t)r * n);
         memcpy(y + (size_t)r * n, c->solution, (size_t)sides * n * sizeof *y);
     }
 }
 
-/* L' x = y for one right-hand side in the order of L; may be in place. */
+/* L' x = y for one right-hand side in L's order; may be in place. */
 GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
     memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
     c->sides = 1;
     gproji_cholesky_finish(c, x);
 }
 
-/* -- all fronts -- */
-
-/* Eliminates the fronts of one group, a task's or those on top, and takes the right-hand sides along. */
-GPROJI_INTERNAL void gproji_factor_group(void *data, int32_t index) {
-    gproj_cholesky *c = (gproj_cholesky *)data;
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t group = sy->stage_start[c->stage] + index;
-    double *z = c->rows + 2 * (size_t)group * (size_t)sy->most_rows;
-    bool alone = c->stage > 0 && sy->stage_start[c->stage + 1] - sy->stage_start[c->stage] == 1;
-    const gproj_parallel *parallel = alone ? &c->parallel : NULL; /* else all threads have groups of their own */
-    int32_t k, failed = -1;
-    for (k = sy->task_start[group]; k < sy->task_start[group + 1] && failed < 0; ++k) {
-        if (k + 1 < sy->task_start[group + 1]) gproji_prefetch_forward(c, sy->schedule[k + 1]);
-        failed = gproji_factor_front(c, sy->schedule[k], parallel);
-        if (failed < 0) gproji_forward_front(c, &sy->front[sy->schedule[k]], z);
-    }
-    c->failed[group] = failed;
-}
-
 /* Factors the matrix that `load` adds to the fronts, and solves L y = b for up to c->batch right-hand sides:
-   gproji_cholesky_finish gives their solutions. All memory has been taken. */
+   gproji_cholesky_finish completes their solutions. All memory has been taken. */
 GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky *c, gproji_load load, void *user,
                                                                  int32_t sides, const double *b) {
-    const gproji_symbolic *sy = &c->symbolic;
-    int32_t stage, g, failed = -1;
+    int32_t failed;
     GPROJ_ASSERT(c->analysed && c->values);
-    c->factored = false;
-    c->load = load;
-    c->load_user = user;
-    c->sides = sides;
-    c->given = b;
-    for (stage = 0; stage <= GPROJI_STAGES && failed < 0; ++stage) {
-        gproji_run_stage(c, stage, gproji_factor_group);
-        for (g = sy->stage_start[stage]; g < sy->stage_start[stage + 1]; ++g)
-            if (c->failed[g] >= 0 && (failed < 0 || c->failed[g] < failed)) failed = c->failed[g];
-    }
+    failed = gproji_cholesky_sweep(c, load, user, sides, b);
     c->failed_column = failed < 0 ? -1 : c->permutation[failed];
     c->factored = failed < 0;
     return c->factored ? GPROJ_FACTORED : GPROJ_NOT_POSITIVE_DEFINITE;
@@ -6970,20 +6732,18 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
     gproj_cholesky *c = cholesky;
     if (!c) return GPROJ_FACTOR_FAILED;
     gproji_error_clear(&c->error);
-    if (!c->analysed || (c->symbolic.columns > 0 && !c->target)) {
+    if (!c->analysed || (c->symbolic.columns > 0 && !c->entries.target)) {
         gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "factor: there is no analysis of a matrix");
         return GPROJ_FACTOR_FAILED;
     }
-    if (!values && c->entries > 0) {
+    if (!values && c->entries.count > 0) {
         gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "factor: the values are missing");
         return GPROJ_FACTOR_FAILED;
     }
     if (!gproji_cholesky_take_numeric(c)) return GPROJ_FACTOR_FAILED;
-    c->source = values;
+    c->entries.values = values;
     return gproji_cholesky_factor_with(c, gproji_load_columns, c, 0, NULL);
 }
-
-/* -- solution -- */
 
 GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x) {
     gproj_cholesky *c = cholesky;
@@ -6999,12 +6759,13 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
     if (c->symbolic.columns == 0) return GPROJ_OK;
     for (r = 0; r < count; r += c->batch) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
-        gproji_cholesky_solve_batch(c, gproji_min(count - r, c->batch), b + offset, x + offset);
+        gproji_cholesky_sweep(c, NULL, NULL, gproji_min(count - r, c->batch), b + offset);
+        gproji_cholesky_finish(c, x + offset);
     }
     return GPROJ_OK;
 }
 
-/* residual = b - A x; returns its largest absolute value. */
+/* residual = b - A x; returns the largest absolute value. */
 GPROJI_INTERNAL double gproji_cholesky_residual(int32_t n, const int64_t *start, const int32_t *row,
                                                 const double *values, const double *b, const double *x,
                                                 double *residual) {
@@ -7040,10 +6801,11 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
         return HUGE_VAL;
     }
     GPROJ_ASSERT(c->batch > 1);
-    residual = c->solution + n; /* the solution of one right-hand side uses only the first n */
+    residual = c->solution + n; /* the second right-hand side: a solve with one uses the first n only */
     largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     for (step = 0; step < steps; ++step) {
-        gproji_cholesky_solve_batch(c, 1, residual, residual);
+        gproji_cholesky_sweep(c, NULL, NULL, 1, residual);
+        gproji_cholesky_finish(c, residual);
         for (j = 0; j < n; ++j) x[j] += residual[j];
         largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     }
@@ -7051,100 +6813,129 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 }
 
 /* ============================================================================================================
-   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, cholesky.
+   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, symbolic, cholesky.
 
-   An interior-point method finds which variables are at their bounds; then Newton steps on the others, with exchanges
-   of the few that were mistaken, make it exact. All matrices are
-       A'A + damping^2 I + D + a diagonal of the method,
+   An interior-point method finds which variables are at their bounds; Newton steps on the others, with exchanges for
+   the few mistakes, make the solution exact. All matrices are
+       A'A + damping^2 I + D + a diagonal,
    so one pattern is analysed once. D is 1e-12 times the diagonal, and only in the matrix, never in the gradient: each
-   step is a step of the proximal point method (Rockafellar 1976), which solves the undamped problem, also where A'A is
-   singular; dependent columns stay near where they come from instead of being driven to a corner.
+   step belongs to the proximal point method (Rockafellar 1976), which solves the undamped problem even if A'A is
+   singular; dependent columns stay near their start instead of being driven to a corner.
 
-   The interior-point method is Mehrotra's (1992) with the correctors of Gondzio (1996) and equal steps for x and the
-   multipliers. Each finite bound is a pair of a slack s > 0 and a multiplier z > 0, sought with s z = 0. For the
-   displacement of x
+   The interior-point method is Mehrotra's (1992) with Gondzio's correctors (1996) and equal steps for x and the
+   multipliers. Each finite bound is a pair: a slack s > 0 and a multiplier z > 0, sought with s z = 0. The step dx
+   solves
        (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
-   + for lower and - for upper bounds, g the gradient, t the target of the step. Exchanges are those of block principal
-   pivoting (Portugal, Judice, Vicente 1994), used only as long as each round halves the number of mistakes; when it
-   does not, the interior-point method goes on and its next guess is better. So the method cannot cycle, and a limit of
-   factorisations ends it in any case. */
+   + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block
+   principal pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the
+   interior-point method goes on to a better guess. So the method cannot cycle, and it ends at a limit for
+   factorisations in any case. */
 enum {
     GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
-    GPROJI_SQUARES_ROUNDS = 12, /* of exchanges, one factorisation each */
+    GPROJI_SQUARES_ROUNDS = 12, /* exchanges, one factorisation each */
     GPROJI_SQUARES_CORRECTORS = 3
 };
 
-/* Bounds and numbers beyond it are none. Its powers and products stay finite. */
+/* Bounds and numbers beyond it are none: powers and products stay finite. */
 #define GPROJI_SQUARES_HUGE 1e50
-/* Stands for a bound that is none, and is beyond all values of a variable. */
+/* Stands for a missing bound, beyond all values that a variable may have. */
 #define GPROJI_SQUARES_NONE DBL_MAX
 
 enum {
     GPROJI_VARIABLE_FREE,
-    GPROJI_VARIABLE_LOWER, /* held at its lower bound */
+    GPROJI_VARIABLE_LOWER, /* held at the lower bound */
     GPROJI_VARIABLE_UPPER,
-    GPROJI_VARIABLE_FIXED /* its bounds are equal */
+    GPROJI_VARIABLE_FIXED /* both bounds are equal */
 };
 
-/* A direction of the interior-point method. */
+/* A by rows; the caller has it by columns. */
+typedef struct gproji_sparse_rows {
+    int64_t *start; /* rows + 1 */
+    int32_t *column;
+    double *value;
+} gproji_sparse_rows;
+
+/* The normal equations' matrix: lower triangle by columns, the diagonal first. */
+typedef struct gproji_normal_matrix {
+    gproj_cholesky *cholesky;
+    int32_t factorisations;
+    double damping;   /* squared */
+    double proximity; /* D = proximity * diagonal */
+    int64_t *start;   /* columns + 1 */
+    int32_t *row;
+    double *product; /* A'A */
+    double *value;   /* the matrix that is factored */
+    double *barrier; /* columns: added to the diagonal by the interior-point method */
+} gproji_normal_matrix;
+
+/* A direction for the interior-point method. */
 typedef struct gproji_direction {
     double *x;      /* columns: dx */
     double *target; /* pairs: t */
     double *dual;   /* pairs: dz */
-    double reach;   /* the longest step that keeps slacks and multipliers >= 0, cut at 10 */
+    double reach;   /* the longest step that keeps slacks and multipliers >= 0, at most 10 */
 } gproji_direction;
 
-typedef struct gproji_squares {
-    const gproj_least_squares *problem;
-    gproji_heap heap;
-    gproji_pool pool;
-    gproj_cholesky *cholesky;
-    gproj_error *error;
-    gproj_code code; /* other than GPROJ_OK ends everything */
-    int32_t factorisations;
-    int32_t columns;
-    double damping;   /* squared */
-    double proximity; /* D = proximity * diagonal */
-
-    int64_t *row_start; /* rows + 1: A by rows */
-    int32_t *row_column;
-    double *row_value;
-    int64_t *start; /* columns + 1: lower triangle of A'A, the diagonal first */
-    int32_t *row;
-    double *product; /* A'A */
-    double *matrix;  /* what is factored */
-
-    /* columns: */
-    double *lower, *upper;
-    double *diagonal; /* of A'A + damping^2 I; the largest where it is 0 */
-    double *unit;     /* 1 / sqrt(diagonal): gradients times it are of columns of length 1 */
-    double *barrier;  /* what the method adds to the diagonal */
-    double *gradient; /* at the last point of gproji_squares_gradient */
-    double *x;        /* the interior point */
-    double *trial, *step, *best;
-    unsigned char *state;
-    /* rows: */
-    double *misfit;    /* A x - b */
-    double *magnitude; /* |A||x| + |b| */
-
-    double noise; /* rounding errors of the last gradient, in these units */
-    double scale; /* of kkt */
-    double best_kkt;
-
-    int32_t pairs; /* finite bounds of variables that are not fixed */
+/* The interior point: a pair for each finite bound of a variable that is not fixed. */
+typedef struct gproji_interior {
+    double *x;
+    int32_t pairs;
     int32_t *variable;
     double *sign, *slack, *dual;
     gproji_direction direction, other;
+} gproji_interior;
+
+typedef struct gproji_squares {
+    const gproj_least_squares *problem;
+    int32_t columns;
+    gproji_heap heap;
+    gproji_pool pool;
+    gproj_error *error;
+    gproj_code code; /* other than GPROJ_OK ends everything */
+    gproji_sparse_rows rows;
+    gproji_normal_matrix normal;
+    gproji_interior interior;
+    /* columns: */
+    double *lower, *upper;
+    double *diagonal; /* of A'A + damping^2 I; the largest where it is 0 */
+    double *unit;     /* 1 / sqrt(diagonal): scales gradients as if columns had length 1 */
+    double *gradient; /* at the last point of gproji_squares_gradient */
+    double *trial, *step, *best;
+    unsigned char *state;
+    /* rows: */
+    double *residual;  /* A x - b */
+    double *magnitude; /* |A||x| + |b| */
+
+    double noise; /* rounding errors in the last gradient, scaled by `unit` */
+    double scale; /* of kkt */
+    double best_kkt;
 } gproji_squares;
 
 /* -- the problem -- */
 
 GPROJI_INTERNAL bool gproji_squares_finite(double x) { return gproji_is_finite(x) && fabs(x) <= GPROJI_SQUARES_HUGE; }
 
-GPROJI_INTERNAL gproj_code gproji_squares_check_entries(const gproj_least_squares *p, gproj_error *error) {
-    int32_t j;
+GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
+    int32_t i, j;
     int64_t e;
-    if (p->start[0] != 0)
+    if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
+    if (p->rows < 0 || p->columns < 0 || p->columns == INT32_MAX || p->rows == INT32_MAX)
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
+                           p->rows, p->columns);
+    if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: an array is missing");
+    if (!gproji_squares_finite(p->damping) || p->damping < 0)
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "least squares: the damping is negative or not a number");
+    for (i = 0; i < p->rows; ++i)
+        if (!gproji_squares_finite(p->b[i]))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, i,
+                               "least squares: b is not a number or beyond 1e50 in row %d", i);
+    for (j = 0; j < p->columns; ++j)
+        if (!gproji_squares_finite(x[j]))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, j,
+                               "least squares: the start of variable %d is not a number or beyond 1e50", j);
+    if (p->columns > 0 && p->start[0] != 0)
         return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0, "least squares: start[0] is not 0");
     for (j = 0; j < p->columns; ++j) {
         if (p->start[j + 1] < p->start[j])
@@ -7165,30 +6956,8 @@ GPROJI_INTERNAL gproj_code gproji_squares_check_entries(const gproj_least_square
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
-    int32_t i;
-    if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
-    if (p->rows < 0 || p->columns < 0 || p->columns == INT32_MAX || p->rows == INT32_MAX)
-        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
-                           p->rows, p->columns);
-    if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: an array is missing");
-    if (!gproji_squares_finite(p->damping) || p->damping < 0)
-        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "least squares: the damping is negative or not a number");
-    for (i = 0; i < p->rows; ++i)
-        if (!gproji_squares_finite(p->b[i]))
-            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, i,
-                               "least squares: b is not a number or beyond 1e50 in row %d", i);
-    for (i = 0; i < p->columns; ++i)
-        if (!gproji_squares_finite(x[i]))
-            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, i,
-                               "least squares: the start of variable %d is not a number or beyond 1e50", i);
-    return p->columns > 0 ? gproji_squares_check_entries(p, error) : GPROJ_OK;
-}
-
-/* A bound as a number that is never infinite: `none`, -NONE or NONE, where there is no bound. False for NaN and for a
-   bound on the wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
+/* Reads a bound as a finite number: `none`, -NONE or NONE, if there is no bound. False for NaN and for a bound on the
+   wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
 GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
     uint64_t bits;
     *out = none;
@@ -7199,11 +6968,35 @@ GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double
     return *out == bound[j] || (bound[j] < 0) == (none < 0);
 }
 
-GPROJI_INTERNAL void gproji_squares_set_bounds(gproji_squares *s) {
+/* Takes the arrays whose sizes are known, and reads the bounds. */
+GPROJI_INTERNAL void gproji_squares_begin(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
-    int32_t j;
-    s->pairs = 0;
-    for (j = 0; j < s->columns && s->code == GPROJ_OK; ++j) {
+    gproji_interior *in = &s->interior;
+    int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
+    double *space, **by_column[12], **by_pair[7];
+    int32_t j, k;
+    s->rows.start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
+    s->rows.column = gproji_take_ints(&s->pool, entries);
+    s->rows.value = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+    s->normal.start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
+    in->variable = gproji_take_ints(&s->pool, 2 * n);
+    s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
+    space = (double *)gproji_pool_take(&s->pool, 12 * n + 7 * 2 * n + 2 * m, sizeof(double));
+    if (!s->normal.cholesky || !s->rows.start || !s->rows.column || !s->rows.value || !s->normal.start ||
+        !in->variable || !s->state || !space) {
+        s->code = gproji_fail_memory(s->error);
+        return;
+    }
+    by_column[0] = &s->lower, by_column[1] = &s->upper, by_column[2] = &s->diagonal, by_column[3] = &s->unit;
+    by_column[4] = &s->gradient, by_column[5] = &s->trial, by_column[6] = &s->step, by_column[7] = &s->best;
+    by_column[8] = &s->normal.barrier, by_column[9] = &in->x;
+    by_column[10] = &in->direction.x, by_column[11] = &in->other.x;
+    by_pair[0] = &in->sign, by_pair[1] = &in->slack, by_pair[2] = &in->dual, by_pair[3] = &in->direction.target;
+    by_pair[4] = &in->direction.dual, by_pair[5] = &in->other.target, by_pair[6] = &in->other.dual;
+    for (k = 0; k < 12; ++k, at += n) *by_column[k] = space + at;
+    for (k = 0; k < 7; ++k, at += 2 * n) *by_pair[k] = space + at;
+    s->residual = space + at, s->magnitude = space + at + m;
+    for (j = 0; j < n && s->code == GPROJ_OK; ++j) {
         bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
         good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
         if (!good || s->lower[j] > s->upper[j])
@@ -7211,8 +7004,8 @@ GPROJI_INTERNAL void gproji_squares_set_bounds(gproji_squares *s) {
                                   "least squares: variable %d has no number between its bounds", j);
         s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
-        if (s->lower[j] > -GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = 1;
-        if (s->upper[j] < GPROJI_SQUARES_NONE) s->variable[s->pairs] = j, s->sign[s->pairs++] = -1;
+        if (s->lower[j] > -GPROJI_SQUARES_NONE) in->variable[in->pairs] = j, in->sign[in->pairs++] = 1;
+        if (s->upper[j] < GPROJI_SQUARES_NONE) in->variable[in->pairs] = j, in->sign[in->pairs++] = -1;
     }
 }
 
@@ -7222,147 +7015,128 @@ GPROJI_INTERNAL double gproji_squares_clip(const gproji_squares *s, int32_t j, d
 
 /* -- the matrix -- */
 
-/* A by rows. */
-GPROJI_INTERNAL void gproji_squares_transpose(gproji_squares *s) {
+/* Multiplies A'A, or counts its entries as long as there is no `product`. mark: columns entries of work. */
+GPROJI_INTERNAL void gproji_squares_multiply(gproji_squares *s, int64_t *mark) {
     const gproj_least_squares *p = s->problem;
+    gproji_normal_matrix *normal = &s->normal;
+    int64_t at = 0, e, f;
     int32_t i, j;
-    int64_t e;
-    for (e = 0; e < p->start[s->columns]; ++e) s->row_start[p->row[e] + 1]++;
-    for (i = 0; i < p->rows; ++i) s->row_start[i + 1] += s->row_start[i];
+    for (j = 0; j < s->columns; ++j) mark[j] = -1;
+    for (j = 0; j < s->columns; ++j) {
+        int64_t begin = normal->start[j] = at;
+        mark[j] = at++;
+        if (normal->product) normal->row[begin] = j, normal->product[begin] = 0;
+        for (e = p->start[j]; e < p->start[j + 1]; ++e)
+            for (f = s->rows.start[p->row[e]]; f < s->rows.start[p->row[e] + 1]; ++f) {
+                bool fresh;
+                i = s->rows.column[f];
+                if (i < j) continue;
+                fresh = mark[i] < begin; /* marks of earlier columns are smaller */
+                if (fresh) mark[i] = at++;
+                if (!normal->product) continue;
+                if (fresh) normal->row[mark[i]] = i, normal->product[mark[i]] = 0;
+                normal->product[mark[i]] += p->value[e] * s->rows.value[f];
+            }
+    }
+    normal->start[s->columns] = at;
+}
+
+/* Assembles A'A and analyses the pattern. */
+GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
+    const gproj_least_squares *p = s->problem;
+    gproji_normal_matrix *normal = &s->normal;
+    int64_t *start = s->rows.start, *mark, e, entries;
+    double largest = 0, *product = NULL;
+    int32_t i, j;
+    /* 1. A by rows: a counting sort, after which start[i] is the end of row i. */
+    for (e = 0; e < p->start[s->columns]; ++e) start[p->row[e] + 1]++;
+    for (i = 0; i < p->rows; ++i) start[i + 1] += start[i];
     for (j = 0; j < s->columns; ++j)
         for (e = p->start[j]; e < p->start[j + 1]; ++e) {
-            int64_t to = s->row_start[p->row[e]]++;
-            s->row_column[to] = j, s->row_value[to] = p->value[e];
+            int64_t to = start[p->row[e]]++;
+            s->rows.column[to] = j, s->rows.value[to] = p->value[e];
         }
-    for (i = p->rows; i > 0; --i) s->row_start[i] = s->row_start[i - 1];
-    s->row_start[0] = 0;
-}
-
-/* Column j of the lower triangle of A'A from entry `at` on; without `product` only its pattern is counted. mark:
-   columns entries, each less than any `at` from now on. Returns where the column ends. */
-GPROJI_INTERNAL int64_t gproji_squares_column(gproji_squares *s, int32_t j, int64_t at, int64_t *mark) {
-    const gproj_least_squares *p = s->problem;
-    int64_t begin = at, e, f;
-    mark[j] = at++;
-    if (s->product) s->row[begin] = j, s->product[begin] = 0;
-    for (e = p->start[j]; e < p->start[j + 1]; ++e)
-        for (f = s->row_start[p->row[e]]; f < s->row_start[p->row[e] + 1]; ++f) {
-            int32_t i = s->row_column[f];
-            if (i < j) continue;
-            if (mark[i] < begin) {
-                mark[i] = at++;
-                if (s->product) s->row[mark[i]] = i, s->product[mark[i]] = 0;
-            }
-            if (s->product) s->product[mark[i]] += p->value[e] * s->row_value[f];
-        }
-    return at;
-}
-
-GPROJI_INTERNAL void gproji_squares_columns(gproji_squares *s, int64_t *mark) {
-    int32_t j;
-    for (j = 0; j < s->columns; ++j) mark[j] = -1;
-    s->start[0] = 0;
-    for (j = 0; j < s->columns; ++j) s->start[j + 1] = gproji_squares_column(s, j, s->start[j], mark);
-}
-
-GPROJI_INTERNAL void gproji_squares_set_diagonal(gproji_squares *s) {
-    double largest = 0;
-    int32_t j;
-    for (j = 0; j < s->columns; ++j) {
-        s->diagonal[j] = s->product[s->start[j]] + s->damping;
-        largest = gproji_fmax(largest, s->diagonal[j]);
-    }
-    if (!(largest > DBL_MIN)) largest = 1;
-    for (j = 0; j < s->columns; ++j)
-        if (!(s->diagonal[j] > 1e-60 * largest)) s->diagonal[j] = largest;
-    for (j = 0; j < s->columns; ++j) s->unit[j] = 1 / sqrt(s->diagonal[j]);
-}
-
-/* A'A and the analysis of its pattern. */
-GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
-    int64_t *mark = (int64_t *)gproji_take(&s->heap, (size_t)s->columns, sizeof(int64_t)), entries;
-    bool good = mark != NULL;
-    if (good) {
-        gproji_squares_transpose(s);
-        gproji_squares_columns(s, mark);
-        entries = s->start[s->columns];
-        s->row = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
-        s->matrix = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
-        s->product = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
-        good = s->row && s->matrix && s->product;
-        if (good) gproji_squares_columns(s, mark);
+    for (i = p->rows; i > 0; --i) start[i] = start[i - 1];
+    start[0] = 0;
+    /* 2. A'A, counted and then multiplied. */
+    mark = (int64_t *)gproji_take(&s->heap, (size_t)s->columns, sizeof(int64_t));
+    if (mark) {
+        gproji_squares_multiply(s, mark);
+        entries = normal->start[s->columns];
+        normal->row = gproji_take_ints(&s->pool, entries);
+        normal->value = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+        product = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
+        if (normal->row && normal->value) normal->product = product;
+        if (normal->product) gproji_squares_multiply(s, mark);
         gproji_give(&s->heap, mark, (size_t)s->columns, sizeof(int64_t));
     }
-    if (!good) {
+    if (!normal->product) {
         s->code = gproji_fail_memory(s->error);
         return;
     }
-    gproji_squares_set_diagonal(s);
-    s->code = gproj_cholesky_analyse(s->cholesky, s->columns, s->start, s->row, NULL);
-    if (s->code != GPROJ_OK && s->error) *s->error = *gproj_cholesky_error(s->cholesky);
-}
-
-/* The matrix of the free variables, with the barrier on its diagonal; the others become rows of the identity. */
-GPROJI_INTERNAL void gproji_squares_fill(gproji_squares *s) {
-    int32_t j;
-    int64_t e;
+    /* 3. The diagonal: empty columns count as the longest, so that nothing is divided by 0. */
     for (j = 0; j < s->columns; ++j) {
-        bool held = s->state[j] != GPROJI_VARIABLE_FREE;
-        e = s->start[j];
-        s->matrix[e] =
-            held ? s->diagonal[j] : s->product[e] + s->damping + s->proximity * s->diagonal[j] + s->barrier[j];
-        while (++e < s->start[j + 1])
-            s->matrix[e] = held || s->state[s->row[e]] != GPROJI_VARIABLE_FREE ? 0 : s->product[e];
+        s->diagonal[j] = normal->product[normal->start[j]] + normal->damping;
+        largest = gproji_fmax(largest, s->diagonal[j]);
     }
+    if (!(largest > DBL_MIN)) largest = 1;
+    for (j = 0; j < s->columns; ++j) {
+        if (!(s->diagonal[j] > 1e-60 * largest)) s->diagonal[j] = largest;
+        s->unit[j] = 1 / sqrt(s->diagonal[j]);
+    }
+    s->code = gproj_cholesky_analyse(normal->cholesky, s->columns, normal->start, normal->row, NULL);
+    if (s->code != GPROJ_OK && s->error) *s->error = *gproj_cholesky_error(normal->cholesky);
 }
 
-/* Factors the matrix. A matrix that is singular to rounding gets more on its diagonal. False: no factor, because of an
-   error or of the limit. */
+/* Factors the matrix for the free variables, with the barrier. False: no factor, for an error or at the limit. */
 GPROJI_INTERNAL bool gproji_squares_factor(gproji_squares *s) {
-    while (s->factorisations < GPROJI_SQUARES_LIMIT && s->proximity < 1e-3) {
+    gproji_normal_matrix *normal = &s->normal;
+    while (normal->factorisations < GPROJI_SQUARES_LIMIT && normal->proximity < 1e-3) {
         gproj_factor_outcome outcome;
-        gproji_squares_fill(s);
-        s->factorisations++;
-        outcome = gproj_cholesky_factor(s->cholesky, s->matrix);
+        int32_t j;
+        /* Rows and columns of variables that are not free become those of the identity, up to scale. */
+        for (j = 0; j < s->columns; ++j) {
+            bool held = s->state[j] != GPROJI_VARIABLE_FREE;
+            int64_t e = normal->start[j];
+            normal->value[e] =
+                held ? s->diagonal[j]
+                     : normal->product[e] + normal->damping + normal->proximity * s->diagonal[j] + normal->barrier[j];
+            while (++e < normal->start[j + 1])
+                normal->value[e] = held || s->state[normal->row[e]] != GPROJI_VARIABLE_FREE ? 0 : normal->product[e];
+        }
+        normal->factorisations++;
+        outcome = gproj_cholesky_factor(normal->cholesky, normal->value);
         if (outcome == GPROJ_FACTORED) return true;
         if (outcome == GPROJ_FACTOR_FAILED) {
-            if (s->error) *s->error = *gproj_cholesky_error(s->cholesky);
-            s->code = gproj_cholesky_error(s->cholesky)->code;
+            if (s->error) *s->error = *gproj_cholesky_error(normal->cholesky);
+            s->code = gproj_cholesky_error(normal->cholesky)->code;
             return false;
         }
-        s->proximity *= 100;
+        normal->proximity *= 100; /* singular to rounding */
     }
     return false;
 }
 
 /* -- gradients -- */
 
-/* misfit = A x - b, magnitude = |A||x| + |b| */
-GPROJI_INTERNAL void gproji_squares_misfit(gproji_squares *s, const double *x) {
-    const gproj_least_squares *p = s->problem;
-    int32_t i, j;
-    int64_t e;
-    for (i = 0; i < p->rows; ++i) s->misfit[i] = -p->b[i], s->magnitude[i] = fabs(p->b[i]);
-    for (j = 0; j < s->columns; ++j)
-        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
-            double term = p->value[e] * x[j];
-            s->misfit[p->row[e]] += term;
-            s->magnitude[p->row[e]] += fabs(term);
-        }
-}
-
-/* gradient = A'(A x - b) + damping^2 x. Returns the largest entry of the same sums of absolute values, for columns of
-   length 1: a column of small entries must not drown beside one of large ones. */
+/* gradient = A' residual + damping^2 x. Returns the largest entry of these sums with absolute values, scaled by `unit`:
+   a column with small entries must not drown beside one with large entries. */
 GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *x) {
     const gproj_least_squares *p = s->problem;
     double largest = 0;
-    int32_t j;
+    int32_t i, j;
     int64_t e;
-    gproji_squares_misfit(s, x);
-    for (j = 0; j < s->columns; ++j) {
-        double sum = s->damping * x[j], size = fabs(sum);
+    for (i = 0; i < p->rows; ++i) s->residual[i] = -p->b[i], s->magnitude[i] = fabs(p->b[i]);
+    for (j = 0; j < s->columns; ++j)
         for (e = p->start[j]; e < p->start[j + 1]; ++e) {
-            sum += p->value[e] * s->misfit[p->row[e]];
+            double term = p->value[e] * x[j];
+            s->residual[p->row[e]] += term;
+            s->magnitude[p->row[e]] += fabs(term);
+        }
+    for (j = 0; j < s->columns; ++j) {
+        double sum = s->normal.damping * x[j], size = fabs(sum);
+        for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+            sum += p->value[e] * s->residual[p->row[e]];
             size += fabs(p->value[e]) * s->magnitude[p->row[e]];
         }
         s->gradient[j] = sum;
@@ -7372,7 +7146,7 @@ GPROJI_INTERNAL double gproji_squares_gradient(gproji_squares *s, const double *
     return largest;
 }
 
-/* What the gradient at variable j lacks to that of a solution, x being within the bounds; for a column of length 1. */
+/* The scaled violation of the optimality conditions by variable j at x, which is within the bounds. */
 GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t j, double x) {
     double g = s->gradient[j];
     if (x <= s->lower[j] && g >= 0) return 0;
@@ -7380,7 +7154,7 @@ GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t
     return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : s->unit[j] * fabs(g);
 }
 
-/* Judges trial, which is within the bounds, and keeps it if it is the best so far. True: it is a solution. */
+/* Judges trial, which is within the bounds, and keeps the best so far. True: it is a solution. */
 GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
     double largest = 0, kkt;
     int32_t j;
@@ -7396,7 +7170,8 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
 
 /* -- Newton steps and exchanges -- */
 
-/* step = the displacement that makes the gradient 0 at the free variables. Returns its largest entry there, in units. */
+/* step = the displacement that makes the gradient 0 at the free variables. Returns the gradient's largest scaled entry
+   there. */
 GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
     double largest = 0;
     int32_t j;
@@ -7404,51 +7179,38 @@ GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
         s->step[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
         largest = gproji_fmax(largest, s->unit[j] * fabs(s->step[j]));
     }
-    gproj_cholesky_solve(s->cholesky, 1, s->step, s->step);
+    gproj_cholesky_solve(s->normal.cholesky, 1, s->step, s->step);
     return largest;
 }
 
-/* Moves the free variables of trial to the minimum, by Newton steps with one factor; more than one because of the
-   proximity in the matrix, and of rounding. Leaves the gradient there. */
-GPROJI_INTERNAL void gproji_squares_minimise(gproji_squares *s) {
-    double before = HUGE_VAL, now;
-    int32_t round, j;
-    for (round = 0; round < 6; ++round) {
-        gproji_squares_gradient(s, s->trial);
-        now = gproji_squares_newton(s);
-        if (now <= 0.1 * s->noise || (round > 1 && now > 0.5 * before)) return;
-        before = now;
-        for (j = 0; j < s->columns; ++j) s->trial[j] += s->step[j];
-    }
-    gproji_squares_gradient(s, s->trial);
-}
-
-/* Holds the free variables of trial that have left their bounds, frees those held against the gradient, and returns
-   their number. */
-GPROJI_INTERNAL int32_t gproji_squares_exchange(gproji_squares *s) {
-    int32_t count = 0, j;
-    for (j = 0; j < s->columns; ++j) {
-        unsigned char old = s->state[j];
-        double g = s->unit[j] * s->gradient[j];
-        if (old == GPROJI_VARIABLE_FREE && s->trial[j] < s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
-        if (old == GPROJI_VARIABLE_FREE && s->trial[j] > s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
-        if (old == GPROJI_VARIABLE_LOWER && g < -s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
-        if (old == GPROJI_VARIABLE_UPPER && g > s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
-        count += old != s->state[j];
-        s->trial[j] = gproji_squares_clip(s, j, s->trial[j]);
-    }
-    return count;
-}
-
-/* From trial and the states: minimises, exchanges, and goes on while there are half as many exchanges as before. True:
-   best is a solution. */
+/* From trial and the states: minimises, exchanges, and repeats as long as exchanges halve. True: best is a solution. */
 GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
-    int32_t round, before = INT32_MAX, count, j;
-    for (j = 0; j < s->columns; ++j) s->barrier[j] = 0;
+    int32_t round, before = INT32_MAX, count, step, j;
+    for (j = 0; j < s->columns; ++j) s->normal.barrier[j] = 0;
     for (round = 0; round < rounds; ++round) {
+        double now, earlier = HUGE_VAL;
         if (!gproji_squares_factor(s)) return false;
-        gproji_squares_minimise(s);
-        count = gproji_squares_exchange(s);
+        /* 1. Minimises over the free variables. One factor serves several Newton steps, which the proximity in the
+           matrix and rounding make necessary. The gradient at the end stays. */
+        for (step = 0;; ++step) {
+            gproji_squares_gradient(s, s->trial);
+            if (step == 6) break;
+            now = gproji_squares_newton(s);
+            if (now <= 0.1 * s->noise || (step > 1 && now > 0.5 * earlier)) break;
+            earlier = now;
+            for (j = 0; j < s->columns; ++j) s->trial[j] += s->step[j];
+        }
+        /* 2. Holds free variables that have left their bounds, and frees those held against the gradient. */
+        for (j = 0, count = 0; j < s->columns; ++j) {
+            unsigned char old = s->state[j];
+            double g = s->unit[j] * s->gradient[j];
+            if (old == GPROJI_VARIABLE_FREE && s->trial[j] < s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+            if (old == GPROJI_VARIABLE_FREE && s->trial[j] > s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+            if (old == GPROJI_VARIABLE_LOWER && g < -s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
+            if (old == GPROJI_VARIABLE_UPPER && g > s->noise) s->state[j] = GPROJI_VARIABLE_FREE;
+            count += old != s->state[j];
+            s->trial[j] = gproji_squares_clip(s, j, s->trial[j]);
+        }
         if (gproji_squares_judge(s)) return true;
         if (count == 0 || count > before / 2 + 2) return false;
         before = count;
@@ -7456,9 +7218,7 @@ GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
     return false;
 }
 
-/* -- the interior-point method -- */
-
-/* How many variables are free again. */
+/* Frees all variables that are not fixed; returns how many. */
 GPROJI_INTERNAL int32_t gproji_squares_free_all(gproji_squares *s) {
     int32_t j, count = 0;
     for (j = 0; j < s->columns; ++j) {
@@ -7469,197 +7229,175 @@ GPROJI_INTERNAL int32_t gproji_squares_free_all(gproji_squares *s) {
     return count;
 }
 
+/* -- the interior-point method -- */
+
 GPROJI_INTERNAL double gproji_squares_slack(const gproji_squares *s, int32_t pair) {
-    int32_t j = s->variable[pair];
-    return s->sign[pair] > 0 ? s->x[j] - s->lower[j] : s->upper[j] - s->x[j];
+    int32_t j = s->interior.variable[pair];
+    double x = s->interior.x[j];
+    return s->interior.sign[pair] > 0 ? x - s->lower[j] : s->upper[j] - x;
 }
 
-/* Moves x by the shift away from its bounds: all variables alike, so that a state of equal forces stays one, but no
-   further than a quarter of the way between two bounds. */
-GPROJI_INTERNAL void gproji_squares_move_inside(gproji_squares *s, double shift) {
-    int32_t j;
+/* Begins inside the bounds, near the solution without bounds for much damping. Slacks and multipliers are scaled as if
+   columns of A had length 1. False: there is no inside, or no factor. */
+GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
+    gproji_interior *in = &s->interior;
+    double violation = 0, size = 0, force = 0, shift;
+    int32_t j, c;
+    for (j = 0; j < s->columns; ++j) s->normal.barrier[j] = 1e-3 * s->diagonal[j];
+    if (!gproji_squares_factor(s)) return false;
+    gproji_squares_gradient(s, in->x);
+    for (j = 0; j < s->columns; ++j)
+        if (s->state[j] == GPROJI_VARIABLE_FREE)
+            force = gproji_fmax(force, fabs(s->gradient[j]) / sqrt(s->diagonal[j]));
+    gproji_squares_newton(s);
+    for (j = 0; j < s->columns; ++j) in->x[j] += s->step[j];
+    for (c = 0; c < in->pairs; ++c) {
+        double slack = gproji_squares_slack(s, c) * sqrt(s->diagonal[in->variable[c]]);
+        violation = gproji_fmax(violation, -slack);
+        size = gproji_fmax(size, gproji_fmin(fabs(slack), 1e3 * force));
+    }
+    shift = gproji_fmax(1.5 * violation + 1e-3 * size, 1e-3 * force);
+    if (!(shift > 0) || !gproji_is_finite(shift)) return false;
+    /* One shift for all variables, so that equal forces stay equal; between two bounds at most a quarter of the way. */
     for (j = 0; j < s->columns; ++j) {
         bool below = s->lower[j] > -GPROJI_SQUARES_NONE, above = s->upper[j] < GPROJI_SQUARES_NONE;
         double margin = shift / sqrt(s->diagonal[j]);
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (below && above) {
             margin = gproji_fmin(margin, 0.25 * (s->upper[j] - s->lower[j]));
-            s->x[j] = gproji_fmax(gproji_fmin(s->x[j], s->upper[j] - margin), s->lower[j] + margin);
+            in->x[j] = gproji_fmax(gproji_fmin(in->x[j], s->upper[j] - margin), s->lower[j] + margin);
         } else if (below) {
-            s->x[j] += margin;
+            in->x[j] += margin;
         } else if (above) {
-            s->x[j] -= margin;
+            in->x[j] -= margin;
         }
     }
-}
-
-/* x within the bounds, near the solution without bounds of a problem with much damping. Slacks and multipliers are
-   chosen in units in which the columns of A have length 1. */
-GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
-    double violation = 0, size = 0, force = 0, shift;
-    int32_t j, c;
-    for (j = 0; j < s->columns; ++j) s->barrier[j] = 1e-3 * s->diagonal[j];
-    if (!gproji_squares_factor(s)) return false;
-    gproji_squares_gradient(s, s->x);
-    for (j = 0; j < s->columns; ++j)
-        if (s->state[j] == GPROJI_VARIABLE_FREE)
-            force = gproji_fmax(force, fabs(s->gradient[j]) / sqrt(s->diagonal[j]));
-    gproji_squares_newton(s);
-    for (j = 0; j < s->columns; ++j) s->x[j] += s->step[j];
-    for (c = 0; c < s->pairs; ++c) {
-        double slack = gproji_squares_slack(s, c) * sqrt(s->diagonal[s->variable[c]]);
-        violation = gproji_fmax(violation, -slack);
-        size = gproji_fmax(size, gproji_fmin(fabs(slack), 1e3 * force));
-    }
-    shift = gproji_fmax(1.5 * violation + 1e-3 * size, 1e-3 * force);
-    if (!(shift > 0) || !gproji_is_finite(shift)) return false;
-    gproji_squares_move_inside(s, shift);
-    for (c = 0; c < s->pairs; ++c) {
-        s->slack[c] = gproji_squares_slack(s, c);
-        s->dual[c] = 0.1 * force * sqrt(s->diagonal[s->variable[c]]);
-        if (!(s->slack[c] > 0)) return false; /* bounds that are neighbours as numbers */
+    for (c = 0; c < in->pairs; ++c) {
+        in->slack[c] = gproji_squares_slack(s, c);
+        in->dual[c] = 0.1 * force * sqrt(s->diagonal[in->variable[c]]);
+        if (!(in->slack[c] > 0)) return false; /* no number lies between the bounds */
     }
     return true;
 }
 
-/* barrier = sum z/s */
-GPROJI_INTERNAL void gproji_squares_set_barrier(gproji_squares *s) {
-    int32_t j, c;
-    for (j = 0; j < s->columns; ++j) s->barrier[j] = 0;
-    for (c = 0; c < s->pairs; ++c) s->barrier[s->variable[c]] += s->dual[c] / s->slack[c];
-}
-
-/* gradient = g - sum +-z: what the multipliers do not hold. Returns its largest entry relative to scale. */
+/* gradient = g - sum +-z, the part without multipliers. Returns the largest scaled entry relative to `scale`. */
 GPROJI_INTERNAL double gproji_squares_imbalance(gproji_squares *s) {
+    const gproji_interior *in = &s->interior;
     double largest = 0;
     int32_t j, c;
-    gproji_squares_gradient(s, s->x);
-    for (c = 0; c < s->pairs; ++c) s->gradient[s->variable[c]] -= s->sign[c] * s->dual[c];
+    gproji_squares_gradient(s, in->x);
+    for (c = 0; c < in->pairs; ++c) s->gradient[in->variable[c]] -= in->sign[c] * in->dual[c];
     for (j = 0; j < s->columns; ++j)
         if (s->state[j] == GPROJI_VARIABLE_FREE) largest = gproji_fmax(largest, s->unit[j] * fabs(s->gradient[j]));
     return largest / s->scale;
 }
 
 /* The mean of (s + a ds)(z + a dz). */
-GPROJI_INTERNAL double gproji_squares_mean(const gproji_squares *s, const gproji_direction *d, double a) {
+GPROJI_INTERNAL double gproji_squares_mean(const gproji_interior *in, double a) {
+    const gproji_direction *d = &in->direction;
     double sum = 0;
     int32_t c;
-    for (c = 0; c < s->pairs; ++c) {
-        double ds = a > 0 ? a * s->sign[c] * d->x[s->variable[c]] : 0, dz = a > 0 ? a * d->dual[c] : 0;
-        sum += (s->slack[c] + ds) * (s->dual[c] + dz);
+    for (c = 0; c < in->pairs; ++c) {
+        double ds = a > 0 ? a * in->sign[c] * d->x[in->variable[c]] : 0, dz = a > 0 ? a * d->dual[c] : 0;
+        sum += (in->slack[c] + ds) * (in->dual[c] + dz);
     }
-    return sum / s->pairs;
+    return sum / in->pairs;
 }
 
-/* The direction towards d->target, with the factor and the imbalance in `gradient`. */
+/* Solves for the direction towards d->target, with the factor and the imbalance in `gradient`. */
 GPROJI_INTERNAL void gproji_squares_direct(gproji_squares *s, gproji_direction *d) {
+    const gproji_interior *in = &s->interior;
     int32_t j, c;
     for (j = 0; j < s->columns; ++j) d->x[j] = s->state[j] == GPROJI_VARIABLE_FREE ? -s->gradient[j] : 0;
-    for (c = 0; c < s->pairs; ++c) d->x[s->variable[c]] += s->sign[c] * d->target[c] / s->slack[c];
-    gproj_cholesky_solve(s->cholesky, 1, d->x, d->x);
+    for (c = 0; c < in->pairs; ++c) d->x[in->variable[c]] += in->sign[c] * d->target[c] / in->slack[c];
+    gproj_cholesky_solve(s->normal.cholesky, 1, d->x, d->x);
     d->reach = 10;
-    for (c = 0; c < s->pairs; ++c) {
-        double ds = s->sign[c] * d->x[s->variable[c]];
-        d->dual[c] = (d->target[c] - s->dual[c] * ds) / s->slack[c];
-        if (-ds * d->reach > s->slack[c]) d->reach = s->slack[c] / -ds;
-        if (-d->dual[c] * d->reach > s->dual[c]) d->reach = s->dual[c] / -d->dual[c];
+    for (c = 0; c < in->pairs; ++c) {
+        double ds = in->sign[c] * d->x[in->variable[c]];
+        d->dual[c] = (d->target[c] - in->dual[c] * ds) / in->slack[c];
+        if (-ds * d->reach > in->slack[c]) d->reach = in->slack[c] / -ds;
+        if (-d->dual[c] * d->reach > in->dual[c]) d->reach = in->dual[c] / -d->dual[c];
     }
 }
 
-/* Mehrotra's predictor and corrector. Returns the product s z that the corrector aims at. */
-GPROJI_INTERNAL double gproji_squares_predict(gproji_squares *s) {
-    gproji_direction *d = &s->direction;
-    double mean = gproji_squares_mean(s, d, 0), ratio, aim;
-    int32_t c;
-    for (c = 0; c < s->pairs; ++c) d->target[c] = -s->slack[c] * s->dual[c];
+/* Takes one step. False: the step is not finite, or too short to count. */
+GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
+    gproji_interior *in = &s->interior;
+    gproji_direction *d = &in->direction, *other = &in->other, swap;
+    double mean, ratio, aim, a;
+    int32_t round, j, c;
+    for (j = 0; j < s->columns; ++j) s->normal.barrier[j] = 0;
+    for (c = 0; c < in->pairs; ++c) s->normal.barrier[in->variable[c]] += in->dual[c] / in->slack[c];
+    if (!gproji_squares_factor(s)) return false;
+    /* 1. Mehrotra's predictor aims at s z = 0. The further it gets, the less the corrector aims at; the corrector also
+       makes up for the predictor's ds dz. */
+    mean = gproji_squares_mean(in, 0);
+    for (c = 0; c < in->pairs; ++c) d->target[c] = -in->slack[c] * in->dual[c];
     gproji_squares_direct(s, d);
-    ratio = gproji_squares_mean(s, d, gproji_fmin(d->reach, 1)) / mean;
+    ratio = gproji_squares_mean(in, gproji_fmin(d->reach, 1)) / mean;
     aim = 0.1 * ratio * ratio * mean;
-    for (c = 0; c < s->pairs; ++c) d->target[c] += aim - s->sign[c] * d->x[s->variable[c]] * d->dual[c];
+    for (c = 0; c < in->pairs; ++c) d->target[c] += aim - in->sign[c] * d->x[in->variable[c]] * d->dual[c];
     gproji_squares_direct(s, d);
-    return aim;
-}
-
-/* Gondzio's correctors: targets for the products that a longer step would leave too far from the aim. Each costs a
-   solve, and saves factorisations. */
-GPROJI_INTERNAL void gproji_squares_correct(gproji_squares *s, double aim) {
-    int32_t round, c;
-    for (round = 0; round < GPROJI_SQUARES_CORRECTORS && s->direction.reach < 1.005; ++round) {
-        gproji_direction *d = &s->direction, *other = &s->other, swap;
-        double a = gproji_fmin(1, d->reach + 0.1);
-        for (c = 0; c < s->pairs; ++c) {
-            double ds = s->sign[c] * d->x[s->variable[c]];
-            double product = (s->slack[c] + a * ds) * (s->dual[c] + a * d->dual[c]), change = 0;
+    /* 2. Gondzio's correctors: new targets for products that a longer step would leave too far from the aim. Each costs
+       a solve, and saves factorisations. */
+    for (round = 0; round < GPROJI_SQUARES_CORRECTORS && d->reach < 1.005; ++round) {
+        a = gproji_fmin(1, d->reach + 0.1);
+        for (c = 0; c < in->pairs; ++c) {
+            double ds = in->sign[c] * d->x[in->variable[c]];
+            double product = (in->slack[c] + a * ds) * (in->dual[c] + a * d->dual[c]), change = 0;
             if (product < 0.1 * aim) change = 0.1 * aim - product;
             if (product > 10 * aim) change = gproji_fmax(10 * aim - product, -10 * aim);
             other->target[c] = d->target[c] + change;
         }
         gproji_squares_direct(s, other);
-        if (!(other->reach >= d->reach + 0.01)) return;
+        if (!(other->reach >= d->reach + 0.01)) break;
         swap = *d, *d = *other, *other = swap;
     }
-}
-
-/* One step. False: there is no step that is a number, or it is too short to count. */
-GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
-    gproji_direction *d = &s->direction;
-    double a;
-    int32_t j, c;
-    gproji_squares_set_barrier(s);
-    if (!gproji_squares_factor(s)) return false;
-    gproji_squares_correct(s, gproji_squares_predict(s));
+    /* 3. Moves, and stays inside. */
     a = gproji_fmin(1, 0.995 * d->reach);
     for (j = 0; j < s->columns; ++j)
         if (!gproji_is_finite(d->x[j])) return false;
-    for (c = 0; c < s->pairs; ++c)
+    for (c = 0; c < in->pairs; ++c)
         if (!gproji_is_finite(d->dual[c])) return false;
-    for (j = 0; j < s->columns; ++j) s->x[j] += a * d->x[j];
-    for (c = 0; c < s->pairs; ++c) {
-        s->slack[c] += a * s->sign[c] * d->x[s->variable[c]];
-        s->dual[c] += a * d->dual[c];
+    for (j = 0; j < s->columns; ++j) in->x[j] += a * d->x[j];
+    for (c = 0; c < in->pairs; ++c) {
+        in->slack[c] += a * in->sign[c] * d->x[in->variable[c]];
+        in->dual[c] += a * d->dual[c];
     }
     return a > 1e-6;
 }
 
-/* The share of bounds of which it is not clear whether they are reached. */
-GPROJI_INTERNAL double gproji_squares_doubt(const gproji_squares *s) {
-    int32_t c, count = 0;
-    for (c = 0; c < s->pairs; ++c) {
-        double slack = s->slack[c] * s->diagonal[s->variable[c]];
-        count += slack > 1e-2 * s->dual[c] && slack < 1e2 * s->dual[c];
-    }
-    return (double)count / s->pairs;
-}
-
-/* trial and states as the interior point suggests; it stays as it is. */
-GPROJI_INTERNAL void gproji_squares_guess(gproji_squares *s) {
-    int32_t c, j;
-    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, s->x[j]);
-    for (c = 0; c < s->pairs; ++c) {
-        j = s->variable[c];
-        if (s->slack[c] * s->diagonal[j] > s->dual[c]) continue;
-        s->state[j] = s->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
-        s->trial[j] = s->sign[c] > 0 ? s->lower[j] : s->upper[j];
-    }
-}
-
-/* From s->x: the interior-point method, with a polish whenever it seems to know the bounds. */
+/* Runs the interior-point method, and polishes whenever it seems to know the active bounds. */
 GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
+    const gproji_interior *in = &s->interior;
     double tolerance = 1e-4, doubt = 0.02, first = 0;
     bool moves = true;
+    int32_t j, c;
     if (!gproji_squares_interior(s)) return false;
-    while (s->code == GPROJ_OK && s->factorisations < GPROJI_SQUARES_LIMIT) {
-        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(s, &s->direction, 0);
+    while (s->code == GPROJ_OK && s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
+        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
         bool last = !moves || gap <= 1e-22 * first, clear;
+        int32_t undecided = 0;
         if (first <= 0) first = gap;
-        clear = gproji_squares_doubt(s) <= doubt || gap <= 1e-5 * tolerance * first;
+        for (c = 0; c < in->pairs; ++c) { /* a bound is decided once slack and multiplier differ a hundredfold */
+            double slack = in->slack[c] * s->diagonal[in->variable[c]];
+            undecided += slack > 1e-2 * in->dual[c] && slack < 1e2 * in->dual[c];
+        }
+        clear = (double)undecided / in->pairs <= doubt || gap <= 1e-5 * tolerance * first;
         if (last || (imbalance <= tolerance && gap <= tolerance * first && clear)) {
-            gproji_squares_guess(s);
+            /* Guesses trial and states from the interior point, which stays for the case that the guess is wrong. */
+            for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, in->x[j]);
+            for (c = 0; c < in->pairs; ++c) {
+                j = in->variable[c];
+                if (in->slack[c] * s->diagonal[j] > in->dual[c]) continue;
+                s->state[j] = in->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
+                s->trial[j] = in->sign[c] > 0 ? s->lower[j] : s->upper[j];
+            }
             if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return true;
             gproji_squares_free_all(s);
             if (last) return false;
             tolerance *= 1e-2, doubt *= 0.1;
-            gproji_squares_imbalance(s);
+            gproji_squares_imbalance(s); /* `gradient` is the polish's */
         }
         moves = gproji_squares_advance(s);
     }
@@ -7668,162 +7406,90 @@ GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
 
 /* -- the solution -- */
 
-GPROJI_INTERNAL bool gproji_squares_take(gproji_squares *s) {
-    const gproj_least_squares *p = s->problem;
-    int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
-    double *space, **part[19];
-    int32_t k, count = 0;
-    s->row_start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
-    s->row_column = (int32_t *)gproji_pool_take(&s->pool, entries, sizeof(int32_t));
-    s->row_value = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
-    s->start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
-    s->variable = (int32_t *)gproji_pool_take(&s->pool, 2 * n, sizeof(int32_t));
-    s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
-    space = (double *)gproji_pool_take(&s->pool, 12 * n + 14 * n + 2 * m, sizeof(double));
-    if (!s->row_start || !s->row_column || !s->row_value || !s->start || !s->variable || !s->state || !space)
-        return false;
-    part[count++] = &s->lower, part[count++] = &s->upper, part[count++] = &s->diagonal, part[count++] = &s->barrier;
-    part[count++] = &s->gradient, part[count++] = &s->x, part[count++] = &s->trial, part[count++] = &s->step;
-    part[count++] = &s->best, part[count++] = &s->direction.x, part[count++] = &s->other.x;
-    part[count++] = &s->unit;
-    for (k = 0; k < count; ++k, at += n) *part[k] = space + at;
-    part[0] = &s->sign, part[1] = &s->slack, part[2] = &s->dual, part[3] = &s->direction.target;
-    part[4] = &s->direction.dual, part[5] = &s->other.target, part[6] = &s->other.dual;
-    for (k = 0; k < 7; ++k, at += 2 * n) *part[k] = space + at;
-    s->misfit = space + at, s->magnitude = space + at + m;
-    return true;
-}
-
 /* Judges a first candidate, x or 0, moved between the bounds. */
 GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
     int32_t j;
-    for (j = 0; j < s->columns; ++j) s->trial[j] = s->x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
+    for (j = 0; j < s->columns; ++j)
+        s->trial[j] = s->interior.x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
     s->best_kkt = HUGE_VAL;
     return gproji_squares_judge(s);
 }
 
-/* scale, and the start as the first candidate; 0 where the start is worse than that. True: it is a solution. */
-GPROJI_INTERNAL bool gproji_squares_begin(gproji_squares *s, const double *x) {
+/* Solves from the start x, cheapest attempts first. */
+GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     int32_t j;
+    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
+       within the bounds that is nearest to 0. */
     for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
     s->scale = gproji_squares_gradient(s, s->trial);
     if (!(s->scale > 0)) s->scale = 1;
-    if (gproji_squares_propose(s, x)) return true;
-    return s->best_kkt > 1 && gproji_squares_propose(s, NULL);
-}
-
-/* The start may know which bounds hold. */
-GPROJI_INTERNAL bool gproji_squares_try_start(gproji_squares *s) {
-    int32_t j;
-    if (s->best_kkt > 1e-3) return false;
-    for (j = 0; j < s->columns; ++j) {
-        double x = s->trial[j];
-        if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, x) > 0) continue;
-        if (x <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
-        if (x >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+    if (gproji_squares_propose(s, x)) return;
+    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
+    /* 2. A good start knows the active bounds. */
+    if (s->best_kkt <= 1e-3) {
+        for (j = 0; j < s->columns; ++j) {
+            double at = s->trial[j];
+            if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, at) > 0) continue;
+            if (at <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+            if (at >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+        }
+        if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
     }
-    return gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS);
-}
-
-/* From the start, in the order of cost: the start itself, its neighbours, the minimum without bounds, the method. */
-GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
-    if (gproji_squares_begin(s, x) || gproji_squares_try_start(s)) return;
+    /* 3. The minimum without bounds, then the interior-point method. */
     if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
-    memcpy(s->trial, s->x, (size_t)s->columns * sizeof(double));
-    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || s->pairs == 0) return;
+    memcpy(s->trial, s->interior.x, (size_t)s->columns * sizeof(double));
+    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || s->interior.pairs == 0) return;
     gproji_squares_free_all(s);
     gproji_squares_iterate(s);
 }
 
-/* What the gradient of each variable at `best` does not tell, in `step` and for columns of length 1: rounding of its sum, or
-   twice what it lacks to 0; -1 where the variable is fixed, or held for sure by its bound. Leaves misfit and magnitude there.
-   Returns max |x|, for such columns. */
-GPROJI_INTERNAL double gproji_squares_noise(gproji_squares *s) {
+/* Is `best` a solution, as far as rounding can tell? Residual and gradient are at `best`. */
+GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
+    static const double clear = 1e-7; /* relative to the terms in a row, and to the largest variable */
     const gproj_least_squares *p = s->problem;
-    double extent = 0;
-    int32_t j;
+    double extent = 0, *noise = s->step; /* extent: max |x|, scaled */
+    int32_t i, j;
     int64_t e;
-    gproji_squares_gradient(s, s->best);
+    if (!(s->best_kkt <= 1e-9)) return false;
+    /* 1. noise[j], scaled: the part of the gradient that tells nothing, from rounding or twice the remaining violation;
+       -1 if the variable is fixed, or held at a bound beyond doubt. */
     for (j = 0; j < s->columns; ++j) {
         bool held = s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
         extent = gproji_fmax(extent, fabs(s->best[j]) / s->unit[j]);
-        s->step[j] = -1;
+        noise[j] = -1;
         if (s->lower[j] >= s->upper[j] || (held && s->unit[j] * fabs(s->gradient[j]) > s->noise)) continue;
-        s->step[j] = 0;
+        noise[j] = 0;
         for (e = p->start[j]; e < p->start[j + 1]; ++e)
-            s->step[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
-        s->step[j] = s->unit[j] * gproji_fmax(s->step[j], 2 * fabs(s->gradient[j]));
+            noise[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
+        noise[j] = s->unit[j] * gproji_fmax(noise[j], 2 * fabs(s->gradient[j]));
     }
-    return extent;
-}
-
-/* Does row i, clearly not solved, say nothing in the gradients of the variables that it could move, because other rows round
-   by more there, or its entries of the same place cancel? Then nobody knows whether it could be solved better. Entries that
-   are rounding beside others of the row do not count, nor do variables that it would move by little of the largest. */
-GPROJI_INTERNAL bool gproji_squares_drowns(const gproji_squares *s, int32_t i, double extent) {
-    static const double clear = 1e-7; /* of the magnitude of a row's terms, and of the largest variable */
-    int64_t e = s->row_start[i], end = s->row_start[i + 1];
-    double largest = 0, part = 0, noise = 0, misfit = fabs(s->misfit[i]);
-    if (!(misfit > clear * s->magnitude[i])) return false;
-    for (; e < end; ++e) largest = gproji_fmax(largest, fabs(s->row_value[e]));
-    for (e = s->row_start[i]; e < end;) {
-        int32_t j = s->row_column[e];
-        double sum = 0, size = 0;
-        for (; e < end && s->row_column[e] == j; ++e) sum += s->row_value[e], size += fabs(s->row_value[e]);
-        if (s->step[j] < 0 || !(size > 1e-12 * largest) || !(misfit > clear * extent * s->unit[j] * fabs(sum)))
-            continue;
-        part = gproji_fmax(part, s->unit[j] * fabs(sum) * misfit);
-        noise = gproji_fmax(noise, s->step[j]);
+    /* 2. A row with a clear residual that drowns in the gradients of all variables that could mend it, because other
+       rows round by more or entries in the same place cancel: nobody knows whether that row has a better solution. */
+    for (i = 0; s->columns > 0 && i < p->rows; ++i) {
+        int64_t end = s->rows.start[i + 1];
+        double largest = 0, part = 0, around = 0, residual = fabs(s->residual[i]);
+        if (!(residual > clear * s->magnitude[i])) continue;
+        for (e = s->rows.start[i]; e < end; ++e) largest = gproji_fmax(largest, fabs(s->rows.value[e]));
+        for (e = s->rows.start[i]; e < end;) {
+            double sum = 0, size = 0;
+            j = s->rows.column[e];
+            for (; e < end && s->rows.column[e] == j; ++e) sum += s->rows.value[e], size += fabs(s->rows.value[e]);
+            /* Entries that are rounding beside others do not count, nor do variables that the row hardly moves. */
+            if (noise[j] < 0 || !(size > 1e-12 * largest) || !(residual > clear * extent * s->unit[j] * fabs(sum)))
+                continue;
+            part = gproji_fmax(part, s->unit[j] * fabs(sum) * residual);
+            around = gproji_fmax(around, noise[j]);
+        }
+        if (part < around) return false;
     }
-    return part < noise;
-}
-
-/* Is best a solution, as far as rounding can tell? */
-GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
-    double extent;
-    int32_t i;
-    if (!(s->best_kkt <= 1e-9)) return false;
-    extent = gproji_squares_noise(s);
-    for (i = 0; s->columns > 0 && i < s->problem->rows; ++i)
-        if (gproji_squares_drowns(s, i, extent)) return false;
     return true;
-}
-
-GPROJI_INTERNAL void gproji_squares_report(gproji_squares *s, gproj_least_squares_result *result) {
-    double sum = 0;
-    int32_t i, j;
-    gproj_cholesky_info info = gproj_cholesky_get_info(s->cholesky);
-    gproji_squares_misfit(s, s->best);
-    for (i = 0; i < s->problem->rows; ++i) sum += s->misfit[i] * s->misfit[i];
-    for (j = 0; j < s->columns; ++j) result->at_bounds += s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
-    result->outcome = gproji_squares_is_certain(s) ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
-    result->factorisations = s->factorisations;
-    result->residual = sqrt(sum);
-    result->kkt = s->best_kkt;
-    result->memory = s->heap.account;
-    result->factor_bytes = info.factor_bytes;
-    result->work_bytes = info.work_bytes;
-}
-
-GPROJI_INTERNAL void gproji_squares_run(gproji_squares *s, const gproj_host *host, double *x,
-                                        gproj_least_squares_result *result) {
-    s->cholesky = gproj_cholesky_create(host);
-    if (!s->cholesky || !gproji_squares_take(s)) {
-        s->code = gproji_fail_memory(s->error);
-        return;
-    }
-    gproji_squares_set_bounds(s);
-    if (s->code == GPROJ_OK && s->columns > 0) gproji_squares_assemble(s);
-    if (s->code == GPROJ_OK) gproji_squares_solve(s, x);
-    if (s->code != GPROJ_OK) return;
-    gproji_squares_report(s, result);
-    if (s->columns > 0) memcpy(x, s->best, (size_t)s->columns * sizeof(double));
 }
 
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error) {
     gproj_least_squares_result unused;
     gproji_squares s;
+    int32_t i;
     if (!result) result = &unused;
     memset(result, 0, sizeof *result);
     result->outcome = GPROJ_LEAST_SQUARES_FAILED;
@@ -7833,12 +7499,30 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
     if (s.code != GPROJ_OK) return s.code;
     s.problem = problem, s.error = error;
     s.columns = problem->columns;
-    s.damping = problem->damping * problem->damping;
-    s.proximity = 1e-12;
+    s.normal.damping = problem->damping * problem->damping;
+    s.normal.proximity = 1e-12;
     s.heap = gproji_heap_of(host);
     gproji_pool_start(&s.pool, &s.heap);
-    gproji_squares_run(&s, host, x, result);
-    gproj_cholesky_destroy(s.cholesky);
+    s.normal.cholesky = gproj_cholesky_create(host);
+    gproji_squares_begin(&s);
+    if (s.code == GPROJ_OK && s.columns > 0) gproji_squares_assemble(&s);
+    if (s.code == GPROJ_OK) gproji_squares_solve(&s, x);
+    if (s.code == GPROJ_OK) {
+        gproj_cholesky_info info = gproj_cholesky_get_info(s.normal.cholesky);
+        double sum = 0;
+        gproji_squares_gradient(&s, s.best);
+        for (i = 0; i < problem->rows; ++i) sum += s.residual[i] * s.residual[i];
+        for (i = 0; i < s.columns; ++i) result->at_bounds += s.best[i] <= s.lower[i] || s.best[i] >= s.upper[i];
+        result->outcome = gproji_squares_is_certain(&s) ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
+        result->factorisations = s.normal.factorisations;
+        result->residual = sqrt(sum);
+        result->kkt = s.best_kkt;
+        result->memory = s.heap.account;
+        result->factor_bytes = info.factor_bytes;
+        result->work_bytes = info.work_bytes;
+        if (s.columns > 0) memcpy(x, s.best, (size_t)s.columns * sizeof(double));
+    }
+    gproj_cholesky_destroy(s.normal.cholesky);
     gproji_pool_give_all(&s.pool);
     return s.code;
 }
@@ -10071,7 +9755,7 @@ GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, int32_t *sequence
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     for (f = 0; f < sy->fronts; ++f) {
         d->front_start[f] = count;
-        for (k = sy->front[f].first_place; k < sy->front[f].end_place; ++k) {
+        for (k = sy->front[f].first_position; k < sy->front[f].end_position; ++k) {
             int32_t e = sy->order[k];
             for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
                 int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];

@@ -580,8 +580,8 @@ static void load_blocks(void *user, int32_t front, const gproji_panel *panel, in
             int32_t variable[2], row[2];
             variable[0] = m->row[p], variable[1] = j;
             for (k = 0; k < 2; ++k) node[k] = blocks->node_of[variable[k]];
-            k = sy->place[node[0]] < sy->place[node[1]] ? 0 : 1;
-            if (sy->front_of[sy->place[node[k]]] != front) continue;
+            k = sy->position[node[0]] < sy->position[node[1]] ? 0 : 1;
+            if (sy->front_of[sy->position[node[k]]] != front) continue;
             for (k = 0; k < 2; ++k) row[k] = at[variable[k]];
             k = row[0] < row[1] ? 0 : 1;
             if (row[k] < from || row[k] >= to) continue;
@@ -840,7 +840,7 @@ static void change_owners_of(ownership *o, int32_t first, int32_t end) {
 static void change_owners(ownership *o, bool concurrent) {
     const gproji_symbolic *sy = o->sy;
     int32_t k;
-    for (k = 0; concurrent && k < GPROJI_STAGES; ++k) change_owners_of(o, sy->stage_start[k], sy->stage_start[k + 1]);
+    for (k = 0; concurrent && k < GPROJI_TASK_LEVELS; ++k) change_owners_of(o, sy->level_start[k], sy->level_start[k + 1]);
     for (k = concurrent ? sy->task_start[sy->tasks] : 0; k < sy->fronts; ++k) {
         begin_front(o, sy->schedule[k]);
         end_front(o, sy->schedule[k]);
@@ -865,7 +865,7 @@ GPROJT_TEST(cholesky_panels_and_updates_share_memory) {
             memset(&o, 0, sizeof o);
             GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, &options) == GPROJ_OK);
             o.sy = &c->symbolic;
-            second += o.sy->stage_start[2] - o.sy->stage_start[1];
+            second += o.sy->level_start[2] - o.sy->level_start[1];
             size = o.sy->values_size + o.sy->work_size;
             o.owner = (int32_t *)calloc((size_t)size, sizeof *o.owner);
             change_owners(&o, concurrent == 1);
@@ -1000,18 +1000,18 @@ GPROJT_TEST(cholesky_every_allocation_fails) {
     order = (int32_t *)malloc((size_t)f.m.n * sizeof(int32_t));
     random_permutation(f.m.n, order, &seed);
     f.options = options_of(GPROJ_ORDERING_AMD);
-    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 40);
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 25);
     f.options = options_of(GPROJ_ORDERING_DISSECTION);
-    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 60);
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 45);
     f.options = options_of(GPROJ_ORDERING_GIVEN);
     f.options.permutation = order;
-    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 40);
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 25);
     free(order);
     matrix_free(&f.m);
 #ifndef GPROJT_SANITIZED
     f.m = laplacian(TORUS, 60, 50); /* large enough to be cut */
     f.options = options_of(GPROJ_ORDERING_DISSECTION);
-    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 70);
+    GPROJT_CHECK(gprojt_fail_every_allocation(factor_with, &f) >= 55);
     matrix_free(&f.m);
 #endif
 }
