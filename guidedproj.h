@@ -3849,34 +3849,28 @@ GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const g
            amd->mark && amd->head && amd->next && amd->previous && amd->hash_head && amd->tail && amd->chain;
 }
 
-/* The weight of a node's neighbours. */
-GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t node) {
-    int64_t k, degree = 0;
-    for (k = graph->start[node]; k < graph->start[node + 1]; ++k) degree += graph->weight[graph->adjacent[k]];
-    return degree;
-}
-
-/* Dense nodes have more than 10 sqrt(n) variables next to them. They are put last without looking at them: they would
-   make every degree and distance meaningless and the search slow. */
-GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
-
-GPROJI_INTERNAL int32_t gproji_graph_heaviest(const gproji_graph *graph) {
-    int32_t i, most = 0;
-    for (i = 0; i < graph->nodes; ++i) most = gproji_max(most, graph->weight[i]);
-    return most;
-}
-
-/* Is a node dense? dense: see gproji_dense_degree. heaviest: of all nodes; most need no look at their neighbours. */
-GPROJI_INTERNAL bool gproji_graph_is_dense(const gproji_graph *graph, int32_t node, double dense, int32_t heaviest) {
-    if ((double)(graph->start[node + 1] - graph->start[node]) * heaviest <= dense) return false;
-    return (double)gproji_graph_degree(graph, node) > dense;
+/* Gives all dense nodes this kind: those with more than 10 sqrt(n) variables next to them. They are put last unseen, as
+   they would make every degree and distance meaningless and the search slow. `total` is the weight of all nodes. */
+GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total, unsigned char *kind,
+                                       unsigned char dense) {
+    double least = gproji_fmax(16.0, 10.0 * sqrt((double)total));
+    int32_t i, heaviest = 0;
+    int64_t k;
+    for (i = 0; i < graph->nodes; ++i) heaviest = gproji_max(heaviest, graph->weight[i]);
+    for (i = 0; i < graph->nodes; ++i) {
+        int64_t degree = 0;
+        /* few neighbours: most nodes need no look at them */
+        if ((double)(graph->start[i + 1] - graph->start[i]) * heaviest <= least) continue;
+        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) degree += graph->weight[graph->adjacent[k]];
+        if ((double)degree > least) kind[i] = dense;
+    }
 }
 
 /* Fills the lists with all nodes that are not dense. */
 GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
-    double dense = gproji_dense_degree(amd->buckets - 1);
-    int32_t i, heaviest = gproji_graph_heaviest(graph);
+    int32_t i;
     int64_t k;
+    gproji_mark_dense(graph, amd->buckets - 1, amd->kind, GPROJI_AMD_DENSE);
     amd->stamp = 1;
     amd->lowest = 0;
     for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
@@ -3885,7 +3879,6 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
         amd->tail[i] = i;
         amd->chain[i] = -1;
         amd->weight[i] = graph->weight[i];
-        if (gproji_graph_is_dense(graph, i, dense, heaviest)) amd->kind[i] = GPROJI_AMD_DENSE;
     }
     for (i = 0; i < amd->nodes; ++i) {
         int32_t degree = 0;
@@ -4043,87 +4036,102 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
 /* ============================================================================================================
    >>dissection   The order of elimination by nested dissection. Uses platform, memory, ordering.
 
-   A separator is a set of nodes without which the rest falls into two sides that are not adjacent. It is eliminated
-   after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
-     coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
-                  c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
-                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in. Its two
-                  sides keep these coordinates while cuts by them cost about as little.
-     cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
-                  guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
-                  cost is estimated from its weight and that of its halo, the separators next to it, which become rows
-                  of all its fronts.
-     separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
-                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation along shortest paths, all of a
-                  length at once: Dinitz 1970). It straightens what distances leave ragged. Of the smallest sets those
-                  next to the two rims and the one next to the threshold are compared.
+   A separator splits a graph into two sides that are not adjacent. Nested dissection eliminates both sides first, each
+   dissected in turn, and the separator last (George 1973). Only the graph is known, no positions. For each part:
+     axes         Pseudo-coordinates from distances along the graph: x = d_a - d_b for a node a on the boundary and the
+                  node b farthest from a; y = d_c - d_d for c far from both and d far from all three. On a grid of quads
+                  with adjacent face corners, x and y are the diagonals, x + y and x - y the grid's own directions. Cuts
+                  are tried along these four axes. Sides inherit x and y while cuts by them cost about as little.
+     cut          A threshold on an axis. Costs are guessed from the weights by coordinate and from the spans of edges in
+                  a sample; in large parts the nodes next to the best thresholds are then counted. The cost of a side
+                  includes the halo: nodes of earlier separators next to it, which become rows of all its fronts.
+     separator    The smallest vertex separator in a band around the threshold, by maximum flow (Menger 1927; Ford,
+                  Fulkerson 1956; rounds of shortest paths: Dinitz 1970). It straightens the ragged level sets of
+                  distances. Three minimum cuts are compared: next to the source, to the sink, to the threshold.
    Small parts are ordered by exact minimum degree, halo included, with sets of bits.
 
-   Two kinds of nodes are not dissected. Dense ones (see gproji_dense_degree) come last. Light ones come right before the
-   first of their hosts, where they cause no fill: the forces in edges. A host is a heavier neighbour that has all their
-   neighbours. */
+   Two kinds of nodes are left out. Dense ones (see gproji_mark_dense) come last. A node is dominated if a heavier
+   neighbour has all its other neighbours; eliminated right before the first such neighbour it causes no fill. Forces in
+   edges are such nodes.
+
+   Invariants: parts on the stack are not adjacent, and their halos are complete. Costs are rounded to single precision
+   before they are compared, so that machines that fuse products and sums choose alike. */
 
 enum {
     GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
     GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
     GPROJI_ND_WORDS = 4,      /* for both */
-    GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_SAMPLES = 64,   /* nodes whose neighbours are looked at */
-    GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
-    GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
-    GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
+    GPROJI_ND_STACK = 40,     /* parts to do; the smaller side goes on top, so that 32 are enough for all graphs */
+    GPROJI_ND_SAMPLES = 64,   /* nodes whose edges are measured along the axes */
+    GPROJI_ND_THRESHOLDS = 5, /* tried along an axis */
+    GPROJI_ND_EXACT = 400,    /* nodes of a part whose separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* nodes from which coordinates of a closed mesh are tried */
     GPROJI_ND_SORTED = 64,    /* arcs of a node that are sorted; no mesh has more */
     GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
 };
 
-/* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
+/* A part still to be ordered: nodes first..first+nodes-1 in one of the two copies of the graph. */
 typedef struct gproji_nd_part {
-    int32_t first;
-    int32_t nodes;
-    int32_t place; /* its first place in the order */
-    int32_t copy;
-    double par; /* what its cut costs if its coordinates are good, over gproji_nd_rest; see gproji_nd_next_par */
+    int32_t first, nodes, copy;
+    int32_t position; /* its first position in the order */
+    double expected; /* cost of a good cut over gproji_nd_rest; 0, -1: cut by new coordinates, see gproji_nd_cut_part */
 } gproji_nd_part;
 
-/* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
-   places: so no part is in the way of another one. */
+/* A copy of the graph, sorted by parts. The sides of a part are written into the other copy, at the part's own indices:
+   so no part overwrites another. */
 typedef struct gproji_nd_nodes {
-    int32_t *name;     /* the node in the graph that is dissected */
-    int32_t *weight;   /* its weight */
-    int32_t *x, *y;    /* its coordinates */
-    int64_t *from;     /* its neighbours begin at adjacent[from]: */
-    int32_t *inner;    /* so many in the same part, by their numbers in it, */
-    int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
-    int32_t *adjacent; /* not by node: as many as in the graph */
+    int32_t *name; /* the node in the graph that is dissected */
+    int32_t *weight;
+    int32_t *x, *y;    /* pseudo-coordinates */
+    int64_t *from;     /* neighbours begin at adjacent[from]: */
+    int32_t *inner;    /* first those in the same part, by index in the part; this is their number, */
+    int32_t *outer;    /* then those in the halo, by name; in the part at work by index in the halo */
+    int32_t *adjacent; /* one entry for each arc of the graph */
 } gproji_nd_nodes;
 
-/* A cut of a part: nodes with position < at, and the others. */
+/* The halo of the part at work. */
+typedef struct gproji_nd_halo {
+    double weight;
+    int32_t count, *name;
+    int32_t *index;                /* by name: index in the halo if name[index] agrees */
+    int32_t *least, *most;         /* range of the neighbours' coordinates; or, in `least`, sides next to it as bits */
+    int32_t boundaries, *boundary; /* nodes of the part next to the halo */
+} gproji_nd_halo;
+
+/* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all. */
+typedef struct gproji_nd_profile {
+    int32_t *halo_low, *halo_high; /* halo nodes next to nodes below; to subtract: no longer next to nodes above */
+    int32_t *low, *high;           /* nodes below next to others above, and the other way round */
+    unsigned char *nearby;         /* 1: near a chosen threshold, 3: a chosen threshold */
+} gproji_nd_profile;
+
+/* A cut of the part at work: nodes with coordinate < at, and the others. */
 typedef struct gproji_nd_cut {
     double cost;
-    int32_t axis;
-    int32_t at;
-    int32_t range; /* positions are 0..range-1 */
-    double below;  /* weight of the nodes with position < at */
-    double weight; /* of a separator, not yet the smallest */
+    double below;        /* weight of the nodes with coordinate < at */
+    double separator;    /* weight of the nodes on one side next to the other, not yet the smallest separator */
+    int32_t at, range;   /* coordinates are 0..range-1 */
+    int32_t jump;        /* neighbours differ by no more */
+    int32_t *coordinate; /* nodes */
+    int32_t *sum;        /* coordinates: weight of the nodes there */
 } gproji_nd_cut;
 
-/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
-   lead from the exit to the entries of its neighbours, without limit. What passes between entry and exit is at most the
-   node's capacity, its weight in whole units. A unit of flow is known by where it comes from: that is all that a search
-   for more needs. */
+/* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
+   joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
+   limit. Each unit in a node stores the neighbour it comes from, which is all that augmentation needs. */
 typedef struct gproji_band {
     int32_t nodes;
-    int32_t *id;         /* nodes: number in the part */
-    int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
-    int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
-    int32_t *ahead;      /* nodes: its arcs before that one lead upwards */
-    int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *id;         /* nodes: index in the part */
+    int32_t *start;      /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
+    int32_t *unit;       /* nodes + 1: room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *load;       /* nodes: of which the first `load` are in use */
+    int32_t *ahead;      /* nodes: arcs before that one lead to higher coordinates */
     int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
-    int32_t *queue;      /* states; also the path that is looked for */
+    int32_t *queue;      /* states; also the path that is searched */
     int32_t *to;         /* arcs: the neighbour */
     int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
-    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
+    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to that side of the band */
     unsigned char *mark; /* states: GPROJI_BAND_... */
     void *block;         /* all of these arrays */
     size_t block_size;
@@ -4133,156 +4141,91 @@ enum {
     GPROJI_BAND_UNITS = 16, /* the largest capacity */
     GPROJI_BAND_SOURCE = 1, /* reached from the source */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
-    GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
+    GPROJI_BAND_MIDDLE = 4  /* reached from the source or from states below the cut that do not reach the sink */
+};
+
+enum {
+    GPROJI_ND_KEPT,
+    GPROJI_ND_DOMINATED,
+    GPROJI_ND_DENSE,
+    GPROJI_ND_PLACED /* dominated, and already in the order */
 };
 
 typedef struct gproji_nd {
     const gproji_graph *graph;
     gproji_heap *heap;
-    bool failed;         /* there was no memory */
-    double unit;         /* sqrt(mean weight of a node): a separator of n nodes of a mesh has about sqrt(n) */
+    bool failed;         /* out of memory */
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
-    int32_t light;       /* how many are light */
-    int32_t kept;        /* nodes that are dissected */
-    double openness;     /* see gproji_rim */
-    int32_t *order;      /* kept: the result */
+    int32_t kept, dominated;
+    double unit;     /* sqrt(mean weight of a node): a separator in n nodes of a mesh has about sqrt(n) */
+    double openness; /* see gproji_rim */
+    int32_t *order;  /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
     int32_t parts;
     /* the part at work; arrays have room for all nodes */
     gproji_nd_nodes here; /* its nodes alone */
     int32_t nodes;
-    double weight, halo_weight;
-    int32_t rims, *rim;              /* its nodes with neighbours in the halo */
-    int32_t halos, *halo;            /* names */
-    int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
-    int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
-    int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
-    int32_t *number;                 /* in the band or in a side */
-    int32_t *position, *best_position;
-    unsigned char *side;       /* 0, 1; 2: separator */
-    unsigned char *other_side; /* those of another cut */
-    /* by position; how much more there is than at the position before */
-    int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
-    int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
-    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
-    unsigned char *nearby;         /* 1: near a threshold, 3: a threshold */
-    double reach[4][4];            /* see gproji_nd_sample */
+    double weight;
+    gproji_nd_halo halo;
+    gproji_nd_profile profile;
+    int32_t *distance[4], *queue;    /* breadth-first searches; the first two distances turn into x and y */
+    int32_t *coordinate[2], *sum[2]; /* of the best cut so far, and of another one on trial */
+    int32_t *number;                 /* index in the band or in a side */
+    unsigned char *side[2];          /* 0, 1; 2: separator. Of a cut by inherited coordinates, and of one by new ones */
     gproji_band band;
 } gproji_nd;
 
-enum {
-    GPROJI_ND_KEPT,
-    GPROJI_ND_LIGHT,
-    GPROJI_ND_DENSE,
-    GPROJI_ND_PLACED
-};
-
-/* Arrays with an entry for each node, or position, and one more for the end of the positions. */
+/* Takes the arrays: an entry for each node, or coordinate, and one more for the end of the coordinates. */
 GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
+    gproji_nd_nodes *a = &nd->copy[0], *b = &nd->copy[1];
+    gproji_nd_halo *halo = &nd->halo;
+    gproji_nd_profile *profile = &nd->profile;
     int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **all[30], i, k = 0;
-    for (i = 0; i < 2; ++i) {
-        gproji_nd_nodes *c = &nd->copy[i];
-        all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
-        all[k++] = &c->x, all[k++] = &c->y;
-        c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-        c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
-        if (!c->from || !c->adjacent) return false;
+    int32_t **const ints[] = {
+        &a->name,           &a->weight,         &a->inner,        &a->outer,        &a->x,          &a->y,
+        &b->name,           &b->weight,         &b->inner,        &b->outer,        &b->x,          &b->y,
+        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
+        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
+        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
+        &profile->halo_high};
+    size_t k;
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) {
+        *ints[k] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
+        if (!*ints[k]) return false;
     }
-    for (i = 0; i < 4; ++i) all[k++] = &nd->distance[i];
-    all[k++] = &nd->queue, all[k++] = &nd->number, all[k++] = &nd->order, all[k++] = &nd->rim;
-    all[k++] = &nd->halo_least, all[k++] = &nd->halo_most;
-    all[k++] = &nd->position, all[k++] = &nd->best_position, all[k++] = &nd->sum, all[k++] = &nd->best_sum;
-    all[k++] = &nd->low, all[k++] = &nd->high, all[k++] = &nd->halo_low, all[k++] = &nd->halo_high;
-    GPROJ_ASSERT(k == (int32_t)(sizeof all / sizeof all[0]));
-    for (i = 0; i < k; ++i) {
-        *all[i] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
-        if (!*all[i]) return false;
+    for (k = 0; k < 2; ++k) {
+        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        nd->copy[k].adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
+        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
+        if (!nd->copy[k].from || !nd->copy[k].adjacent || !nd->side[k]) return false;
     }
-    nd->halo = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    nd->halo_of = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    nd->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    nd->other_side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->nearby && nd->other_side;
+    return halo->index && profile->nearby && nd->kind;
 }
 
-/* -- nodes that are not dissected -- */
+/* -- parts -- */
 
-/* Has b all neighbours of a, and a itself? mark: b where its neighbours, and itself, are. */
-GPROJI_INTERNAL bool gproji_nd_hosts(const gproji_graph *graph, const int32_t *mark, int32_t b, int32_t a) {
+/* Is node a, with all its neighbours, adjacent to b? mark: b for b and its neighbours, if mark[b] says so. */
+GPROJI_INTERNAL bool gproji_nd_dominates(const gproji_graph *graph, int32_t *mark, int32_t b, int32_t a) {
     int64_t e;
+    for (e = graph->start[b]; mark[b] != b && e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
+    mark[b] = b;
     for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
         if (mark[graph->adjacent[e]] != b) return false;
     return true;
 }
 
-GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_t *mark, int32_t b) {
-    int64_t e;
-    if (mark[b] == b) return;
-    mark[b] = b;
-    for (e = graph->start[b]; e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
-}
-
-/* Finds the nodes that are not dissected. A light node's heaviest host is kept: hosts of hosts are hosts. */
-GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
-    const gproji_graph *graph = nd->graph;
-    double dense = gproji_dense_degree(total);
-    int32_t a, b, heaviest = gproji_graph_heaviest(graph), lightest = heaviest, *mark = nd->number;
-    int64_t e;
-    for (a = 0; a < graph->nodes; ++a) {
-        mark[a] = -1;
-        lightest = gproji_min(lightest, graph->weight[a]);
-        if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
-    }
-    for (b = 0; b < graph->nodes; ++b) {
-        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
-        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
-            a = graph->adjacent[e];
-            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
-            gproji_nd_mark_neighbours(graph, mark, b);
-            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
-            nd->kind[a] = GPROJI_ND_LIGHT;
-            nd->light++;
-        }
-    }
-}
-
-/* The order of all nodes from that of the kept ones. A light node is taken with its first host. */
-GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
-    const gproji_graph *graph = nd->graph;
-    int32_t a, b, k, count = 0, *mark = nd->number;
-    int64_t e;
-    for (b = 0; b < graph->nodes; ++b) mark[b] = -1;
-    for (k = 0; k < nd->kept; ++k) {
-        b = nd->order[k];
-        for (e = graph->start[b]; nd->light > 0 && e < graph->start[b + 1]; ++e) {
-            a = graph->adjacent[e];
-            if (nd->kind[a] != GPROJI_ND_LIGHT) continue;
-            gproji_nd_mark_neighbours(graph, mark, b);
-            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
-            nd->kind[a] = GPROJI_ND_PLACED;
-            order[count++] = a;
-        }
-        order[count++] = b;
-    }
-    for (b = 0; b < graph->nodes; ++b)
-        if (nd->kind[b] == GPROJI_ND_DENSE) order[count++] = b;
-    GPROJ_ASSERT(count == graph->nodes);
-}
-
-/* -- parts -- */
-
-/* How long the graph's rim is, in nodes with few neighbours: its square over the number of nodes. Light nodes do not
-   count. Open meshes have 8 to 16, or more if they are narrow; closed ones none, or a little where they are irregular. */
+/* Measures how long the graph's boundary is: the number of nodes with few neighbours, squared, over that of all nodes.
+   Open meshes have 8 to 16, or more if they are narrow; closed ones 0, or little if they are irregular. */
 GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     double all = 0, count = 0, degrees = 0, few = 0;
     int32_t i;
     for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
     for (i = 0; i < graph->nodes; ++i) {
-        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        if ((double)graph->weight[i] * graph->nodes < all) continue; /* light nodes, such as forces, do not count */
         degrees += (double)(graph->start[i + 1] - graph->start[i]), count += 1;
     }
     for (i = 0; i < graph->nodes; ++i) {
@@ -4292,31 +4235,48 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
-   memory. */
-GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
+/* Chooses the nodes that are dissected and makes them the first part. `total` is the weight of all nodes. */
+GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     gproji_nd_nodes *c = &nd->copy[0];
-    int32_t root, i, head = 0, tail = 0, *number = nd->number;
+    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number = nd->number;
     int64_t e, to = 0;
     double weight = 0;
+    /* 1. Leave out dense and dominated nodes. Domination is transitive: a dominated node's heaviest dominator stays. */
+    gproji_mark_dense(graph, total, nd->kind, GPROJI_ND_DENSE);
+    for (a = 0; a < graph->nodes; ++a) {
+        number[a] = -1;
+        lightest = gproji_min(lightest, graph->weight[a]);
+    }
+    for (b = 0; b < graph->nodes; ++b) {
+        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
+        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
+            if (!gproji_nd_dominates(graph, number, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_DOMINATED;
+            nd->dominated++;
+        }
+    }
+    /* 2. Number the others in breadth-first order, which keeps neighbours near each other in memory. */
     for (i = 0; i < graph->nodes; ++i) number[i] = -1;
-    for (root = 0; root < graph->nodes; ++root) {
-        if (nd->kind[root] != GPROJI_ND_KEPT || number[root] >= 0) continue;
-        number[root] = tail, c->name[tail++] = root;
+    for (a = 0; a < graph->nodes; ++a) {
+        if (nd->kind[a] != GPROJI_ND_KEPT || number[a] >= 0) continue;
+        number[a] = tail, c->name[tail++] = a;
         while (head < tail) {
-            int32_t at = c->name[head++];
-            for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
+            b = c->name[head++];
+            for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
                 i = graph->adjacent[e];
                 if (nd->kind[i] == GPROJI_ND_KEPT && number[i] < 0) number[i] = tail, c->name[tail++] = i;
             }
         }
     }
+    /* 3. Copy their graph: all neighbours are inner ones. */
     for (i = 0; i < tail; ++i) {
-        int32_t at = c->name[i];
-        weight += c->weight[i] = graph->weight[at];
+        a = c->name[i];
+        weight += c->weight[i] = graph->weight[a];
         c->from[i] = to;
-        for (e = graph->start[at]; e < graph->start[at + 1]; ++e)
+        for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
             if (nd->kind[graph->adjacent[e]] == GPROJI_ND_KEPT) c->adjacent[to++] = number[graph->adjacent[e]];
         c->inner[i] = (int32_t)(to - c->from[i]);
         c->outer[i] = 0;
@@ -4329,61 +4289,24 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
     nd->parts = tail > 0;
 }
 
-/* Makes a part the one at work: its nodes, their weight and its halo. */
-GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
-    const gproji_nd_nodes *c = &nd->copy[part->copy];
-    gproji_nd_nodes *here = &nd->here;
-    double weight = 0;
-    int32_t i, k;
-    here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
-    here->inner = c->inner + part->first, here->outer = c->outer + part->first;
-    here->x = c->x + part->first, here->y = c->y + part->first;
-    here->adjacent = c->adjacent;
-    nd->nodes = part->nodes;
-    nd->rims = nd->halos = 0;
-    nd->halo_weight = 0;
-    for (i = 0; i < part->nodes; ++i) {
-        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
-        weight += here->weight[i];
-        if (here->outer[i] == 0) continue;
-        nd->rim[nd->rims++] = i;
-        for (k = 0; k < here->outer[i]; ++k) {
-            int32_t name = list[k], at = nd->halo_of[name];
-            if (at >= nd->halos || nd->halo[at] != name) {
-                at = nd->halo_of[name] = nd->halos++;
-                nd->halo[at] = name;
-                nd->halo_weight += nd->graph->weight[name];
-            }
-            list[k] = at;
-        }
-    }
-    nd->weight = weight;
-}
-
-GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
-                                    double par) {
-    gproji_nd_part *part = &nd->stack[nd->parts++];
-    GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
-    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
-}
-
-/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. nd->number: the numbers
-   of nodes in their side; ~name of those in the separator. Returns where the arcs end. */
-GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
+/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number: indices of
+   nodes in their side; ~name of those in the separator. Returns the end of the arcs. */
+GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, const unsigned char *side, int32_t s, gproji_nd_nodes *b,
+                                            int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
-    const int32_t *number = nd->number, *halo = nd->halo, nodes = nd->nodes;
+    const int32_t *number = nd->number, *halo = nd->halo.name, nodes = nd->nodes;
     int32_t i;
     for (i = 0; i < nodes; ++i) {
         const int32_t *list, *end;
         int32_t all, *in, *out;
-        if (nd->side[i] != side) continue;
+        if (side[i] != s) continue;
         list = a->adjacent + a->from[i], end = list + a->inner[i];
         all = a->inner[i] + a->outer[i];
         in = b->adjacent + e, out = in + all;
         b->name[to] = a->name[i], b->weight[to] = a->weight[i];
         b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
-        for (; list < end; ++list) {
+        for (; list < end; ++list) { /* a neighbour in the separator moves to the halo, at the list's end */
             int32_t k = number[*list];
             if (k < 0)
                 *--out = ~k;
@@ -4399,34 +4322,39 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
     return e;
 }
 
-/* Divides the part by `side`: the separator gets its last places, the sides become parts. par: theirs. */
-GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, double par) {
+/* Divides the part at work: the separator gets its last positions, the sides become parts with the same `expected`. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, const unsigned char *side,
+                                      double expected) {
     gproji_nd_nodes *other = &nd->copy[!part->copy];
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
-    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
-    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i) {
-        if (nd->side[i] != 2) continue;
+    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[side[i]]++;
+    for (i = 0, at = part->position + count[0] + count[1]; i < nd->nodes; ++i) {
+        if (side[i] != 2) continue;
         nd->order[at++] = nd->here.name[i];
         nd->number[i] = ~nd->here.name[i];
     }
-    e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
-    gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
+    e = gproji_nd_copy_side(nd, side, 0, other, part->first, nd->here.from[0]);
+    gproji_nd_copy_side(nd, side, 1, other, part->first + count[0], e);
     small = count[1] < count[0];
     for (i = 0; i < 2; ++i) {
-        int32_t side = i ? small : !small, skip = side ? count[0] : 0;
-        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy, par);
+        int32_t s = i ? small : !small, skip = s ? count[0] : 0;
+        gproji_nd_part *next = &nd->stack[nd->parts++];
+        GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
+        next->first = part->first + skip, next->nodes = count[s], next->copy = !part->copy;
+        next->position = part->position + skip, next->expected = expected;
     }
 }
 
 /* -- coordinates -- */
 
-/* Breadth-first search from a root over nodes without distance (-1), until all have one. The queue has `tail` nodes
-   before; returns how many afterwards. */
-GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
+/* Breadth-first search from a root over nodes with distance -1. The queue holds `tail` nodes found before; if 0, all
+   distances become -1 first. Returns how many nodes the queue holds then. */
+GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
     const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
     const int64_t *from = nd->here.from;
-    int32_t *queue = nd->queue, head = tail;
+    int32_t *queue = nd->queue, head = tail, i;
+    for (i = 0; tail == 0 && i < nd->nodes; ++i) distance[i] = -1;
     distance[root] = 0;
     queue[tail++] = root;
     while (head < tail && tail < nd->nodes) {
@@ -4439,13 +4367,6 @@ GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *d
         }
     }
     return tail;
-}
-
-/* The distances of all nodes from one of them. Returns how many it reaches. */
-GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance) {
-    int32_t i;
-    for (i = 0; i < nd->nodes; ++i) distance[i] = -1;
-    return gproji_nd_spread(nd, root, distance, 0);
 }
 
 /* The node with the largest value; among equals one with few neighbours. */
@@ -4466,88 +4387,157 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
     return best;
 }
 
-/* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
-   nodes a search reaches; when these are not all, there are none. */
-GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
-    int32_t *const *d = nd->distance, *value = nd->position;
-    int32_t i, reached = gproji_nd_search(nd, start, d[0]);
-    if (reached < nd->nodes) return reached;
-    if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
-    gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
-    for (i = 0; i < nd->nodes; ++i) /* where many nodes are as far from both, one in the middle */
-        value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
-    gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
-    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
-    gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
-    nd->here.x = d[0], nd->here.y = d[1];
-    return reached;
-}
-
-/* Sides of a part that is not connected, after a search that has reached `end` nodes: the components one after the other
-   up to half of the nodes, the last one only if it does not end the part. */
-GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
-    int32_t k, root = 0, before = end;
-    while (end < nd->nodes - end) {
-        while (nd->distance[0][root] >= 0) ++root;
-        before = end;
-        end = gproji_nd_spread(nd, root, nd->distance[0], end);
-    }
-    if (end == nd->nodes) end = before;
-    for (k = 0; k < nd->nodes; ++k) nd->side[k] = 1;
-    for (k = 0; k < end; ++k) nd->side[nd->queue[k]] = 0;
-}
-
 /* -- cuts -- */
 
-/* Rounds to seven digits, so that cuts are equally good on all machines if they are: some fuse products and sums. */
+/* Rounds to seven digits, so that cuts tie on all machines if they tie on one: some fuse products and sums. */
 GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
 
-/* What the elimination of a part is thought to cost in flops: the solution of
-     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
-   which is its separator's front, with the halo's rows, and twice a half. */
+/* Estimates the flops to eliminate a part with weight n and a halo of weight h. Solves
+     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n):
+   the separator's front with the halo's rows, and twice a half. */
 GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
     double c = nd->unit, r = sqrt(n);
     return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* The same for a part with these weights of its sides and its separator, and of the sides' halos without it. */
-GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
-    double s = weight[2], h = nd->halo_weight;
-    if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
-    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
-                           gproji_nd_rest(nd, weight[1], halo[1] + s));
+/* Estimates the flops of a cut with weights below, above and s = separator; halo: of the two sides, without it. */
+GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double above, double s, const double halo[2]) {
+    double h = nd->halo.weight;
+    if (below <= 0 || above <= 0 || s > below + above) return HUGE_VAL;
+    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, below, halo[0] + s) +
+                           gproji_nd_rest(nd, above, halo[1] + s));
 }
 
-/* The four directions' parts of x and y. */
-GPROJI_INLINE int32_t gproji_nd_direction(int32_t axis, int32_t part) {
-    return axis < 2 ? axis == part : axis == 3 && part == 1 ? -1 : 1;
-}
-
-/* In a direction, 0 to 3: neighbours differ by at most that much. */
-GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
-
-/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
-   positions are halved so many times. */
-GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
-    const int32_t *x = nd->here.x, *y = nd->here.y, fx = gproji_nd_direction(axis, 0);
-    const int32_t fy = gproji_nd_direction(axis, 1), nodes = nd->nodes;
-    int32_t least = INT32_MAX, most = INT32_MIN, halved = 0, i;
-    for (i = 0; i < nodes; ++i) {
-        int32_t p = position[i] = fx * x[i] + fy * y[i];
-        least = gproji_min(least, p), most = gproji_max(most, p);
+/* Guesses the weight of a separator at threshold t: nodes on one side with neighbours on the other, if all were like the
+   sample; on the side where that is less. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
+GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *reach, int32_t t) {
+    double low = cut->sum[t - 1], high = cut->sum[t];
+    int32_t k;
+    if (!reach) return low < high ? low : high;
+    low *= reach[0], high *= reach[0];
+    for (k = 1; k < 4; ++k) {
+        if (t - 1 - k >= 0) low += reach[k] * cut->sum[t - 1 - k];
+        if (t + k < cut->range) high += reach[k] * cut->sum[t + k];
     }
-    while ((most - least) >> halved >= nodes) ++halved;
-    for (i = 0; i < nodes; ++i) position[i] = (position[i] - least) >> halved;
-    *shift = halved;
-    return ((most - least) >> halved) + 1;
+    return gproji_coarsely(low < high ? low : high);
 }
 
-/* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
-   positions higher. */
-GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
+/* Marks the best thresholds by guess, and the coordinates near them, in profile.nearby. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_cut *cut, const double *reach) {
+    int32_t at[GPROJI_ND_THRESHOLDS + 1], count = 0, jump = cut->jump, most = cut->range / (4 * jump), t, k;
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
+    unsigned char *nearby = nd->profile.nearby;
+    /* few, or the nodes near them would be most of the part */
+    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
+    halo[0] = 0, halo[1] = nd->halo.weight;
+    memset(nearby, 0, (size_t)cut->range + 1);
+    for (t = 1; t < cut->range && 10 * below <= 7 * nd->weight; ++t) {
+        double s, own;
+        below += cut->sum[t - 1];
+        halo[0] += nd->profile.halo_low[t], halo[1] -= nd->profile.halo_high[t];
+        /* candidates leave 0.3 to 0.7 of the weight below and are a tenth apart */
+        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
+        last = below;
+        s = gproji_nd_guess(cut, reach, t);
+        own = gproji_nd_cost(nd, below - s / 2, nd->weight - below - s / 2, s, halo);
+        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
+        cost[k] = own, at[k] = t;
+        count = gproji_min(count + 1, most);
+    }
+    for (k = 0; k < count; ++k) {
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < cut->range; ++t) nearby[t] |= 1;
+        nearby[at[k]] = 3;
+    }
+}
+
+/* Counts, for all thresholds at once, the weight of nodes with neighbours across. Nodes far from all chosen thresholds
+   cannot reach one and are skipped. */
+GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *coordinate) {
+    const int32_t *adjacent = nd->here.adjacent;
+    int32_t i, *low = nd->profile.low, *high = nd->profile.high;
+    for (i = 0; i < nd->nodes; ++i) {
+        int32_t p = coordinate[i], least = p, most = p, w = nd->here.weight[i];
+        const int32_t *list, *end;
+        if (!nd->profile.nearby[p]) continue;
+        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
+        for (; list < end; ++list) {
+            int32_t q = coordinate[*list];
+            if (q < least) least = q;
+            if (q > most) most = q;
+        }
+        /* below thresholds p + 1..most with a neighbour above; above thresholds least + 1..p with one below */
+        low[p + 1] += w, low[most + 1] -= w;
+        high[least + 1] += w, high[p + 1] -= w;
+    }
+}
+
+/* Tries thresholds along one axis (0..3: x, y, x + y, x - y). A cut that beats `best` takes its place. */
+GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, const double *reach, gproji_nd_cut *best) {
+    const gproji_nd_nodes *here = &nd->here;
+    const gproji_nd_halo *halo = &nd->halo;
+    const gproji_nd_profile *profile = &nd->profile;
+    const int32_t *list, *end, spare = best->coordinate == nd->coordinate[0];
+    int32_t fx = axis != 1, fy = axis == 0 ? 0 : axis == 3 ? -1 : 1, lowest = INT32_MAX, highest = INT32_MIN;
+    int32_t *at = nd->coordinate[spare], halved = 0, i, k, t;
+    double below = 0, low = 0, high = 0, beside[2];
+    size_t bytes;
+    bool exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
+    gproji_nd_cut cut = *best;
+    /* 1. Coordinates along the axis, from 0, halved until they are not more than nodes. */
+    for (i = 0; i < nd->nodes; ++i) {
+        at[i] = fx * here->x[i] + fy * here->y[i];
+        lowest = gproji_min(lowest, at[i]), highest = gproji_max(highest, at[i]);
+    }
+    while ((highest - lowest) >> halved >= nd->nodes) ++halved;
+    cut.range = ((highest - lowest) >> halved) + 1, cut.jump = axis < 2 ? 2 : 4;
+    cut.coordinate = at, cut.sum = nd->sum[spare];
+    bytes = ((size_t)cut.range + 1) * sizeof(int32_t);
+    memset(cut.sum, 0, bytes);
+    memset(profile->low, 0, bytes), memset(profile->high, 0, bytes);
+    memset(profile->halo_low, 0, bytes), memset(profile->halo_high, 0, bytes);
+    for (i = 0; i < nd->nodes; ++i) {
+        at[i] = (at[i] - lowest) >> halved;
+        cut.sum[at[i]] += here->weight[i];
+    }
+    /* 2. The halo next to nodes below each threshold, and above. */
+    for (k = 0; k < halo->count; ++k) halo->least[k] = INT32_MAX, halo->most[k] = -1;
+    for (k = 0; k < halo->boundaries; ++k) {
+        i = halo->boundary[k];
+        list = here->adjacent + here->from[i] + here->inner[i], end = list + here->outer[i];
+        for (; list < end; ++list) {
+            halo->least[*list] = gproji_min(halo->least[*list], at[i]);
+            halo->most[*list] = gproji_max(halo->most[*list], at[i]);
+        }
+    }
+    for (k = 0; k < halo->count; ++k) {
+        profile->halo_low[halo->least[k] + 1] += nd->graph->weight[halo->name[k]];
+        profile->halo_high[halo->most[k] + 1] += nd->graph->weight[halo->name[k]];
+    }
+    /* 3. Promising thresholds, and which is best. */
+    if (halved > 0) reach = NULL;
+    gproji_nd_choose_thresholds(nd, &cut, reach);
+    if (exact) gproji_nd_count_inner(nd, at);
+    beside[0] = 0, beside[1] = halo->weight;
+    for (t = 1; t < cut.range; ++t) {
+        double s;
+        below += cut.sum[t - 1];
+        low += profile->low[t], high += profile->high[t];
+        beside[0] += profile->halo_low[t], beside[1] -= profile->halo_high[t];
+        if (profile->nearby[t] != 3) continue;
+        s = exact ? gproji_fmin(low, high) : gproji_nd_guess(&cut, reach, t);
+        cut.cost = gproji_nd_cost(nd, below - s / 2, nd->weight - below - s / 2, s, beside);
+        cut.at = t, cut.below = below, cut.separator = s;
+        if (cut.cost < best->cost) *best = cut;
+    }
+}
+
+/* Tries all axes by the coordinates x and y; a cut that beats `best` takes its place. */
+GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
     const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
+    double reach[4][4];
+    /* How far edges lead along the axes: a fraction reach[axis][k] of a sample of nodes has a neighbour whose coordinate
+       is more than k higher. */
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4563,308 +4553,86 @@ GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
         int32_t more = 0;
         for (k = 4; k > 0; --k) {
             more += found[axis][k];
-            nd->reach[axis][k - 1] = (double)more / count;
+            reach[axis][k - 1] = (double)more / count;
         }
     }
+    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, reach[axis], best);
 }
 
-/* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
-   those of the sample; on the side where that is less. */
-GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_t t, int32_t range, int32_t shift) {
-    double low = nd->sum[t - 1], high = nd->sum[t];
-    int32_t k;
-    if (shift > 0) return low < high ? low : high;
-    low *= nd->reach[axis][0], high *= nd->reach[axis][0];
-    for (k = 1; k < 4; ++k) {
-        if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
-        if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
-    }
-    return gproji_coarsely(low < high ? low : high);
-}
-
-/* Halo nodes next to nodes below each threshold, and above. */
-GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
-    int32_t k, *least = nd->halo_least, *most = nd->halo_most;
-    for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
-    for (k = 0; k < nd->rims; ++k) {
-        int32_t i = nd->rim[k], p = position[i];
-        const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
-        for (; list < end; ++list) {
-            least[*list] = gproji_min(least[*list], p);
-            most[*list] = gproji_max(most[*list], p);
-        }
-    }
-    for (k = 0; k < nd->halos; ++k) {
-        int32_t w = nd->graph->weight[nd->halo[k]];
-        nd->halo_low[least[k] + 1] += w;
-        nd->halo_high[most[k] + 1] += w;
-    }
-}
-
-/* The cost of a cut with `below` below it and a separator that takes from both sides. */
-GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double below, double separator,
-                                                const double halo[2]) {
-    double weight[3];
-    weight[0] = below - separator / 2, weight[1] = nd->weight - below - separator / 2, weight[2] = separator;
-    return gproji_nd_cost(nd, weight, halo);
-}
-
-/* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
-   are not most of the part, the best ones by guess. Marks the positions near them. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
-    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
-    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
-    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
-    halo[0] = 0, halo[1] = nd->halo_weight;
-    memset(nd->nearby, 0, (size_t)range + 1);
-    for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
-        double own;
-        below += nd->sum[t - 1];
-        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
-        last = below;
-        own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
-        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
-        cost[k] = own, at[k] = t;
-        count = gproji_min(count + 1, most);
-    }
-    for (k = 0; k < count; ++k) {
-        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->nearby[t] |= 1;
-        nd->nearby[at[k]] = 3;
-    }
-}
-
-/* For all thresholds at once, what has neighbours across. */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list, *end;
-        if (!nd->nearby[p]) continue;
-        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
-        for (; list < end; ++list) {
-            int32_t q = position[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
-        }
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
-    }
-}
-
-/* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
-GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
-    int32_t *position = nd->position, *sum = nd->sum, shift, range = gproji_nd_project(nd, axis, position, &shift), i,
-            t;
-    double below = 0, low = 0, high = 0, halo[2];
-    size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
-    bool better = false, exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
-    memset(sum, 0, bytes);
-    memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
-    memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
-    for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
-    gproji_nd_count_halo(nd, position);
-    gproji_nd_choose_thresholds(nd, axis, range, shift);
-    if (exact) gproji_nd_count_inner(nd, position);
-    halo[0] = 0, halo[1] = nd->halo_weight;
-    for (t = 1; t < range; ++t) {
-        double separator, cost;
-        below += sum[t - 1];
-        low += nd->low[t], high += nd->high[t];
-        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (nd->nearby[t] != 3) continue;
-        separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
-        cost = gproji_nd_threshold_cost(nd, below, separator, halo);
-        if (cost >= best->cost) continue;
-        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
-        best->weight = separator;
-        better = true;
-    }
-    if (!better) return;
-    nd->position = nd->best_position, nd->best_position = position;
-    nd->sum = nd->best_sum, nd->best_sum = sum;
-}
-
-/* -- the smallest separator in a band -- */
-
-/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than 0.3 of
-   the part's; and each rim keeps about a quarter of the weight behind it. */
-GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
-    const int32_t *sum = nd->best_sum;
-    int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
-    double most = gproji_fmin(12.0 * cut->weight, 0.3 * nd->weight), band = 0, below = 0, above;
-    for (i = 0; i < low; ++i) below += sum[i];
-    for (; i < high; ++i) band += sum[i];
-    above = nd->weight - below - band;
-    for (;;) {
-        bool down = below > above;
-        int32_t more;
-        if (down ? low <= 1 : high >= cut->range - 1) break;
-        more = sum[down ? low - 1 : high];
-        if (band + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
-        band += more;
-        if (down)
-            below -= more, --low;
-        else
-            above -= more, ++high;
-    }
-    from[0] = low, from[1] = high;
-}
-
-/* Is node i in the band? So are nodes below it with neighbours above it. */
-GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                       int32_t i) {
-    const int32_t *position = nd->best_position, *list = nd->here.adjacent + nd->here.from[i];
-    const int32_t *end = list + nd->here.inner[i];
-    if (position[i] >= from[0]) return position[i] < from[1];
-    if (position[i] < from[0] - gproji_nd_jump(cut->axis)) return false;
-    for (; list < end; ++list)
-        if (position[*list] >= from[1]) return true;
-    return false;
-}
-
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
-                                      int64_t units) {
-    size_t ints = (size_t)nodes * 11 + 2 + (size_t)arcs + (size_t)units;
-    int32_t *at;
-    if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
-        return false;
-    at = (int32_t *)band->block;
-    band->id = at, at += nodes;
-    band->start = at, at += nodes + 1;
-    band->unit = at, at += nodes + 1;
-    band->ahead = at, at += nodes;
-    band->load = at, at += nodes;
-    band->level = at, at += 2 * nodes;
-    band->turn = at, at += 2 * nodes;
-    band->queue = at, at += 2 * nodes;
-    band->to = at, at += arcs;
-    band->origin = at, at += units;
-    band->ends = (unsigned char *)at;
-    band->mark = band->ends + nodes;
-    return true;
-}
-
-/* The arcs of band node i from number e on, those that lead upwards first, the farthest before others: a search then goes
-   ahead first, and leaves nodes free for other paths. Returns where they end. */
-GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
-    gproji_band *band = &nd->band;
-    const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
-    const int32_t *end = list + nd->here.inner[v];
-    int32_t back = e + nd->here.inner[v], stop = back, k;
-    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
-    band->start[i] = e;
-    band->ends[i] = 0;
-    for (; list < end; ++list) {
-        int32_t u = nd->number[*list];
-        if (u < 0) {
-            band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
-        } else if (position[*list] > position[v]) {
-            for (k = e++; few && k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
-                band->to[k] = band->to[k - 1];
-            band->to[k] = u;
-        } else {
-            band->to[--back] = u;
-        }
-    }
-    band->ahead[i] = e;
-    while (back < stop) band->to[e++] = band->to[back++];
-    return e;
-}
-
-/* The capacity of a weight: in units of a common divisor of all weights, or, where these are many, of a part of the
-   largest one. */
-GPROJI_INTERNAL int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
-    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
-    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
-}
-
-/* Finds the nodes of the band, in nd->queue, and their capacities, in nd->position. Returns how many nodes; adds up their
-   arcs and capacities. */
-GPROJI_INTERNAL int32_t gproji_nd_find_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                            int64_t *arcs, int64_t *units) {
-    int32_t i, nodes = 0, divisor = 0, largest = 0, *capacity = nd->position;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t a = nd->here.weight[i], b = divisor, rest;
-        nd->number[i] = -1;
-        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
-        nd->number[i] = nodes;
-        nd->queue[nodes++] = i;
-        *arcs += nd->here.inner[i];
-        largest = gproji_max(largest, a);
-        if (a == b) continue;
-        for (; b > 0; a = b, b = rest) rest = a % b;
-        divisor = a;
-    }
-    for (i = 0; i < nodes; ++i)
-        *units += capacity[i] = gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
-    return nodes;
-}
-
-/* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
-GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
-    gproji_band *band = &nd->band;
-    int32_t i, e = 0, u = 0, nodes;
-    int64_t arcs = 0, units = 0;
-    nodes = gproji_nd_find_band(nd, cut, from, &arcs, &units);
-    if (arcs > INT32_MAX || units > INT32_MAX) return false;
-    if (!gproji_band_take(nd->heap, band, nodes, arcs, units)) {
-        nd->failed = true;
-        return false;
-    }
-    band->nodes = nodes;
-    memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
-    for (i = 0; i < nodes; ++i) {
-        band->load[i] = 0;
-        band->unit[i] = u;
-        u += nd->position[i];
-        e = gproji_nd_band_arcs(nd, from, i, e);
-    }
-    band->start[nodes] = e;
-    band->unit[nodes] = u;
-    return true;
-}
+/* -- the flow through a band -- */
 
 GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* Looks for a path from a node to the sink, upwards all the way and through nodes with room. Returns its last index in
-   the queue, which has its nodes, or -1. level: -1 where there is none. */
-GPROJI_INTERNAL int32_t gproji_band_find_ascent(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, depth = 0;
-    path[0] = source;
-    while (depth >= 0) {
-        int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
-        if (band->ends[v] & GPROJI_BAND_SINK) return depth;
-        while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
-        band->turn[v] = c;
-        if (c < end)
-            path[++depth] = band->to[c];
-        else
-            band->level[path[depth--]] = -1;
-    }
-    return -1;
-}
-
-/* A first flow, along ascents: in most bands there is not much more. level, turn: here by node. */
+/* Finds a first flow by depth-first search upwards only: in most bands little is missing then. level, turn: here by node;
+   level -1: a dead end. */
 GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
-    const int32_t *path = band->queue;
-    int32_t i, k, depth;
+    int32_t *path = band->queue, i, k, depth;
     for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        while (gproji_band_has_room(band, i) && (depth = gproji_band_find_ascent(band, i)) >= 0)
-            for (k = 0; k <= depth; ++k) {
-                int32_t v = path[k];
-                band->origin[band->unit[v] + band->load[v]++] = k > 0 ? path[k - 1] : -1;
+        for (path[0] = i, depth = 0; depth >= 0 && gproji_band_has_room(band, i);) {
+            int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
+            if (band->ends[v] & GPROJI_BAND_SINK) { /* send a unit, and begin again */
+                for (k = 0; k <= depth; ++k)
+                    band->origin[band->unit[path[k]] + band->load[path[k]]++] = k > 0 ? path[k - 1] : -1;
+                depth = 0;
+                continue;
             }
+            while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
+            band->turn[v] = c;
+            if (c < end)
+                path[++depth] = band->to[c];
+            else
+                band->level[path[depth--]] = -1;
+        }
     }
 }
 
-/* The next state, one step nearer to the sink, to which more can flow from state s, or -1: from an exit along an arc, then
-   back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Adds a state without a level to a queue of `tail`; returns how many there are then. */
+GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
+    if (band->level[s] >= 0) return tail;
+    band->level[s] = level;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* Finds the levels of all states by breadth-first search from the sink, against the residual arcs. Returns whether the
+   source is reached. */
+GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
+    int32_t head = 0, tail = 0, i, c;
+    bool found = false;
+    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
+        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
+            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
+            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
+            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
+        }
+    }
+    return found;
+}
+
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc, or
+   back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
 GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     const int32_t *level = band->level;
@@ -4888,94 +4656,45 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     return next;
 }
 
-/* Looks for a path from a state to the sink that comes nearer with each step. Returns its last index in the queue, or
-   -1. */
-GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, depth = 0;
-    path[0] = source;
-    while (depth >= 0) {
-        int32_t s = path[depth], next;
-        if (band->level[s] == 0) return depth;
-        next = gproji_band_next(band, s);
-        if (next >= 0)
-            path[++depth] = next;
-        else
-            band->level[path[depth--]] = -1;
-    }
-    return -1;
-}
-
-/* Sends a unit along the path. */
+/* Sends a unit along the path in the queue, which has `depth` steps. */
 GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
     const int32_t *path = band->queue;
     int32_t k, from = -1; /* the exit that was passed last */
     for (k = 0; k < depth; ++k) {
         int32_t s = path[k], v = s >> 1;
-        bool turns = (path[k + 1] ^ s) == 1;
         if (s & 1)
             from = v;
-        else if (turns) /* another unit passes; */
+        else if ((path[k + 1] ^ s) == 1) /* entry to exit: one unit more */
             band->origin[band->unit[v] + band->load[v]++] = from;
-        else if (k > 0 && path[k - 1] == (s ^ 1)) /* one less; */
+        else if (k > 0 && path[k - 1] == (s ^ 1)) /* exit to entry: one less */
             band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
-        else /* one comes from elsewhere */
+        else /* entry to a neighbour's exit: this unit now comes from elsewhere */
             band->origin[band->turn[s]] = from;
     }
 }
 
-/* Does a unit come to band node v from u? */
-GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
-    int32_t c;
-    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-        if (band->origin[c] == u) return true;
-    return false;
-}
-
-/* Adds a state without a level to a queue of `tail`; returns how many there are then. */
-GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
-    if (band->level[s] >= 0) return tail;
-    band->level[s] = level;
-    band->queue[tail] = s;
-    return tail + 1;
-}
-
-/* The levels of all states, by a breadth-first search from the sink. Is the source among them? */
-GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
-    int32_t head = 0, tail = 0, i, c;
-    bool found = false;
-    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
-    for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) {
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
-        } else {
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    return found;
-}
-
-/* A round: paths from all sources, as short as they can be now. False when there was none; then the states with a level
-   are those that reach the sink. */
-GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
-    int32_t i, depth;
+/* One round: augments along shortest paths until there are none of that length. False when there was none at all; then
+   the states with a level are those that reach the sink. */
+GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
+    int32_t *path = band->queue, i, depth;
     if (!gproji_band_find_levels(band)) return false;
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
-        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        while (band->level[2 * i] >= 0 && (depth = gproji_band_find_path(band, 2 * i)) >= 0)
-            gproji_band_push(band, depth);
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE) || band->level[2 * i] < 0) continue;
+        for (path[0] = 2 * i, depth = 0; depth >= 0;) {
+            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
+            if (next == s) { /* at the sink: begin again */
+                gproji_band_push(band, depth);
+                depth = 0;
+            } else if (next >= 0) {
+                path[++depth] = next;
+            } else {
+                band->level[path[depth--]] = -1;
+            }
+        }
     }
     return true;
 }
@@ -4988,7 +4707,7 @@ GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned c
     return tail + 1;
 }
 
-/* Marks what the states in the queue reach. */
+/* Marks all states reachable from the `tail` ones in the queue. */
 GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
     int32_t head = 0, c;
     while (head < tail) {
@@ -5005,101 +4724,207 @@ GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigne
     }
 }
 
-/* Marks for the cuts next to the source, to the sink and to the threshold. Returns how many cuts there are: 1 when all are
-   one. */
-GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *cut) {
+/* -- the smallest separator in a band -- */
+
+/* Lists the arcs of band node i from number e on. Those to higher coordinates come first, the highest before others: a
+   search then goes ahead first, and leaves nodes free for other paths. Returns the end of the arcs. */
+GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordinate, int32_t low, int32_t i,
+                                            int32_t e) {
     gproji_band *band = &nd->band;
-    int32_t i, tail = 0, states = 2 * band->nodes, open = 0;
-    for (i = 0; i < states; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+    const int32_t v = band->id[i], *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
+    int32_t back = e + nd->here.inner[v], stop = back, k;
+    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
+    band->start[i] = e;
+    band->ends[i] = 0;
+    for (; list < end; ++list) {
+        int32_t u = nd->number[*list];
+        if (u < 0) {
+            band->ends[i] |= coordinate[*list] < low ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
+        } else if (coordinate[*list] > coordinate[v]) {
+            for (k = e++; few && k > band->start[i] && coordinate[band->id[band->to[k - 1]]] < coordinate[*list]; --k)
+                band->to[k] = band->to[k - 1];
+            band->to[k] = u;
+        } else {
+            band->to[--back] = u; /* backward arcs fill the node's room from its end */
+        }
+    }
+    band->ahead[i] = e;
+    while (back < stop) band->to[e++] = band->to[back++];
+    return e;
+}
+
+/* The capacity of a weight: in units of the weights' common divisor, or, if these are many, of a part of the largest
+   weight. */
+GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
+/* Builds the network for the band of coordinates from[0]..from[1]-1. False when there is no memory, or when arcs are more
+   than their type can count. */
+GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
+    gproji_band *band = &nd->band;
+    int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
+    int64_t arcs = 0, units = 0, n;
+    /* 1. Find its nodes, and the greatest common divisor of their weights. Nodes below the band belong to it if they are
+       next to nodes above it. */
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        int32_t p = cut->coordinate[i], a = nd->here.weight[i], b = divisor, rest;
+        bool inside = p >= from[0] && p < from[1];
+        nd->number[i] = -1;
+        if (p < from[0] && p >= from[0] - cut->jump)
+            for (; list < end && !inside; ++list) inside = cut->coordinate[*list] >= from[1];
+        if (!inside) continue;
+        nd->number[i] = count;
+        nd->queue[count++] = i;
+        arcs += nd->here.inner[i];
+        largest = gproji_max(largest, a);
+        if (a == b) continue;
+        for (; b > 0; a = b, b = rest) rest = a % b;
+        divisor = a;
+    }
+    for (i = 0; i < count; ++i) units += gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
+    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    /* 2. Lay the arrays out in one block, which serves all bands. */
+    n = count;
+    if (!gproji_reserve(nd->heap, &band->block, &band->block_size,
+                        (size_t)(11 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
+        nd->failed = true;
+        return false;
+    }
+    at = (int32_t *)band->block;
+    band->id = at, at += n;
+    band->start = at, at += n + 1;
+    band->unit = at, at += n + 1;
+    band->ahead = at, at += n;
+    band->load = at, at += n;
+    band->level = at, at += 2 * n;
+    band->turn = at, at += 2 * n;
+    band->queue = at, at += 2 * n;
+    band->to = at, at += arcs;
+    band->origin = at, at += units;
+    band->ends = (unsigned char *)at;
+    band->mark = band->ends + n;
+    /* 3. Fill in nodes, capacities and arcs. */
+    band->nodes = count;
+    memcpy(band->id, nd->queue, (size_t)count * sizeof(int32_t));
+    for (i = 0; i < count; ++i) {
+        band->load[i] = 0;
+        band->unit[i] = u;
+        u += gproji_band_capacity(nd->here.weight[band->id[i]], divisor, largest);
+        e = gproji_nd_band_arcs(nd, cut->coordinate, from[0], i, e);
+    }
+    band->start[count] = e;
+    band->unit[count] = u;
+    return true;
+}
+
+/* The side of a node by a minimum cut. In the band: 1 unless the cut's lower side reaches the node's entry, else
+   separator unless it reaches the exit. */
+GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t high, int32_t i,
+                                       unsigned char mark) {
+    const int32_t k = nd->number[i];
+    bool in, out;
+    if (k < 0) return cut->coordinate[i] >= high;
+    in = (nd->band.mark[2 * k] & mark) != 0, out = (nd->band.mark[2 * k + 1] & mark) != 0;
+    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
+    return out ? 0 : in ? 2 : 1;
+}
+
+/* Estimates the cost of the part if one of the minimum cuts divides it. */
+GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                         unsigned char mark) {
+    double weight[3] = {0, 0, 0}, beside[2] = {0, 0};
+    const gproji_nd_halo *halo = &nd->halo;
+    int32_t i, k;
+    for (i = 0; i < from[0]; ++i) weight[0] += cut->sum[i];
+    for (i = from[1]; i < cut->range; ++i) weight[1] += cut->sum[i];
+    for (i = 0; i < nd->band.nodes; ++i) {
+        int32_t v = nd->band.id[i], w = nd->here.weight[v];
+        weight[gproji_nd_side(nd, cut, from[1], v, mark)] += w;
+        if (cut->coordinate[v] < from[0]) weight[0] -= w; /* counted among those below */
+    }
+    for (k = 0; k < halo->count; ++k) halo->least[k] = 0;
+    for (k = 0; k < halo->boundaries; ++k) {
+        int32_t v = halo->boundary[k], side = gproji_nd_side(nd, cut, from[1], v, mark);
+        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
+        if (side == 2) continue;
+        for (; list < end; ++list) halo->least[*list] |= 1 << side;
+    }
+    for (k = 0; k < halo->count; ++k) {
+        if (halo->least[k] & 1) beside[0] += nd->graph->weight[halo->name[k]];
+        if (halo->least[k] & 2) beside[1] += nd->graph->weight[halo->name[k]];
+    }
+    return gproji_nd_cost(nd, weight[0], weight[1], weight[2], beside);
+}
+
+/* Finds the separator of a cut and writes `side`. Returns the cost; HUGE_VAL if there is no separator, or no memory. */
+GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut, unsigned char *side) {
+    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
+    gproji_band *band = &nd->band;
+    int32_t from[2], i, tail = 0, open = 0, rounds = 0, use = 0;
+    double most = gproji_fmin(12.0 * cut->separator, 0.3 * nd->weight), inside = 0, below = 0, above, best;
+    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part's; about a quarter
+       of the weight stays outside on each side. */
+    from[0] = cut->at > 1 ? cut->at - 1 : cut->at, from[1] = cut->at < cut->range - 1 ? cut->at + 1 : cut->at;
+    for (i = 0; i < from[0]; ++i) below += cut->sum[i];
+    for (; i < from[1]; ++i) inside += cut->sum[i];
+    above = nd->weight - below - inside;
+    for (;;) {
+        bool down = below > above;
+        int32_t more;
+        if (down ? from[0] <= 1 : from[1] >= cut->range - 1) break;
+        more = cut->sum[down ? from[0] - 1 : from[1]];
+        if (inside + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
+        inside += more;
+        if (down)
+            below -= more, --from[0];
+        else
+            above -= more, ++from[1];
+    }
+    /* 2. Maximum flow. */
+    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
+    gproji_band_ascend(band);
+    while (gproji_band_augment(band))
+        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
+    /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is reached
+       from the source or reaches the sink. */
+    for (i = 0; i < 2 * band->nodes; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
     for (i = 0; i < band->nodes; ++i)
         if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
     gproji_band_spread(band, tail, GPROJI_BAND_SOURCE);
-    for (i = tail = 0; i < states; ++i) {
-        bool below = nd->best_position[band->id[i >> 1]] < cut->at;
+    for (i = tail = 0; i < 2 * band->nodes; ++i) {
+        bool lower = cut->coordinate[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
-        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (below && !band->mark[i])) {
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i])) {
             band->mark[i] |= GPROJI_BAND_MIDDLE;
             band->queue[tail++] = i;
         }
     }
     if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
-    return open > 0 ? 3 : 1;
-}
-
-/* The side of a band node by one of the cuts: above when the lower side does not reach its entry, separator when it does
-   not reach its exit. */
-GPROJI_INTERNAL int32_t gproji_band_side(const gproji_band *band, int32_t i, unsigned char mark) {
-    bool in = (band->mark[2 * i] & mark) != 0, out = (band->mark[2 * i + 1] & mark) != 0;
-    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
-    return out ? 0 : in ? 2 : 1;
-}
-
-/* The side of any node of the part. */
-GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const int32_t from[2], int32_t i, unsigned char mark) {
-    if (nd->number[i] >= 0) return gproji_band_side(&nd->band, nd->number[i], mark);
-    return nd->best_position[i] >= from[1];
-}
-
-/* What the part costs when cut there. */
-GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                         unsigned char mark) {
-    double weight[3] = {0, 0, 0}, halo[2] = {0, 0};
-    const gproji_band *band = &nd->band;
-    int32_t i, k;
-    for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
-    for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
-    for (i = 0; i < band->nodes; ++i) {
-        int32_t w = nd->here.weight[band->id[i]];
-        weight[gproji_band_side(band, i, mark)] += w;
-        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= w; /* counted among those below */
-    }
-    for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
-    for (k = 0; k < nd->rims; ++k) {
-        int32_t v = nd->rim[k], side = gproji_nd_side(nd, from, v, mark);
-        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
-        if (side == 2) continue;
-        for (; list < end; ++list) nd->halo_least[*list] |= 1 << side;
-    }
-    for (k = 0; k < nd->halos; ++k) {
-        if (nd->halo_least[k] & 1) halo[0] += nd->graph->weight[nd->halo[k]];
-        if (nd->halo_least[k] & 2) halo[1] += nd->graph->weight[nd->halo[k]];
-    }
-    return gproji_nd_cost(nd, weight, halo);
-}
-
-/* Finds the separator of a cut: `side`. Returns what the part then costs; HUGE_VAL where there is none, or no memory. */
-GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
-    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
-    int32_t from[2], i, cuts, rounds = 0, use = 0;
-    double best;
-    gproji_nd_band_limits(nd, cut, from);
-    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
-    gproji_band_ascend(&nd->band);
-    while (gproji_band_round(&nd->band))
-        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
-    cuts = gproji_nd_mark_cuts(nd, cut);
+    /* 4. Take the cheapest. */
     best = gproji_nd_measure(nd, cut, from, marks[0]);
-    for (i = 1; i < cuts; ++i) {
+    for (i = 1; i < (open > 0 ? 3 : 1); ++i) {
         double cost = gproji_nd_measure(nd, cut, from, marks[i]);
         if (cost < best) best = cost, use = i;
     }
-    for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
+    for (i = 0; i < nd->nodes; ++i) side[i] = (unsigned char)gproji_nd_side(nd, cut, from[1], i, marks[use]);
     return best;
 }
 
 /* -- parts that are not cut any more -- */
 
-/* A small part: sets of neighbours as bits; first those of its own nodes, then of its halo's. `plane` p has the nodes
-   whose weights contain unit[p]. */
+/* A small part: sets of neighbours as bits; in the first word those of its own nodes, then of its halo's. A plane has
+   the nodes whose weights contain a power of two, so that counting bits weighs a set. */
 typedef struct gproji_nd_leaf {
     int32_t words, planes;
     uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
     uint64_t plane[32][GPROJI_ND_WORDS];
-    int32_t unit[32];
-    int64_t key[GPROJI_ND_LEAF]; /* of each node: its degree, and behind it its number */
+    int32_t unit[32]; /* planes: the power of two, or the sum of several with equal planes */
 } gproji_nd_leaf;
 
-/* How many bits are set. */
+/* Counts the bits that are set. */
 GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     x -= (x >> 1) & 0x5555555555555555u;
     x = (x & 0x3333333333333333u) + ((x >> 2) & 0x3333333333333333u);
@@ -5107,9 +4932,7 @@ GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     return (int32_t)((x * 0x0101010101010101u) >> 56);
 }
 
-/* The number of the lowest bit of x > 0. */
-GPROJI_INLINE int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
-
+/* The key of node i: its degree and, behind it, its index, so that the least key belongs to the pivot. */
 GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i) {
     const uint64_t *set = leaf->set[i];
     int32_t degree = 0, p, k;
@@ -5121,177 +4944,200 @@ GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i
     return (int64_t)degree * GPROJI_ND_LEAF + i;
 }
 
-/* The planes of the weights; equal ones are one. */
-GPROJI_INTERNAL void gproji_nd_leaf_weigh(const gproji_nd *nd, gproji_nd_leaf *leaf, int32_t halos) {
-    int32_t bit, i, all = 0, p = 0;
-    for (i = 0; i < nd->nodes; ++i) all |= nd->here.weight[i];
-    for (i = 0; i < halos; ++i) all |= nd->graph->weight[nd->halo[i]];
-    for (bit = 0; bit < 31; ++bit) {
-        uint64_t *plane = leaf->plane[p];
-        if (!(all >> bit & 1)) continue;
-        memset(plane, 0, sizeof leaf->plane[0]);
-        for (i = 0; i < nd->nodes; ++i) plane[0] |= (uint64_t)(nd->here.weight[i] >> bit & 1) << i;
-        for (i = 0; i < halos; ++i)
-            plane[1 + i / 64] |= (uint64_t)(nd->graph->weight[nd->halo[i]] >> bit & 1) << i % 64;
-        if (p > 0 && memcmp(plane, leaf->plane[p - 1], sizeof leaf->plane[0]) == 0)
-            leaf->unit[p - 1] += (int32_t)1 << bit;
-        else
-            leaf->unit[p++] = (int32_t)1 << bit;
-    }
-    leaf->planes = p;
-}
-
-GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *leaf) {
-    int32_t i, halos = gproji_min(nd->halos, GPROJI_ND_HALO);
-    leaf->words = 1 + (halos + 63) / 64;
-    gproji_nd_leaf_weigh(nd, leaf, halos);
-    memset(leaf->set, 0, (size_t)nd->nodes * sizeof leaf->set[0]);
-    for (i = 0; i < nd->nodes; ++i) {
-        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
-        uint64_t *set = leaf->set[i];
-        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
-        for (end += nd->here.outer[i]; list < end; ++list)
-            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
-        leaf->key[i] = gproji_nd_leaf_key(leaf, i);
-    }
-}
-
 /* Orders a small part by minimum degree. */
-GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
+GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
+    const gproji_nd_nodes *here = &nd->here;
+    const int32_t *weight = nd->graph->weight, *halo = nd->halo.name;
+    int32_t nodes = nd->nodes, halos = gproji_min(nd->halo.count, GPROJI_ND_HALO), bit, i, k, all = 0, p = 0;
+    uint64_t alive = ~(uint64_t)0 >> (64 - nodes), todo;
+    int64_t key[GPROJI_ND_LEAF];
     gproji_nd_leaf leaf;
-    uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
-    int32_t nodes = nd->nodes, i, k;
-    gproji_nd_leaf_start(nd, &leaf);
+    /* 1. The planes of the weights. */
+    for (i = 0; i < nodes; ++i) all |= here->weight[i];
+    for (i = 0; i < halos; ++i) all |= weight[halo[i]];
+    for (bit = 0; bit < 31; ++bit) {
+        uint64_t *plane = leaf.plane[p];
+        if (!(all >> bit & 1)) continue;
+        memset(plane, 0, sizeof leaf.plane[0]);
+        for (i = 0; i < nodes; ++i) plane[0] |= (uint64_t)(here->weight[i] >> bit & 1) << i;
+        for (i = 0; i < halos; ++i) plane[1 + i / 64] |= (uint64_t)(weight[halo[i]] >> bit & 1) << i % 64;
+        if (p > 0 && memcmp(plane, leaf.plane[p - 1], sizeof leaf.plane[0]) == 0)
+            leaf.unit[p - 1] += (int32_t)1 << bit; /* the planes of weights 0 and 3, say, are one */
+        else
+            leaf.unit[p++] = (int32_t)1 << bit;
+    }
+    leaf.planes = p;
+    /* 2. The sets of neighbours. */
+    leaf.words = 1 + (halos + 63) / 64;
+    memset(leaf.set, 0, (size_t)nodes * sizeof leaf.set[0]);
+    for (i = 0; i < nodes; ++i) {
+        const int32_t *list = here->adjacent + here->from[i], *end = list + here->inner[i];
+        uint64_t *set = leaf.set[i];
+        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
+        for (end += here->outer[i]; list < end; ++list)
+            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
+        key[i] = gproji_nd_leaf_key(&leaf, i);
+    }
+    /* 3. Eliminate the node with the least key; its neighbours become adjacent to each other. */
     while (alive) {
         int64_t least = INT64_MAX;
         int32_t pivot;
-        for (i = 0; i < nodes; ++i) least = leaf.key[i] < least ? leaf.key[i] : least;
+        for (i = 0; i < nodes; ++i) least = key[i] < least ? key[i] : least;
         pivot = (int32_t)(least % GPROJI_ND_LEAF);
-        nd->order[place++] = nd->here.name[pivot];
-        leaf.key[pivot] = INT64_MAX;
+        nd->order[position++] = here->name[pivot];
+        key[pivot] = INT64_MAX;
         alive &= ~((uint64_t)1 << pivot);
         for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
-            uint64_t *set;
-            i = gproji_lowest_bit(todo);
-            set = leaf.set[i];
-            for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
-            set[0] &= alive & ~((uint64_t)1 << i);
-            leaf.key[i] = gproji_nd_leaf_key(&leaf, i);
+            i = gproji_bits((todo & (~todo + 1)) - 1); /* the index of the lowest bit */
+            for (k = 0; k < leaf.words; ++k) leaf.set[i][k] |= leaf.set[pivot][k];
+            leaf.set[i][0] &= alive & ~((uint64_t)1 << i);
+            key[i] = gproji_nd_leaf_key(&leaf, i);
         }
     }
 }
 
 /* Orders a part without a good separator by approximate minimum degree. */
-GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
+GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t position) {
     const gproji_nd_nodes *here = &nd->here;
-    int64_t *start, to = 0;
+    int64_t *start, arcs = 0;
     int32_t *adjacent, *order, i, k;
     gproji_graph graph;
     gproji_pool pool;
     gproji_pool_start(&pool, nd->heap);
-    for (i = 0; i < nd->nodes; ++i) to += here->inner[i];
+    for (i = 0; i < nd->nodes; ++i) arcs += here->inner[i];
     start = (int64_t *)gproji_pool_take(&pool, (int64_t)nd->nodes + 1, sizeof(int64_t));
-    adjacent = (int32_t *)gproji_pool_take(&pool, to, sizeof(int32_t));
+    adjacent = (int32_t *)gproji_pool_take(&pool, arcs, sizeof(int32_t));
     order = (int32_t *)gproji_pool_take(&pool, nd->nodes, sizeof(int32_t));
-    if (start && adjacent && order) {
-        for (i = 0, to = 0; i < nd->nodes; ++i) {
-            start[i] = to;
-            for (k = 0; k < here->inner[i]; ++k) adjacent[to++] = here->adjacent[here->from[i] + k];
+    nd->failed = nd->failed || !start || !adjacent || !order;
+    if (!nd->failed) {
+        for (i = 0, arcs = 0; i < nd->nodes; ++i) {
+            start[i] = arcs;
+            for (k = 0; k < here->inner[i]; ++k) adjacent[arcs++] = here->adjacent[here->from[i] + k];
         }
-        start[nd->nodes] = to;
+        start[nd->nodes] = arcs;
         graph.nodes = nd->nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = here->weight;
-        if (!gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL)) nd->failed = true;
-        for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[place + i] = here->name[order[i]];
-    } else {
-        nd->failed = true;
+        nd->failed = !gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL);
     }
+    for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[position + i] = here->name[order[i]];
     gproji_pool_give_all(&pool);
 }
 
-/* Tries all directions; a cut that beats `best` takes its place. */
-GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t axis;
-    gproji_nd_sample(nd);
-    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
-}
+/* -- dissection -- */
 
-/* Finds the best cut of the part at work by coordinates of its own. Where that of the largest part, on which most depends,
-   is far from the middle, other coordinates are tried if it is closed: then some nodes are better starts than others.
-   Returns how many nodes are connected; when these are not all, there is no cut. */
+/* Finds new coordinates for the part at work and the best cut by them. Returns the number of nodes connected to the first
+   one; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && nd->openness <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
-    memset(best, 0, sizeof *best);
-    best->cost = HUGE_VAL;
+    int32_t *const *d = nd->distance, *value = nd->number, starts = 1, k, i, root, reached = 0;
+    /* A closed mesh has no corners, and some nodes are better starts than others. Most depends on the largest part. */
+    if (nd->nodes > nd->kept / 2 && nd->openness <= 1) starts = GPROJI_ND_STARTS;
     for (k = 0; k < starts; ++k) {
-        reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
+        /* 1. a, on the boundary after a first search (later starts are taken as they are), and b; then c: of nodes as far
+           from both, one in the middle; then d. */
+        root = (int32_t)((int64_t)nd->nodes * k / starts);
+        reached = gproji_nd_search(nd, root, d[0], 0);
         if (reached < nd->nodes) break;
+        if (root == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0], 0);
+        gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1], 0);
+        for (i = 0; i < nd->nodes; ++i)
+            value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
+        gproji_nd_search(nd, gproji_nd_most(nd, value), d[2], 0);
+        for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
+        gproji_nd_search(nd, gproji_nd_most(nd, value), d[3], 0);
+        for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
+        nd->here.x = d[0], nd->here.y = d[1];
+        /* 2. Cuts; good enough near the middle. */
         gproji_nd_try_all(nd, best);
         if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
 
-/* The par of a part's sides. own, inherited: what it costs when cut by its own coordinates, and by those that it had, if
-   any. 0: they need coordinates of their own, as do the first parts of meshes that are closed, or may be, and those of
-   solids, whose separators are large: there two coordinates do not tell all nodes apart. -1: so does all that comes of
-   them, as its own coordinates were better. */
-GPROJI_INTERNAL double gproji_nd_next_par(const gproji_nd *nd, double par, double own, double inherited) {
-    double ratio = gproji_coarsely(gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight));
-    if (par < 0 || (par > 0 && own < inherited)) return -1;
-    if (nd->openness < 12 && nd->nodes >= nd->kept / 8) return 0;
-    return ratio < 2 ? ratio : 0;
-}
-
-/* Finds a cut of the part at work by the coordinates that it has: `side`. Returns what it costs. */
-GPROJI_INTERNAL double gproji_nd_cut_again(gproji_nd *nd) {
-    gproji_nd_cut cut;
-    memset(&cut, 0, sizeof cut);
-    cut.cost = HUGE_VAL;
-    gproji_nd_try_all(nd, &cut);
-    return cut.cost < HUGE_VAL ? gproji_nd_separate(nd, &cut) : HUGE_VAL;
-}
-
-GPROJI_INTERNAL void gproji_nd_swap_sides(gproji_nd *nd) {
-    unsigned char *side = nd->side;
-    nd->side = nd->other_side, nd->other_side = side;
-}
-
-/* Cuts the part at work, or orders it where it has no good cut. */
+/* Cuts the part at work, or orders it if it has no good cut. */
 GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *part) {
-    int32_t *x = nd->here.x, *y = nd->here.y, reached;
-    double own = HUGE_VAL, inherited = HUGE_VAL, par = part->par;
-    gproji_nd_cut cut;
-    if (par > 0) {
-        inherited = gproji_nd_cut_again(nd);
-        if (inherited < gproji_coarsely(1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight))) {
-            gproji_nd_divide(nd, part, par);
+    const gproji_nd_cut none = {HUGE_VAL, 0, 0, 0, 0, 0, NULL, NULL};
+    gproji_nd_cut cut = none;
+    int32_t *x = nd->here.x, *y = nd->here.y, reached, root = 0, before, k;
+    double rest = gproji_nd_rest(nd, nd->weight, nd->halo.weight), own = HUGE_VAL, inherited = HUGE_VAL, ratio;
+    double expected = part->expected;
+    unsigned char *side = nd->side[1];
+    /* 1. By inherited coordinates, unless new ones are due: good enough if not much dearer than expected. */
+    if (expected > 0) {
+        gproji_nd_try_all(nd, &cut);
+        if (cut.cost < HUGE_VAL) inherited = gproji_nd_separate(nd, &cut, nd->side[0]);
+        if (inherited < gproji_coarsely(1.1 * expected * rest)) {
+            gproji_nd_divide(nd, part, nd->side[0], expected);
             return;
         }
-        gproji_nd_swap_sides(nd);
+        cut = none;
     }
     reached = gproji_nd_find_cut(nd, &cut);
+    /* 2. Not connected: some components against the others, up to half of the nodes, but at least one on each side. */
     if (reached < nd->nodes) {
-        gproji_nd_split_components(nd, reached);
-        gproji_nd_divide(nd, part, gproji_fmin(par, 0));
+        for (before = reached; reached < nd->nodes - reached;) {
+            while (nd->distance[0][root] >= 0) ++root;
+            before = reached;
+            reached = gproji_nd_search(nd, root, nd->distance[0], reached);
+        }
+        if (reached == nd->nodes) reached = before;
+        memset(side, 1, (size_t)nd->nodes);
+        for (k = 0; k < reached; ++k) side[nd->queue[k]] = 0;
+        gproji_nd_divide(nd, part, side, gproji_fmin(expected, 0));
         return;
     }
-    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut);
-    if (inherited <= own && inherited < HUGE_VAL) {
-        gproji_nd_swap_sides(nd);
-        nd->here.x = x, nd->here.y = y;
+    /* 3. The better cut of the two, if any. */
+    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut, side);
+    if (inherited >= HUGE_VAL && own >= HUGE_VAL) {
+        gproji_nd_order_whole(nd, part->position);
+        return;
     }
-    if (own < HUGE_VAL || inherited < HUGE_VAL)
-        gproji_nd_divide(nd, part, gproji_nd_next_par(nd, par, own, inherited));
+    if (inherited <= own) side = nd->side[0], nd->here.x = x, nd->here.y = y;
+    /* 4. How the sides are cut. New coordinates that were better stay better: -1, also for all parts of the sides. New
+       ones are due, 0, in first parts of meshes that are closed, or may be, and of solids, whose separators are large:
+       two coordinates do not tell all of their nodes apart. */
+    ratio = gproji_coarsely(gproji_fmin(own, inherited) / rest);
+    if (expected < 0 || (expected > 0 && own < inherited))
+        expected = -1;
+    else if (nd->openness < 12 && nd->nodes >= nd->kept / 8)
+        expected = 0;
     else
-        gproji_nd_order_whole(nd, part->place);
+        expected = ratio < 2 ? ratio : 0;
+    gproji_nd_divide(nd, part, side, expected);
 }
 
-/* Orders the part on top of the stack or cuts it. */
+/* Orders the part on top of the stack, or cuts it. */
 GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
-    gproji_nd_part part = nd->stack[--nd->parts];
-    gproji_nd_enter(nd, &part);
+    const gproji_nd_part part = nd->stack[--nd->parts];
+    const gproji_nd_nodes *c = &nd->copy[part.copy];
+    gproji_nd_nodes *here = &nd->here;
+    gproji_nd_halo *halo = &nd->halo;
+    double weight = 0;
+    int32_t i, k;
+    here->name = c->name + part.first, here->weight = c->weight + part.first, here->from = c->from + part.first;
+    here->inner = c->inner + part.first, here->outer = c->outer + part.first;
+    here->x = c->x + part.first, here->y = c->y + part.first;
+    here->adjacent = c->adjacent;
+    nd->nodes = part.nodes;
+    /* The halo: names give way to indices. */
+    halo->boundaries = halo->count = 0;
+    halo->weight = 0;
+    for (i = 0; i < part.nodes; ++i) {
+        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
+        weight += here->weight[i];
+        if (here->outer[i] == 0) continue;
+        halo->boundary[halo->boundaries++] = i;
+        for (k = 0; k < here->outer[i]; ++k) {
+            int32_t name = list[k], at = halo->index[name];
+            if (at >= halo->count || halo->name[at] != name) {
+                at = halo->index[name] = halo->count++;
+                halo->name[at] = name;
+                halo->weight += nd->graph->weight[name];
+            }
+            list[k] = at;
+        }
+    }
+    nd->weight = weight;
     if (part.nodes <= GPROJI_ND_LEAF)
-        gproji_nd_order_leaf(nd, part.place);
+        gproji_nd_order_leaf(nd, part.position);
     else
         gproji_nd_cut_part(nd, &part);
 }
@@ -5299,6 +5145,8 @@ GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
 /* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
    than 2^29. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+    int32_t a, b, k, count = 0;
+    int64_t e;
     gproji_pool pool;
     gproji_nd nd;
     gproji_pool_start(&pool, heap);
@@ -5306,12 +5154,25 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
     nd.heap = heap;
     nd.graph = graph;
     nd.failed = !gproji_nd_take(&nd, &pool);
-    if (!nd.failed) {
-        gproji_nd_sort_out(&nd, total);
-        gproji_nd_begin(&nd);
-    }
+    if (!nd.failed) gproji_nd_begin(&nd, total);
     while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
-    if (!nd.failed) gproji_nd_put_back(&nd, order);
+    if (!nd.failed) {
+        /* Dominated nodes go right before the first node that dominates them, dense ones last. */
+        for (b = 0; b < graph->nodes; ++b) nd.number[b] = -1;
+        for (k = 0; k < nd.kept; ++k) {
+            b = nd.order[k];
+            for (e = graph->start[b]; nd.dominated > 0 && e < graph->start[b + 1]; ++e) {
+                a = graph->adjacent[e];
+                if (nd.kind[a] != GPROJI_ND_DOMINATED || !gproji_nd_dominates(graph, nd.number, b, a)) continue;
+                nd.kind[a] = GPROJI_ND_PLACED;
+                order[count++] = a;
+            }
+            order[count++] = b;
+        }
+        for (b = 0; b < graph->nodes; ++b)
+            if (nd.kind[b] == GPROJI_ND_DENSE) order[count++] = b;
+        GPROJ_ASSERT(count == graph->nodes);
+    }
     gproji_give(heap, nd.band.block, nd.band.block_size, 1);
     gproji_pool_give_all(&pool);
     return !nd.failed;
