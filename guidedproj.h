@@ -3546,11 +3546,14 @@ GPROJI_INTERNAL void gproji_small_solve(const double *m, int32_t n, int32_t stri
 /* ============================================================================================================
    >>ordering   The order of elimination: graphs of nodes, condensation, minimum degree. Uses platform, memory.
 
-   A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
-   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
-   ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
-   mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
-   are broken by the order in which nodes reach a degree list. */
+   A node is a group of variables that stay together, its weight their number; degrees and counts are in variables.
+   The approximate minimum degree ordering follows Amestoy, Davis, Duff (1996). Elimination is kept as a quotient graph:
+   a pivot p turns into an element, a clique of all variables in L_p = (A_p u union of L_e over its elements e) \ p. The
+   elements are absorbed, also others inside L_p (aggressive absorption). The degree of variable i is bounded by
+     |A_i| + |L_p \ i| + sum over its other elements of |L_e \ L_p|,
+   the last from one scan over the elements. Variables without neighbours outside L_p go with the pivot (mass
+   elimination); those with equal lists merge into supervariables, found by hashing (Ashcraft 1995).
+   Invariant: the order depends on the graph alone; ties go to the variable that entered a degree list last. */
 
 /* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
    a neighbour of each of them. */
@@ -3561,42 +3564,37 @@ typedef struct gproji_graph {
     const int32_t *weight;
 } gproji_graph;
 
-/* sum over the columns of a front, or of a node, of (column count)^2 */
+/* Sums (column count)^2 over the columns of a front, or of a node. */
 GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
     return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
 }
 
-/* The state of the elimination. Each of the graph's nodes is, at any time, one of
-     variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; its list in `space` has first
-                              `elements[i]` elements, then variables, `length[i]` altogether
-     element   (kind ELEMENT) a pivot; its list holds the variables of its column of L that are not yet eliminated
-     gone      (kind GONE)    a variable absorbed by another one or by an element, or an element absorbed by a later one
-     dense     (kind DENSE)   put last, never looked at
-   While a new element is formed, the weight of its variables is negated. */
+/* The kinds of a node during elimination. The list of a variable has first `elements[i]` elements, then variables,
+   `length[i]` altogether. */
 enum {
-    GPROJI_AMD_VARIABLE,
-    GPROJI_AMD_ELEMENT,
-    GPROJI_AMD_GONE,
-    GPROJI_AMD_DENSE
+    GPROJI_AMD_VARIABLE, /* not yet eliminated; stands for `weight` variables, negated while in the new element */
+    GPROJI_AMD_ELEMENT,  /* a pivot; its list: the variables in its column of L that are not yet eliminated */
+    GPROJI_AMD_GONE,     /* absorbed: a variable by another one or by an element, or an element by a later one */
+    GPROJI_AMD_DENSE     /* put last, never looked at */
 };
 
 typedef struct gproji_amd {
     int32_t nodes;
-    int32_t total;  /* weight of all nodes that are not dense */
-    int32_t left;   /* of it, not yet eliminated */
-    int32_t lowest; /* no variable has a smaller degree */
-    double flops; /* of what is eliminated: sum of (column count)^2; the dense nodes are taken for neighbours of all */
-    int64_t free; /* space[free..size-1] is unused */
-    int64_t size;
+    int32_t total;       /* weight of all nodes that are not dense */
+    int32_t left;        /* of it, not yet eliminated */
+    int32_t lowest;      /* no variable has a smaller degree */
+    double flops;        /* so far: sum of (column count)^2, with dense nodes in all columns */
+    int64_t free;        /* space[free..size-1] is unused */
+    int64_t size;        /* of the space */
     int64_t stamp;       /* marks below it are old */
     int32_t *space;      /* size: all lists */
     int64_t *list;       /* nodes: where the list begins */
     int32_t *length;     /* nodes */
     int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
     int32_t *weight;     /* nodes */
-    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
+    int32_t *degree;     /* nodes: a variable's bound on its external degree; the weight of an element's list */
     unsigned char *kind; /* nodes */
-    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
+    int64_t *mark;       /* nodes: an element's weight outside the new one, + stamp; else marks */
     int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
     int32_t buckets;     /* total + 1 */
     int32_t *next;       /* nodes: in a degree list, in a hash list */
@@ -3624,7 +3622,7 @@ GPROJI_INTERNAL void gproji_amd_list_remove(gproji_amd *amd, int32_t i) {
         amd->head[amd->degree[i]] = after;
 }
 
-/* Node j, with all that it has absorbed, is from now on eliminated right after what `i` has absorbed. */
+/* Node i absorbs node j, which is eliminated, with all that it has absorbed, right after what i has absorbed so far. */
 GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->chain[amd->tail[i]] = j;
     amd->tail[i] = amd->tail[j];
@@ -3632,13 +3630,13 @@ GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->kind[j] = GPROJI_AMD_GONE;
 }
 
-/* Moves all living lists to the front of the space. The first entry of a list lends its place to the node's number
-   (as -1 - i), so that a sweep over the space meets the lists in their order. */
+/* Moves all lists in use to the front of the space. */
 GPROJI_INTERNAL void gproji_amd_compact(gproji_amd *amd) {
     int64_t from, to = 0;
     int32_t i, k;
     for (i = 0; i < amd->nodes; ++i) {
         if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
+        /* a list's first entry waits in list[i] while the node's number, as -1 - i, marks where the list begins */
         from = amd->list[i];
         amd->list[i] = amd->space[from];
         amd->space[from] = -1 - i;
@@ -3657,7 +3655,7 @@ GPROJI_INTERNAL void gproji_amd_compact(gproji_amd *amd) {
     amd->free = to;
 }
 
-/* Takes the variables of a list into the new element, whose list is being written at `free`. */
+/* Moves the variables of a list into the new element, whose list grows at `free`. */
 GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int32_t *from, int32_t count) {
     int32_t k;
     for (k = 0; k < count; ++k) {
@@ -3670,7 +3668,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
     }
 }
 
-/* Forms the element of a pivot: L_p = (A_p u union of L_e for all its elements e) \ p. The elements are absorbed. */
+/* Forms the element of a pivot and absorbs the elements in its list. */
 GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     int32_t k, own = amd->length[pivot], heads = amd->elements[pivot];
     int64_t needed = own - heads, begin;
@@ -3694,26 +3692,9 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     amd->elements[pivot] = 0;
 }
 
-/* For every element e that shares variables with the new one: mark[e] - stamp = weight of L_e \ L_p. */
-GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
-    const int32_t *element = amd->space + amd->list[pivot];
-    int32_t k, j;
-    amd->stamp += (int64_t)amd->total + 1;
-    for (k = 0; k < amd->length[pivot]; ++k) {
-        int32_t i = element[k], weight = -amd->weight[i];
-        const int32_t *list = amd->space + amd->list[i];
-        for (j = 0; j < amd->elements[i]; ++j) {
-            int32_t e = list[j];
-            if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
-            if (amd->mark[e] < amd->stamp) amd->mark[e] = amd->stamp + amd->degree[e];
-            amd->mark[e] -= weight;
-        }
-    }
-}
-
-/* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
-   not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
-   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
+/* Rewrites the list of variable i in the new element: the new element, the other elements, the variables outside the new
+   element. Sets the degree bound without the new element's part. Returns a hash value of the list; -1 if nothing is
+   left outside the new element. */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -3741,7 +3722,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
         list[to++] = j;
     }
     if (degree == 0) return -1;
-    /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
+    /* the new element comes first: there is room, as the pivot, or an element that it absorbed, has left the list */
     GPROJ_ASSERT(to < own);
     moved = list[heads];
     if (to > heads) list[to] = moved;
@@ -3754,24 +3735,17 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
     return (int32_t)(hash % (uint32_t)amd->nodes);
 }
 
-/* Have variables i and j the same elements and neighbours? Those of i are marked by the stamp. */
-GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j) {
-    const int32_t *list = amd->space + amd->list[j];
-    int32_t k;
-    if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
-    for (k = 1; k < amd->length[j]; ++k)
-        if (amd->mark[list[k]] != amd->stamp) return false;
-    return true;
-}
-
-/* Merges the variables of one hash list that cannot be told apart. */
+/* Merges the variables of one hash list that have the same elements and neighbours. */
 GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
     int32_t i, j, before, k;
     for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
         amd->stamp++;
         for (k = 1; k < amd->length[i]; ++k) amd->mark[amd->space[amd->list[i] + k]] = amd->stamp;
         for (before = i, j = amd->next[i]; j >= 0; j = amd->next[j]) {
-            if (gproji_amd_same(amd, i, j)) {
+            const int32_t *list = amd->space + amd->list[j]; /* begins with the new element, as that of i */
+            bool same = amd->length[i] == amd->length[j] && amd->elements[i] == amd->elements[j];
+            for (k = 1; same && k < amd->length[j]; ++k) same = amd->mark[list[k]] == amd->stamp;
+            if (same) {
                 amd->weight[i] += amd->weight[j]; /* both negative */
                 gproji_amd_absorb(amd, i, j);
                 amd->next[before] = amd->next[j];
@@ -3784,14 +3758,26 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
 
 /* Eliminates one pivot: forms its element and brings all its variables up to date. */
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
-    int32_t k, to = 0, *element;
+    int32_t j, k, to = 0, *element;
     amd->left -= amd->weight[pivot];
     gproji_amd_form_element(amd, pivot);
     element = amd->space + amd->list[pivot];
-    gproji_amd_scan(amd, pivot);
+    /* 1. Scan: mark[e] - stamp = |L_e \ L_p| for all elements e that share variables with the new one. */
+    amd->stamp += (int64_t)amd->total + 1;
+    for (k = 0; k < amd->length[pivot]; ++k) {
+        int32_t i = element[k], weight = -amd->weight[i];
+        const int32_t *list = amd->space + amd->list[i];
+        for (j = 0; j < amd->elements[i]; ++j) {
+            int32_t e = list[j];
+            if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
+            if (amd->mark[e] < amd->stamp) amd->mark[e] = amd->stamp + amd->degree[e];
+            amd->mark[e] -= weight;
+        }
+    }
+    /* 2. New lists for the variables; mass elimination. */
     for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], hash = gproji_amd_prune(amd, pivot, i);
-        if (hash < 0) { /* mass elimination */
+        if (hash < 0) {
             int32_t weight = -amd->weight[i];
             amd->left -= weight;
             amd->degree[pivot] -= weight;
@@ -3803,15 +3789,17 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         amd->next[i] = amd->hash_head[hash];
         amd->hash_head[hash] = i;
     }
+    /* 3. Supervariables. The hash lists are empty again afterwards. */
     amd->stamp += (int64_t)amd->total + 1;
-    for (k = 0; k < amd->length[pivot]; ++k) { /* supervariables; empties the hash lists */
+    for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], first;
         if (amd->weight[i] == 0) continue;
         first = amd->hash_head[amd->previous[i]];
         amd->hash_head[amd->previous[i]] = -1;
         if (first >= 0) gproji_amd_merge(amd, first);
     }
-    for (k = 0; k < amd->length[pivot]; ++k) { /* final degrees; what was absorbed leaves the element's list */
+    /* 4. Final degrees. Absorbed variables leave the element's list. */
+    for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], weight = -amd->weight[i];
         int64_t degree;
         if (weight == 0) continue;
@@ -3826,27 +3814,6 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     amd->length[pivot] = to;
     if (to == 0) amd->kind[pivot] = GPROJI_AMD_GONE;
     amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
-}
-
-GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph) {
-    int64_t n = graph->nodes;
-    amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
-    amd->space = (int32_t *)gproji_pool_take(pool, amd->size, sizeof(int32_t));
-    amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-    amd->length = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    amd->weight = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->degree = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
-    amd->head = (int32_t *)gproji_pool_take(pool, amd->buckets, sizeof(int32_t));
-    amd->next = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->previous = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->hash_head = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->tail = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->chain = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    return amd->space && amd->list && amd->length && amd->elements && amd->weight && amd->degree && amd->kind &&
-           amd->mark && amd->head && amd->next && amd->previous && amd->hash_head && amd->tail && amd->chain;
 }
 
 /* Gives all dense nodes this kind: those with more than 10 sqrt(n) variables next to them. They are put last unseen, as
@@ -3866,22 +3833,36 @@ GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total,
     }
 }
 
-/* Fills the lists with all nodes that are not dense. */
-GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
-    int32_t i;
+/* Takes memory for a graph and fills the lists with all nodes that are not dense. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph, int32_t total) {
+    int32_t **const ints[] = {&amd->length,   &amd->weight,    &amd->degree, &amd->next,
+                              &amd->previous, &amd->hash_head, &amd->tail,   &amd->chain};
+    int32_t i, n = graph->nodes;
     int64_t k;
-    gproji_mark_dense(graph, amd->buckets - 1, amd->kind, GPROJI_AMD_DENSE);
+    size_t a;
+    memset(amd, 0, sizeof *amd);
+    amd->nodes = n;
+    amd->buckets = total + 1;
     amd->stamp = 1;
-    amd->lowest = 0;
-    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
-    for (i = 0; i < amd->nodes; ++i) {
-        amd->hash_head[i] = -1;
-        amd->tail[i] = i;
-        amd->chain[i] = -1;
-        amd->weight[i] = graph->weight[i];
+    amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
+    amd->space = (int32_t *)gproji_pool_take(pool, amd->size, sizeof(int32_t));
+    amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+    amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
+    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    amd->head = (int32_t *)gproji_pool_take(pool, amd->buckets, sizeof(int32_t));
+    if (!amd->space || !amd->list || !amd->mark || !amd->elements || !amd->kind || !amd->head) return false;
+    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) {
+        *ints[a] = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+        if (!*ints[a]) return false;
     }
-    for (i = 0; i < amd->nodes; ++i) {
+    gproji_mark_dense(graph, total, amd->kind, GPROJI_AMD_DENSE);
+    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
+    for (i = 0; i < n; ++i) {
         int32_t degree = 0;
+        amd->hash_head[i] = amd->chain[i] = -1;
+        amd->tail[i] = i;
+        amd->weight[i] = graph->weight[i];
         amd->list[i] = amd->free;
         amd->length[i] = 0;
         if (amd->kind[i] == GPROJI_AMD_DENSE) continue;
@@ -3890,34 +3871,30 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
             int32_t j = graph->adjacent[k];
             if (amd->kind[j] == GPROJI_AMD_DENSE) continue;
             amd->space[amd->free++] = j;
-            degree += amd->weight[j];
+            degree += graph->weight[j];
         }
         amd->length[i] = (int32_t)(amd->free - amd->list[i]);
         amd->degree[i] = degree;
     }
     amd->left = amd->total;
-    for (i = amd->nodes - 1; i >= 0; --i)
+    for (i = n - 1; i >= 0; --i)
         if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
     amd->lowest = 0;
+    return true;
 }
 
-/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, how many flops a factorisation
-   takes at most: exactly so many without dense nodes. `total` is the weight of all nodes. False when there is no
-   memory. */
+/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops of a factorisation: an
+   upper bound, exact without dense nodes. `total` is the weight of all nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                       double *flops) {
     gproji_pool pool;
     gproji_amd amd;
     int32_t i, count = 0;
     gproji_pool_start(&pool, heap);
-    memset(&amd, 0, sizeof amd);
-    amd.nodes = graph->nodes;
-    amd.buckets = total + 1;
-    if (!gproji_amd_take(&amd, &pool, graph)) {
+    if (!gproji_amd_start(&amd, &pool, graph, total)) {
         gproji_pool_give_all(&pool);
         return false;
     }
-    gproji_amd_start(&amd, graph);
     while (amd.left > 0) {
         int32_t pivot, member;
         while (amd.head[amd.lowest] < 0) amd.lowest++;
@@ -3937,7 +3914,7 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
 /* -- condensation -- */
 
 enum {
-    GPROJI_CONDENSED_DEGREE = 21 /* weight of the neighbours of a node that is condensed */
+    GPROJI_CONDENSED_DEGREE = 21 /* largest weight of a condensed node's neighbours */
 };
 
 /* A graph without some of its nodes. */
@@ -3946,11 +3923,11 @@ typedef struct gproji_condensation {
     gproji_graph rest;
     int32_t count;   /* nodes that are eliminated first */
     int32_t *first;  /* all nodes: those, then the others, as `rest` numbers them */
-    int32_t *number; /* all nodes: place in `first` */
+    int32_t *number; /* all nodes: index in `first` */
 } gproji_condensation;
 
-/* Chooses nodes with at least 3 light neighbours, no two of them adjacent, the lightest first: the normals of faces,
-   say. (Chains and trees are left to the minimum degree ordering, which orders them without fill.) */
+/* Chooses an independent set of nodes with at least 3 neighbours, all light, the lightest first: the normals of faces,
+   say. Chains and trees are left to the minimum degree ordering, which orders them without fill. */
 GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
     int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
     int64_t e;
@@ -3968,6 +3945,7 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
         degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
         start[degree[i] + 1]++;
     }
+    /* sort by degree, by counting */
     for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start[d + 1] += start[d];
     for (i = 0; i < n; ++i) sorted[start[degree[i]]++] = i;
     for (k = 0; k < n && degree[sorted[k]] <= GPROJI_CONDENSED_DEGREE; ++k) {
@@ -3983,37 +3961,18 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     return true;
 }
 
-/* Writes the neighbours of node i in the graph that is left to `to` and returns their number; mark: of all nodes. */
-GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x, const gproji_graph *graph, int32_t i,
-                                                    int32_t *mark, int32_t *to) {
-    int64_t e, f, count = 0;
-    mark[i] = i;
-    for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
-        int32_t j = graph->adjacent[e];
-        int64_t from = x->number[j] < x->count ? graph->start[j] : e,
-                end = x->number[j] < x->count ? graph->start[j + 1] : e + 1;
-        for (f = from; f < end; ++f) { /* those of a condensed node, or the node itself */
-            int32_t other = graph->adjacent[f];
-            if (mark[other] == i) continue;
-            mark[other] = i;
-            to[count++] = x->number[other] - x->count;
-        }
-    }
-    return count;
-}
-
-/* The graph without a first set of nodes, whose elimination is taken into account: the neighbours of each of them have
-   become adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). What remains is half the size
-   where normals have gone, and shows the mesh. False when there is no memory. */
+/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become adjacent.
+   This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the size and
+   shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room;
+    int64_t *start, room, e, f, to = 0;
     memset(x, 0, sizeof *x);
     gproji_pool_start(&x->pool, heap);
     if (!gproji_choose_condensed(x, graph)) return false;
     left = graph->nodes - x->count;
     room = graph->start[graph->nodes];
-    for (k = 0; k < x->count; ++k) { /* its neighbours lose it, and gain at most all of its neighbours */
+    for (k = 0; k < x->count; ++k) { /* the neighbours lose this node, and gain at most each other */
         int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
         room += degree * (degree - 2);
     }
@@ -4023,12 +3982,25 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
     mark = (int32_t *)gproji_pool_take(&x->pool, graph->nodes, sizeof(int32_t));
     if (!start || !adjacent || !weight || !mark) return false;
     for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
-    start[0] = 0;
     for (k = 0; k < left; ++k) {
         i = x->first[x->count + k];
+        mark[i] = i;
         weight[k] = graph->weight[i];
-        start[k + 1] = start[k] + gproji_condensed_neighbours(x, graph, i, mark, adjacent + start[k]);
+        start[k] = to;
+        /* each neighbour, or the neighbours of a condensed one */
+        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
+            int32_t j = graph->adjacent[e];
+            bool condensed = x->number[j] < x->count;
+            int64_t end = condensed ? graph->start[j + 1] : e + 1;
+            for (f = condensed ? graph->start[j] : e; f < end; ++f) {
+                int32_t other = graph->adjacent[f];
+                if (mark[other] == i) continue;
+                mark[other] = i;
+                adjacent[to++] = x->number[other] - x->count;
+            }
+        }
     }
+    start[left] = to;
     x->rest.nodes = left, x->rest.start = start, x->rest.adjacent = adjacent, x->rest.weight = weight;
     return true;
 }
