@@ -2574,8 +2574,8 @@ enum {
 };
 
 /* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
-   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many pieces
-   from this one on as `run` says have none and follow each other. */
+   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many
+   pieces from this one on as `run` says have none and follow each other. */
 typedef struct gproji_piece {
     int32_t from, rows, to;
     uint16_t mask, run;
@@ -2586,9 +2586,9 @@ typedef struct gproji_kernels {
     int32_t block;
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* the pieces of `add` have gaps */
-    /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows
-       of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next, but
-       after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+    /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the
+       rows of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next,
+       but after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc, bool fresh);
     /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
@@ -2604,10 +2604,10 @@ typedef struct gproji_kernels {
     void (*forward_two)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z,
                         double *y);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
-    /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows from
-       there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but
-       after `left` columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column that belongs to
-       row piece[0].to. */
+    /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows
+       from there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one,
+       but after `left` columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column that belongs
+       to row piece[0].to. */
     void (*add)(const gproji_piece *piece, int32_t count, const double *source, ptrdiff_t stride, int32_t left,
                 double *target, ptrdiff_t target_stride);
 } gproji_kernels;
@@ -3030,40 +3030,41 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 }
 
 /* ============================================================================================================
-   >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel, kernels.
+   >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel,
+   kernels.
 
-   All matrices but the small ones are column-major. A front's panel has w pivot columns and its rows in "storage
-   rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
-   rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
-   t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. Of what is above the diagonal most is not
-   stored: see gproji_shape. Strides are multiples of B, so every tile is whole and aligned: what kernels compute in empty
-   rows is zero, and what they write above the diagonal of a diagonal tile is never read.
+   Matrices are column-major, but for the small ones. A front has a panel with w pivot columns and an update matrix, the
+   Schur complement of the rows below. Rows are padded, so that kernels meet whole, aligned tiles only. In "storage
+   rows" a panel has q empty rows, w pivot rows, the rows below, and empty ones up to a multiple of GPROJI_BLOCK; q
+   makes the rows below begin at such a multiple. Pivot j stands in storage row j + q. Column blocks end at multiples of
+   B, the kernels' block, which divides GPROJI_BLOCK; so the first block may have fewer than B columns. Most entries
+   above the diagonal are not stored, see gproji_shape. Kernels compute zeros in empty rows, and what they write above
+   the diagonal in a diagonal tile is never read.
 
-   The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
-   is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
+   Invariant: every entry is computed by the same operations in the same order however the work is cut into tasks for
+   threads, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,   /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192,  /* so many columns, if they are the last, are taken off an update matrix together */
-    GPROJI_CLEARED = 240, /* values that are set to 0 together */
-    GPROJI_TASK_COLUMNS = 48, /* columns that are one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
-    GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
+    GPROJI_CHUNK = 128,   /* pivots eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,  /* at most so many pivots, if they are the last, update a matrix together */
+    GPROJI_CLEARED = 240, /* values that are set to 0 by one call */
+    GPROJI_TASK_COLUMNS = 48, /* columns updated by one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
+    GPROJI_TASK_ROWS = 120,   /* rows of a panel solved by one task; a multiple of all tiles */
     GPROJI_ROW_BLOCK = 240    /* rows, or up to twice as many, that stay in the L2 cache with GPROJI_CHUNK columns */
 };
 
-/* The number of pieces of `size` that cover `all`. */
+/* Pieces of `size` that cover `all`. */
 GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
 
-/* The next multiple of `size`, a power of 2. */
+/* Rounds up to a multiple of `size`, a power of 2. */
 GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all + size - 1) & -size; }
 
-/* The number of empty rows before the pivots of a panel with w pivots. */
+/* Empty rows before the pivots of a panel with w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
-   each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
-   multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
-   are. With a BLAS there is but one block. The struct has 16 bytes: where a function returns 12, tcc 0.9.27 writes 16. */
+/* Layout of a panel: blocks of columns, each with the storage rows from its first pivot's on, so that strides shrink
+   from block to block. In narrow panels blocks begin at multiples of GPROJI_BLOCK; in wide ones at multiples of
+   GPROJI_CHUNK, as processors predict addresses better if pivots eliminated together have one stride. With a BLAS there
+   is one block. The struct has 16 bytes: to return 12, tcc 0.9.27 writes 16. */
 typedef struct gproji_shape {
     int32_t shift;  /* empty rows before the pivots */
     int32_t stride; /* of the first block, and the number of storage rows */
@@ -3087,12 +3088,12 @@ GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
     return shape;
 }
 
-/* The first row that the column of the pivot in storage row `at` has. */
+/* The first storage row of the block with the pivot in storage row `at`. */
 GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
 }
 
-/* Its stride; and how many columns, eliminated together, have it: that one and those after it. */
+/* The stride in that block; the number of columns, from that pivot's on, before it shrinks. */
 GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
     return shape.stride - gproji_shape_first(shape, at);
 }
@@ -3100,56 +3101,54 @@ GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
 }
 
-/* Storage row r of that column is at this offset + r, for rows that are stored: as if all were, less those that the
-   columns up to this one do not have. */
+/* Storage row r of that pivot's column is at this offset + r: as if all rows were stored, less those missing from the
+   columns up to this one. */
 GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
     int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
     return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
 }
 
-/* The number of entries of a panel. */
+/* Entries of a panel. */
 GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape) {
     return gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
 }
 
-/* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
-   after the other, each with the rows from its first column on. A matrix has `rows` rows, a multiple of B. */
+/* Update matrices are symmetric. Little more than the lower triangle is stored, in strips of GPROJI_STRIP columns, each
+   with the rows from its first column on. `rows` is a multiple of B. */
 
-/* The first column of the strip that holds a column. */
+/* The first column of the strip with this column, and the first row that it stores. */
 GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
     return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
 
-/* The strip's stride. */
-GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) { return rows - gproji_strip_begin(column); }
-
-/* Row r of a column is at this offset + r; r is at least the strip's first column. As if all rows were stored, less those
-   that the columns up to this one do not have. */
+/* Row r of a column is at this offset + r: as if all rows were stored, less those missing from the columns up to this
+   one. */
 GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
     int32_t first = gproji_strip_begin(column);
     return (ptrdiff_t)column * rows - (ptrdiff_t)first * (column + 1 - (first + GPROJI_STRIP) / 2);
 }
 
-/* The number of entries. */
+/* Entries of an update matrix. */
 GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     int64_t first = gproji_strip_begin(rows), rest = rows - first;
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [top, rows); columns [first, last) are being eliminated as a chunk,
-   after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks (or 0). Where
-   B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `top` rows. */
+/* A panel at work: w pivot columns in storage rows [top, rows). The chunk of columns [first, last) is being eliminated,
+   with all updates by earlier columns applied. Both bounds are ends of column blocks (or 0). If B is less than
+   GPROJI_BLOCK, whole empty blocks of rows, `top` rows, are left out. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
     int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t task_columns; /* that a task takes the pivots' effect off */
-    bool fresh;           /* the update matrix has no values yet: it begins with the pivots' effect */
+    bool fresh; /* the update matrix has no values yet: the first update sets it */
     gproji_shape shape;
-    int32_t update_rows; /* of the update matrix */
     double *values;
-    double *inverse; /* w: inverses of the diagonal of L */
-    double *update;  /* the update matrix */
+    double *inverse;          /* w: inverses of the diagonal of L */
+    double *update;           /* the update matrix */
+    int32_t update_rows;      /* rows of it */
+    int32_t pivots[2];        /* update tasks: pivots that are applied, from..to, */
+    int32_t at, end, columns; /* to the columns of storage rows [at, end); columns of one task */
 } gproji_panel;
 
 GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
@@ -3161,7 +3160,7 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
     panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
-    panel.task_columns = GPROJI_TASK_COLUMNS;
+    panel.pivots[0] = panel.pivots[1] = panel.at = panel.end = panel.columns = 0;
     panel.fresh = false;
     panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
@@ -3172,22 +3171,21 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
     return panel->values + gproji_shape_offset(panel->shape, column + panel->shift) + row;
 }
 
-/* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
-   r >= at is the r-th. */
+/* The column that belongs to storage row `at`, a pivot's or the update matrix's; entry r is in storage row r >= at. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* Its stride: that of all columns of its block, or of its strip of the update matrix. */
+/* The stride in that column's block, or strip of the update matrix. */
 GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
-    return gproji_update_stride(panel->update_rows, at - pivot_end);
+    return panel->update_rows - gproji_strip_begin(at - pivot_end);
 }
 
-/* The columns of all storage rows up to `to`, the end of a block: column[at]. */
+/* Writes the columns that belong to all storage rows before `to`, the end of a block, to column[at]. */
 GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, double **column) {
     int32_t at, i;
     for (at = 0; at < to; at += GPROJI_BLOCK) {
@@ -3197,50 +3195,34 @@ GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, d
     }
 }
 
-/* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
-   row. */
+/* The end of the chunk that begins with column `first`; as a storage row a multiple of GPROJI_CHUNK, or the last. */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
-/* Takes the effect of the pivot columns [first, last) off the columns of later pivots, or of the update matrix, that
-   belong to the storage rows [at, end). fresh: off nothing. */
-GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
-                                         int32_t last, bool fresh) {
-    const gproji_kernels *kernels = panel->kernels;
-    const double *l = gproji_panel_at(panel, 0, first);
-    int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
-    int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
-    int32_t begin, stop, column;
-    for (begin = at; begin < panel->rows; begin = stop) {
-        stop = panel->rows - begin < 2 * GPROJI_ROW_BLOCK ? panel->rows : begin + GPROJI_ROW_BLOCK;
-        for (column = at; column < gproji_min(end, stop); column += kernels->block) {
-            int32_t row = gproji_max(begin, column);
-            kernels->update(stop - row, last - first, l + row, l + column, stride, left,
-                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column), fresh);
-        }
-    }
-}
-
-/* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
+/* Applies the Schur update of the panel's `pivots` to some columns: U -= L2 L2'. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->shape.end + index * panel->task_columns;
-    int32_t end = gproji_min(at + panel->task_columns, panel->rows);
-    int32_t first, last;
-    for (first = 0; first < panel->w; first = last) {
+    const gproji_kernels *kernels = panel->kernels;
+    int32_t at = panel->at + index * panel->columns, end = gproji_min(at + panel->columns, panel->end);
+    int32_t first, last, begin, stop, column;
+    for (first = panel->pivots[0]; first < panel->pivots[1]; first = last) {
+        const double *l = gproji_panel_at(panel, 0, first);
+        int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
+        int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
+        bool fresh = panel->fresh && first == 0 && at >= panel->shape.end;
         last = gproji_next_chunk(panel, first);
-        if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
-        gproji_strip_update(panel, at, end, first, last, panel->fresh && first == 0);
+        if (panel->pivots[1] - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->pivots[1];
+        /* Blocks of rows: the chunk's part of them stays in the L2 cache for all columns. */
+        for (begin = at; begin < panel->rows; begin = stop) {
+            stop = panel->rows - begin < 2 * GPROJI_ROW_BLOCK ? panel->rows : begin + GPROJI_ROW_BLOCK;
+            for (column = at; column < gproji_min(end, stop); column += kernels->block) {
+                int32_t row = gproji_max(begin, column);
+                kernels->update(stop - row, last - first, l + row, l + column, stride, left,
+                                gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column), fresh);
+            }
+        }
     }
-}
-
-/* Some of the pivot columns after a chunk: takes off the chunk's effect. A task. */
-GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
-    const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->last + panel->shift + index * panel->task_columns;
-    int32_t end = gproji_min(at + panel->task_columns, panel->shape.end);
-    gproji_strip_update(panel, at, end, panel->first, panel->last, false);
 }
 
 /* The first storage row of the column block that begins with column `start`. */
@@ -3248,7 +3230,7 @@ GPROJI_INLINE int32_t gproji_block_row(const gproji_panel *panel, int32_t start)
     return start == 0 ? panel->top : start + panel->shift;
 }
 
-/* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
+/* Solves for the column block from `start` on in `rows` rows from `row` on: C = (C - A B') L^-T. */
 GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
     int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
     const double *l = gproji_panel_at(panel, 0, panel->first);
@@ -3258,12 +3240,12 @@ GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, 
                           block + at, panel->inverse + start, start + panel->shift - at);
 }
 
-/* The first column of the block after the one that begins with column `start`. */
+/* The end of the column block that begins with column `start`. */
 GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
     return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
-/* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
+/* Solves for a chunk's columns in some of the rows below its pivots, tile by tile. A task. */
 GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t tile = panel->kernels->tile_rows, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
@@ -3273,31 +3255,12 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
             gproji_block_solve(panel, start, row, gproji_min(tile, end - row));
 }
 
-/* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
-GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
-    const gproji_kernels *kernels = panel->kernels;
-    int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
-    for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
-        int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
-        int32_t stride = gproji_shape_stride(panel->shape, at);
-        const double *strip = gproji_panel_at(panel, at, panel->first);
-        double *corner = gproji_panel_at(panel, at, start);
-        if (start > panel->first)
-            kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
-                            gproji_shape_left(panel->shape, chunk), corner, stride, false);
-        failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
-        if (failed >= 0) return start + failed;
-        gproji_block_solve(panel, start, at + block, end - at - block);
-    }
-    return -1;
-}
-
-/* Are the host's threads given, and is the work, in flops, worth sharing? */
+/* Are there threads, and is the work, in flops, worth sharing? */
 GPROJI_INLINE bool gproji_is_shared(const gproj_parallel *parallel, double flops) {
     return parallel && parallel->run && flops > 4e6;
 }
 
-/* Runs tasks, on the host's threads where that is worth it. */
+/* Runs tasks, on the host's threads if that is worth it. */
 GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
                                       void *data) {
     int32_t i;
@@ -3308,21 +3271,20 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
-/* The pieces of a child's `below` rows in `groups` groups are at most so many. */
+/* An upper bound on the pieces of a child's `below` rows in `groups` groups. */
 GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
     return 2 * groups + below / GPROJI_BLOCK + 2;
 }
 
-/* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
-   on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
-   columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
-   `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
-   number. */
+/* Cuts the rows of a child's update matrix into pieces for extend-add. Rows in group k, from at[k] - base up to those
+   of the next group or `below`, go to the parent's storage rows from to[k] on. A piece stays within one stride of the
+   parent's columns: before `pivot_end`, the end of the pivots, or within a strip of the update matrix. Returns the
+   number of pieces, at most gproji_pieces_most. */
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
     gproji_piece *now = piece;
-    int32_t k, row, count = 0, end = INT32_MIN; /* end: of the parent's rows that fit into the piece at hand */
+    int32_t k, row, count = 0, end = INT32_MIN; /* end of the parent's rows that fit into the piece */
     for (k = 0; k < groups; ++k) {
         int32_t next = k + 1 < groups ? at[k + 1] - base : below, target = to[k], fit;
         for (row = at[k] - base; row < next; row += fit, target += fit) {
@@ -3342,6 +3304,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
             if (kernels->spreads) now->mask = (uint16_t)(now->mask | ((1u << fit) - 1) << (target - now->to));
         }
     }
+    /* Runs of pieces without gaps, see gproji_piece. */
     for (k = count - 1; kernels->spreads && k >= 0; --k) {
         bool goes_on = k + 1 < count && piece[k + 1].to == piece[k].to + 8 && piece[k + 1].run < UINT16_MAX;
         if (piece[k].rows == 8) piece[k].run = (uint16_t)(goes_on ? piece[k + 1].run + 1 : 1);
@@ -3358,38 +3321,35 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
-/* Adds the columns of the k-th piece's rows. */
-GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k) {
-    const gproji_panel *panel = add->panel;
-    const gproji_piece *piece = add->piece + k;
-    int32_t column = piece->from;
-    panel->kernels->add(piece, add->pieces - k, add->update + gproji_update_offset(add->rows, column),
-                        gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
-                        gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
-}
-
-/* Adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
+/* Extend-adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
 GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from, int32_t to) {
+    const gproji_panel *panel = add->panel;
     int32_t first = 0, last = add->pieces;
-    while (first < last) { /* the first piece from there on */
+    while (first < last) { /* find the first piece from there on */
         int32_t middle = first + (last - first) / 2;
         if (add->piece[middle].to < from)
             first = middle + 1;
         else
             last = middle;
     }
-    for (; first < add->pieces && add->piece[first].to < to; ++first) gproji_add_piece(add, first);
+    for (; first < add->pieces && add->piece[first].to < to; ++first) {
+        const gproji_piece *piece = add->piece + first;
+        int32_t column = piece->from, strip = gproji_strip_begin(column);
+        panel->kernels->add(piece, add->pieces - first, add->update + gproji_update_offset(add->rows, column),
+                            add->rows - strip, strip + GPROJI_STRIP - column, gproji_panel_column(panel, piece->to),
+                            gproji_column_stride(panel, piece->to));
+    }
 }
 
-/* Sets values to 0, in pieces: for more than 2 KB some C libraries use an x86 instruction that takes long to begin, and
-   for which all that is added to these values must wait. */
+/* Sets values to 0, a few at a time: for more than 2 KB some C libraries use an x86 instruction that is slow to start
+   and holds up all additions to these values. */
 GPROJI_INTERNAL void gproji_clear(double *values, ptrdiff_t count) {
     for (; count > GPROJI_CLEARED; count -= GPROJI_CLEARED, values += GPROJI_CLEARED)
         memset(values, 0, GPROJI_CLEARED * sizeof *values);
     memset(values, 0, (size_t)count * sizeof *values);
 }
 
-/* Sets the columns that belong to the storage rows [from, to) to 0. */
+/* Sets the columns that belong to storage rows [from, to) to 0. */
 GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
     int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
     from = gproji_max(from, panel->shift);
@@ -3407,8 +3367,8 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
 }
 
 #ifdef GPROJ_USE_CBLAS
-/* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
-   BLAS's own business. */
+/* By a BLAS: dtrsm, dsyrk and dgemm after our own kernels have factored a chunk's pivot rows. The BLAS has threads of
+   its own. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -3443,44 +3403,58 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     }
 }
 #else
-/* Runs the tasks that take the effect of pivots off so many columns. One thread alone does all of them in one: a strip of
-   rows, once in the cache, serves more columns. */
-GPROJI_INTERNAL void gproji_take_off(const gproj_parallel *parallel, double flops, int32_t columns, gproj_task task,
-                                     gproji_panel *panel) {
-    panel->task_columns = gproji_is_shared(parallel, flops) ? GPROJI_TASK_COLUMNS : gproji_max(columns, 1);
-    gproji_run_tasks(parallel, flops, gproji_pieces(columns, panel->task_columns), task, panel);
+/* Applies the Schur update of pivots from..to to the columns of storage rows [at, end). A single thread takes all
+   columns in one task: a strip of rows, once in the cache, serves more columns. */
+GPROJI_INTERNAL void gproji_apply_pivots(const gproj_parallel *parallel, double flops, gproji_panel *panel,
+                                         int32_t from, int32_t to, int32_t at, int32_t end) {
+    panel->pivots[0] = from, panel->pivots[1] = to, panel->at = at, panel->end = end;
+    panel->columns = gproji_is_shared(parallel, flops) ? GPROJI_TASK_COLUMNS : gproji_max(end - at, 1);
+    gproji_run_tasks(parallel, flops, gproji_pieces(end - at, panel->columns), gproji_update_task, panel);
 }
 
-/* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
+/* Finishes a chunk after its pivots: the rows below, and the update of later pivot columns. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
     gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_take_off(parallel, 2 * width * under * later, later, gproji_trailing_task, panel);
+    gproji_apply_pivots(parallel, 2 * width * under * later, panel, panel->first, panel->last,
+                        panel->last + panel->shift, panel->shape.end);
 }
 
-/* The effect of a factored panel on its update matrix. */
+/* Applies a factored panel to its update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->shape.end;
-    gproji_take_off(parallel, (double)below * below * panel->w, below, gproji_update_task, panel);
+    gproji_apply_pivots(parallel, (double)below * below * panel->w, panel, 0, panel->w, panel->shape.end, panel->rows);
 }
 #endif
 
-/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
+/* Factors a panel in place, chunk by chunk. Returns -1 or the first column whose pivot is not > 0. parallel: NULL
+   within a task. */
 GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
+    const gproji_kernels *kernels = panel->kernels;
+    int32_t block = kernels->block, start, failed;
     for (panel->last = 0; panel->last < panel->w;) {
-        int32_t failed;
-        panel->first = panel->last;
-        panel->last = gproji_next_chunk(panel, panel->first);
-        failed = gproji_chunk_pivots(panel);
-        if (failed >= 0) return failed;
+        int32_t first = panel->first = panel->last, end = panel->last = gproji_next_chunk(panel, first);
+        /* The chunk's pivot rows: each block of columns is updated by those before, factored, and solved for below. */
+        for (start = first; start < end; start = gproji_next_block(panel, start)) {
+            int32_t at = gproji_block_row(panel, start), chunk = first + panel->shift;
+            int32_t stride = gproji_shape_stride(panel->shape, at);
+            const double *strip = gproji_panel_at(panel, at, first);
+            double *corner = gproji_panel_at(panel, at, start);
+            if (start > first)
+                kernels->update(block, start - first, strip, strip, gproji_shape_stride(panel->shape, chunk),
+                                gproji_shape_left(panel->shape, chunk), corner, stride, false);
+            failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
+            if (failed >= 0) return start + failed;
+            gproji_block_solve(panel, start, at + block, end + panel->shift - at - block);
+        }
         gproji_chunk_finish(parallel, panel);
     }
     return -1;
 }
 
-/* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
-   what it takes from the rows below. So for y, unless it is NULL. */
+/* z = L^-1 z on all storage rows of a panel: the solution in the pivots' rows, and in the rows below (0 on entry) their
+   contribution. The second right-hand side y may be NULL. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, double *y) {
     int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
@@ -3494,14 +3468,14 @@ GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, 
     }
 }
 
-/* Begins to bring values into the cache. */
+/* Prefetches values. */
 GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
     int64_t i;
     for (i = 0; i < count; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH_L2(value + i);
 }
 
-/* z = L^-T z on all storage rows of a panel, where the part below is known. is_far: the panel is not in the cache, so each
-   column block is fetched ahead: processors do not foresee columns from right to left. */
+/* z = L^-T z on all storage rows of a panel, given the rows below. is_far: the panel is not in the cache, so each
+   column block is fetched ahead, as processors do not predict columns from right to left. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_far, double *z) {
     int32_t block = panel->kernels->block, at = panel->shape.end - block;
     for (; at >= panel->top; at -= block) {
@@ -3515,8 +3489,8 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_fa
 
 /* -- small matrices, by rows -- */
 
-/* L L' = M in place. No pivot is less than `floor`, which is 1 for I plus a positive semidefinite matrix; where rounding
-   says so (columns that depend on each other), the pivot is what rounding lets be known. */
+/* Factors M = L L' in place. Pivots are at least `floor`, which is 1 for I plus a positive semidefinite matrix, and at
+   least the rounding error, which decides if columns depend on each other. */
 GPROJI_INTERNAL void gproji_small_factor(double *m, int32_t n, int32_t stride, double floor) {
     int32_t i, j, k;
     for (i = 0; i < n; ++i) {
@@ -3692,8 +3666,8 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     amd->elements[pivot] = 0;
 }
 
-/* Rewrites the list of variable i in the new element: the new element, the other elements, the variables outside the new
-   element. Sets the degree bound without the new element's part. Returns a hash value of the list; -1 if nothing is
+/* Rewrites the list of variable i in the new element: the new element, the other elements, the variables outside the
+   new element. Sets the degree bound without the new element's part. Returns a hash value of the list; -1 if nothing is
    left outside the new element. */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
@@ -3961,9 +3935,9 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     return true;
 }
 
-/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become adjacent.
-   This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the size and
-   shows the mesh. False when there is no memory. */
+/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
+   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
+   size and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
     int64_t *start, room, e, f, to = 0;
@@ -4014,7 +3988,8 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
                   node b farthest from a; y = d_c - d_d for c far from both and d far from all three. On a grid of quads
                   with adjacent face corners, x and y are the diagonals, x + y and x - y the grid's own directions. Cuts
                   are tried along these four axes. Sides inherit x and y while cuts by them cost about as little.
-     cut          A threshold on an axis. Costs are guessed from the weights by coordinate and from the spans of edges in
+     cut          A threshold on an axis. Costs are guessed from the weights by coordinate and from the spans of edges
+     in
                   a sample; in large parts the nodes next to the best thresholds are then counted. The cost of a side
                   includes the halo: nodes of earlier separators next to it, which become rows of all its fronts.
      separator    The smallest vertex separator in a band around the threshold, by maximum flow (Menger 1927; Ford,
@@ -4070,7 +4045,8 @@ typedef struct gproji_nd_halo {
     int32_t boundaries, *boundary; /* nodes of the part next to the halo */
 } gproji_nd_halo;
 
-/* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all. */
+/* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all.
+   */
 typedef struct gproji_nd_profile {
     int32_t *halo_low, *halo_high; /* halo nodes next to nodes below; to subtract: no longer next to nodes above */
     int32_t *low, *high;           /* nodes below next to others above, and the other way round */
@@ -4261,8 +4237,8 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     nd->parts = tail > 0;
 }
 
-/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number: indices of
-   nodes in their side; ~name of those in the separator. Returns the end of the arcs. */
+/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number: indices
+   of nodes in their side; ~name of those in the separator. Returns the end of the arcs. */
 GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, const unsigned char *side, int32_t s, gproji_nd_nodes *b,
                                             int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
@@ -4380,8 +4356,8 @@ GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double 
                            gproji_nd_rest(nd, above, halo[1] + s));
 }
 
-/* Guesses the weight of a separator at threshold t: nodes on one side with neighbours on the other, if all were like the
-   sample; on the side where that is less. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
+/* Guesses the weight of a separator at threshold t: nodes on one side with neighbours on the other, if all were like
+   the sample; on the side where that is less. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
 GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *reach, int32_t t) {
     double low = cut->sum[t - 1], high = cut->sum[t];
     int32_t k;
@@ -4508,8 +4484,8 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
     const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
     double reach[4][4];
-    /* How far edges lead along the axes: a fraction reach[axis][k] of a sample of nodes has a neighbour whose coordinate
-       is more than k higher. */
+    /* How far edges lead along the axes: a fraction reach[axis][k] of a sample of nodes has a neighbour whose
+       coordinate is more than k higher. */
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4537,8 +4513,8 @@ GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* Finds a first flow by depth-first search upwards only: in most bands little is missing then. level, turn: here by node;
-   level -1: a dead end. */
+/* Finds a first flow by depth-first search upwards only: in most bands little is missing then. level, turn: here by
+   node; level -1: a dead end. */
 GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
     int32_t *path = band->queue, i, k, depth;
     for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
@@ -4603,8 +4579,8 @@ GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
     return found;
 }
 
-/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc, or
-   back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
+   or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
 GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     const int32_t *level = band->level;
@@ -4732,14 +4708,14 @@ GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int3
     return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
 }
 
-/* Builds the network for the band of coordinates from[0]..from[1]-1. False when there is no memory, or when arcs are more
-   than their type can count. */
+/* Builds the network for the band of coordinates from[0]..from[1]-1. False when there is no memory, or when arcs are
+   more than their type can count. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
     int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
     int64_t arcs = 0, units = 0, n;
-    /* 1. Find its nodes, and the greatest common divisor of their weights. Nodes below the band belong to it if they are
-       next to nodes above it. */
+    /* 1. Find its nodes, and the greatest common divisor of their weights. Nodes below the band belong to it if they
+       are next to nodes above it. */
     for (i = 0; i < nd->nodes; ++i) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
         int32_t p = cut->coordinate[i], a = nd->here.weight[i], b = divisor, rest;
@@ -4837,8 +4813,8 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band *band = &nd->band;
     int32_t from[2], i, tail = 0, open = 0, rounds = 0, use = 0;
     double most = gproji_fmin(12.0 * cut->separator, 0.3 * nd->weight), inside = 0, below = 0, above, best;
-    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part's; about a quarter
-       of the weight stays outside on each side. */
+    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part's; about a
+       quarter of the weight stays outside on each side. */
     from[0] = cut->at > 1 ? cut->at - 1 : cut->at, from[1] = cut->at < cut->range - 1 ? cut->at + 1 : cut->at;
     for (i = 0; i < from[0]; ++i) below += cut->sum[i];
     for (; i < from[1]; ++i) inside += cut->sum[i];
@@ -4860,8 +4836,8 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band_ascend(band);
     while (gproji_band_augment(band))
         if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
-    /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is reached
-       from the source or reaches the sink. */
+    /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is
+       reached from the source or reaches the sink. */
     for (i = 0; i < 2 * band->nodes; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
     for (i = 0; i < band->nodes; ++i)
         if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
@@ -4996,15 +4972,15 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t position) {
 
 /* -- dissection -- */
 
-/* Finds new coordinates for the part at work and the best cut by them. Returns the number of nodes connected to the first
-   one; when these are not all, there is no cut. */
+/* Finds new coordinates for the part at work and the best cut by them. Returns the number of nodes connected to the
+   first one; when these are not all, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
     int32_t *const *d = nd->distance, *value = nd->number, starts = 1, k, i, root, reached = 0;
     /* A closed mesh has no corners, and some nodes are better starts than others. Most depends on the largest part. */
     if (nd->nodes > nd->kept / 2 && nd->openness <= 1) starts = GPROJI_ND_STARTS;
     for (k = 0; k < starts; ++k) {
-        /* 1. a, on the boundary after a first search (later starts are taken as they are), and b; then c: of nodes as far
-           from both, one in the middle; then d. */
+        /* 1. a, on the boundary after a first search (later starts are taken as they are), and b; then c: of nodes as
+           far from both, one in the middle; then d. */
         root = (int32_t)((int64_t)nd->nodes * k / starts);
         reached = gproji_nd_search(nd, root, d[0], 0);
         if (reached < nd->nodes) break;
@@ -5114,8 +5090,8 @@ GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
         gproji_nd_cut_part(nd, &part);
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
-   than 2^29. False when there is no memory. */
+/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are
+   fewer than 2^29. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
     int32_t a, b, k, count = 0;
     int64_t e;
