@@ -1614,12 +1614,12 @@ GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
 /* ============================================================================================================
    >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
 
-   Reading: digits up to 19 with small powers of ten go through one exact 128-bit product or quotient; everything
-   else through exact big integers. Both end in a 64-bit significand with a sticky bit, which is rounded once, to
-   nearest even, in integers: no floating-point operation takes part, so excess precision, rounding modes and
-   flushed denormals do not matter.
+   Reading: up to 19 digits with a small power of ten go through one exact 128-bit product or quotient, others through
+   exact big integers. Both ways end in a 64-bit significand with a sticky bit, rounded once, to nearest even, in
+   integers: no floating-point operation takes part, so excess precision, rounding modes and flushed denormals do not
+   matter.
    Writing: Steele and White 1990, in the form of Burger and Dybvig 1996: with v = R/S and half-gaps M/S to the
-   neighbouring doubles, digits are produced until what is left is inside the gap.
+   neighbouring doubles, digits are produced until the rest is inside the gap.
    Invariant: a gproji_big has no leading zero limb; zero has count 0. */
 
 /* 768 digits and a sticky one decide every double; 10^1100 = 5^1100 2^1100, and 5^1100 has 80 limbs. */
@@ -1795,19 +1795,11 @@ GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t
     return q;
 }
 
-GPROJI_INLINE uint64_t gproji_power5_64(int32_t power) {
-    uint64_t p = 1, base = 5;
-    for (; power; power >>= 1) {
-        if (power & 1) p *= base;
-        base *= base; /* wraps after the last use for powers up to 27 */
-    }
-    return p;
-}
-
 /* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
-    int32_t shift = 64 - gproji_bit_length(w), shift5;
-    uint64_t five = gproji_power5_64(power < 0 ? -power : power), high, low;
+    int32_t shift = 64 - gproji_bit_length(w), shift5, k;
+    uint64_t five = 1, high, low;
+    for (k = power < 0 ? -power : power; k > 0; --k) five *= 5;
     w <<= shift;
     shift5 = 64 - gproji_bit_length(five);
     five <<= shift5;
@@ -1879,96 +1871,73 @@ GPROJI_INTERNAL bool gproji_begins_with(const char *text, size_t size, const cha
     return true;
 }
 
-/* What stands in a decimal text: 0.d1d2... 10^point, the digits without leading zeros. */
-typedef struct gproji_decimal {
-    uint8_t digit[GPROJI_DIGITS_MAX]; /* values 0..9 */
-    int32_t count;
-    uint64_t first; /* the first 19 digits as an integer */
-    int64_t point;
-    bool any;      /* there was a digit, maybe 0 */
-    bool fraction; /* the decimal point has been seen */
-} gproji_decimal;
-
-GPROJI_INLINE void gproji_decimal_push(gproji_decimal *decimal, uint8_t digit) {
-    decimal->any = true;
-    if (!decimal->count && !digit) {
-        if (decimal->fraction) --decimal->point;
-        return;
-    }
-    if (!decimal->fraction) ++decimal->point;
-    if (decimal->count < 19) decimal->first = decimal->first * 10 + digit;
-    if (decimal->count < GPROJI_DIGITS_MAX) {
-        decimal->digit[decimal->count++] = digit;
-    } else if (digit) {
-        decimal->digit[GPROJI_DIGITS_MAX - 1] |= 1; /* not 0, whatever follows: it can only break ties */
-    }
-}
-
-/* Reads [e[+-]digits] at text[at..] and adds it to point; returns the position behind it, or `at`. */
-GPROJI_INTERNAL size_t gproji_read_exponent(const char *text, size_t size, size_t at, int64_t *point) {
-    size_t i = at;
-    int64_t exponent = 0;
-    bool negative = false;
-    if (i >= size || (text[i] != 'e' && text[i] != 'E')) return at;
-    ++i;
-    if (i < size && (text[i] == '+' || text[i] == '-')) negative = text[i++] == '-';
-    if (i >= size || !gproji_is_digit(text[i])) return at;
-    for (; i < size && gproji_is_digit(text[i]); ++i) {
-        if (exponent < INT64_C(100000000000000000)) exponent = exponent * 10 + (text[i] - '0');
-    }
-    *point += negative ? -exponent : exponent;
-    return i;
-}
-
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value) {
-    gproji_decimal decimal;
-    size_t i = 0;
-    uint64_t sign = 0, bits = 0;
+    uint8_t digit[GPROJI_DIGITS_MAX]; /* of 0.d1d2... 10^point, without leading zeros */
+    int32_t count = 0;
+    int64_t point = 0, exponent = 0;
+    size_t i = 0, e;
+    uint64_t sign = 0, bits = 0, first = 0; /* the first 19 digits as an integer */
+    bool any = false, fraction = false, negative = false;
     if (!text || !value) return 0;
+    /* 1. Sign, infinities, NaN. */
     if (i < size && (text[i] == '+' || text[i] == '-')) sign = (uint64_t)(text[i++] == '-') << 63;
     if (gproji_begins_with(text + i, size - i, "inf") || gproji_begins_with(text + i, size - i, "nan")) {
         bool nan = text[i] == 'n' || text[i] == 'N';
         *value = gproji_double_of_bits(sign | (uint64_t)(nan ? 0xfff : 0xffe) << 51);
         return i + (gproji_begins_with(text + i, size - i, "infinity") ? 8 : 3);
     }
-    decimal.count = 0, decimal.first = 0, decimal.point = 0, decimal.any = false, decimal.fraction = false;
-    for (; i < size; ++i) {
-        if (gproji_is_digit(text[i]))
-            gproji_decimal_push(&decimal, (uint8_t)(text[i] - '0'));
-        else if (text[i] == '.' && !decimal.fraction)
-            decimal.fraction = true;
-        else
-            break;
+    /* 2. Digits, with a decimal point maybe. */
+    for (; i < size && (gproji_is_digit(text[i]) || (text[i] == '.' && !fraction)); ++i) {
+        uint8_t d = (uint8_t)(text[i] - '0');
+        if (text[i] == '.') {
+            fraction = true;
+            continue;
+        }
+        any = true;
+        if (count == 0 && d == 0) { /* a leading zero */
+            point -= fraction;
+            continue;
+        }
+        point += !fraction;
+        if (count < 19) first = first * 10 + d;
+        if (count < GPROJI_DIGITS_MAX)
+            digit[count++] = d;
+        else if (d > 0)
+            digit[GPROJI_DIGITS_MAX - 1] |= 1; /* not 0, whatever follows: it can only break ties */
     }
-    if (!decimal.any) return 0;
-    i = gproji_read_exponent(text, size, i, &decimal.point);
-    if (decimal.count) {
-        int64_t power = decimal.point - decimal.count;
-        bool is_short = decimal.count <= 19 && power >= -27 && power <= 27;
-        bits = is_short ? gproji_read_short(decimal.first, (int32_t)power)
-                        : gproji_read_long(decimal.digit, decimal.count, decimal.point);
+    if (!any) return 0;
+    /* 3. An exponent, if a digit follows; else the text ends before the e. */
+    e = i + (i < size && (text[i] == 'e' || text[i] == 'E'));
+    if (e > i && e < size && (text[e] == '+' || text[e] == '-')) negative = text[e++] == '-';
+    if (e > i && e < size && gproji_is_digit(text[e])) {
+        for (i = e; i < size && gproji_is_digit(text[i]); ++i)
+            if (exponent < INT64_C(100000000000000000)) exponent = exponent * 10 + (text[i] - '0');
+        point += negative ? -exponent : exponent;
+    }
+    /* 4. The nearest double. */
+    if (count > 0) {
+        int64_t power = point - count;
+        bool is_short = count <= 19 && power >= -27 && power <= 27;
+        bits = is_short ? gproji_read_short(first, (int32_t)power) : gproji_read_long(digit, count, point);
     }
     *value = gproji_double_of_bits(sign | bits);
     return i;
 }
 
-/* floor(log10(2^b)) for |b| < 1100; 1292913986 = floor(2^32 log10(2)). */
-GPROJI_INLINE int32_t gproji_log10_of_power2(int32_t b) {
-    int64_t product = (int64_t)b * 1292913986;
-    return product >= 0 ? (int32_t)(product / INT64_C(4294967296)) : -(int32_t)((-product) / INT64_C(4294967296)) - 1;
-}
-
-/* The digits of v = fraction 2^exponent > 0: v is about 0.d1d2... 10^point. limit = 0: the fewest that round to v, the
-   nearest to v among those; else `limit` of them, correctly rounded. Returns their number. */
+/* Finds the digits of v = fraction 2^exponent > 0: v is about 0.d1d2... 10^point. limit = 0: the fewest that round to
+   v, the nearest to v among those; else `limit` of them, correctly rounded. Returns their number. */
 GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent, int32_t limit, char digit[20],
                                             int32_t *point) {
     gproji_big r, s, m;
     int32_t up = fraction == (uint64_t)1 << 52 && exponent > -1074; /* the gap below is half of the gap above */
-    int32_t k = gproji_log10_of_power2(exponent + gproji_bit_length(fraction) - 1) + 1;
-    int32_t two_m = gproji_max(exponent, 0) + gproji_max(-k, 0);
-    int32_t two_s = 1 + up + gproji_max(-exponent, 0) + gproji_max(k, 0);
-    int32_t common = gproji_min(two_m, two_s), count = 0, side;
+    int32_t k, two_m, two_s, common, count = 0, side;
     bool even = !(fraction & 1), low = false, high = false;
+    /* k - 1 = floor(log10(2^b)) = floor(b c / 2^32) for |b| < 1100, with c = floor(2^32 log10(2)) */
+    int64_t log10 = (int64_t)(exponent + gproji_bit_length(fraction) - 1) * 1292913986;
+    k = log10 >= 0 ? (int32_t)(log10 / INT64_C(4294967296)) + 1 : -(int32_t)(-log10 / INT64_C(4294967296));
+    two_m = gproji_max(exponent, 0) + gproji_max(-k, 0);
+    two_s = 1 + up + gproji_max(-exponent, 0) + gproji_max(k, 0);
+    common = gproji_min(two_m, two_s);
     /* 1. v / 10^k = r / s in [0.1, 10); the gap to the next double is 2 (m / s) 2^up above and 2 m / s below. */
     gproji_big_set(&r, fraction);
     gproji_big_set(&s, 1);
@@ -2021,12 +1990,37 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     return count;
 }
 
-/* Lays digits out as printf's %g does: with an exponent where it is below -4 or not below `precision`. */
-GPROJI_INTERNAL size_t gproji_layout_digits(const char *digit, int32_t count, int32_t point, int32_t precision,
-                                            char *text) {
-    int32_t exponent = point - 1, i;
-    char *at = text;
-    if (exponent < -4 || exponent >= precision) {
+/* Writes a number. digits = 0: the shortest text that reads back to the same bits; 1..17: rounded to that many
+   significant digits. */
+GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
+    char digit[20], *at;
+    uint64_t bits, fraction;
+    int32_t exponent, count, point, i;
+    size_t sign = 0;
+    /* 1. Fraction and exponent; infinities, NaN and zero. */
+    memcpy(&bits, &value, sizeof bits);
+    exponent = (int32_t)((bits >> 52) & 0x7ff);
+    fraction = bits & (((uint64_t)1 << 52) - 1);
+    if (exponent == 0x7ff && fraction) {
+        memcpy(text, "nan", 4);
+        return 3;
+    }
+    if (bits >> 63) text[sign++] = '-';
+    if (exponent == 0x7ff) {
+        memcpy(text + sign, "inf", 4);
+        return sign + 3;
+    }
+    if (!exponent && !fraction) {
+        memcpy(text + sign, "0", 2);
+        return sign + 1;
+    }
+    if (exponent) fraction |= (uint64_t)1 << 52;
+    exponent = exponent ? exponent - 1075 : -1074;
+    count = gproji_write_digits(fraction, exponent, digits, digit, &point);
+    /* 2. Layout as by printf's %g: with an exponent below -4 or not below the precision. */
+    exponent = point - 1;
+    at = text + sign;
+    if (exponent < -4 || exponent >= (digits ? digits : 17)) {
         *at++ = digit[0];
         if (count > 1) *at++ = '.';
         for (i = 1; i < count; ++i) *at++ = digit[i];
@@ -2049,34 +2043,6 @@ GPROJI_INTERNAL size_t gproji_layout_digits(const char *digit, int32_t count, in
     return (size_t)(at - text);
 }
 
-/* digits = 0: the shortest text that reads back to the same bits; 1..17: rounded to that many significant digits. */
-GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
-    char digit[20];
-    uint64_t bits, fraction;
-    int32_t exponent, count, point;
-    size_t sign = 0;
-    memcpy(&bits, &value, sizeof bits);
-    exponent = (int32_t)((bits >> 52) & 0x7ff);
-    fraction = bits & (((uint64_t)1 << 52) - 1);
-    if (exponent == 0x7ff && fraction) {
-        memcpy(text, "nan", 4);
-        return 3;
-    }
-    if (bits >> 63) text[sign++] = '-';
-    if (exponent == 0x7ff) {
-        memcpy(text + sign, "inf", 4);
-        return sign + 3;
-    }
-    if (!exponent && !fraction) {
-        memcpy(text + sign, "0", 2);
-        return sign + 1;
-    }
-    if (exponent) fraction |= (uint64_t)1 << 52;
-    exponent = exponent ? exponent - 1075 : -1074;
-    count = gproji_write_digits(fraction, exponent, digits, digit, &point);
-    return sign + gproji_layout_digits(digit, count, point, digits ? digits : 17, text + sign);
-}
-
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
     return gproji_number_write_digits(value, 0, text);
 }
@@ -2084,44 +2050,22 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) 
 /* ============================================================================================================
    >>memory   The host's allocator with accounts. Uses platform.
 
-   Every object has one gproji_heap and takes all its memory from it; parts of an object use their owner's heap.
-   Sizes are counts times element sizes, checked for overflow here and nowhere else. A block is given back with
-   the same count and size it was taken with. A count of 0 gives a valid block. */
+   Every object has one gproji_heap and takes all memory from it; parts of an object use their owner's heap. Sizes are
+   counts times element sizes, checked for overflow here and nowhere else. A block is given back with the count and size
+   that it was taken with. A count of 0 gives a valid block. */
 typedef struct gproji_heap {
-    gproj_allocator hook;
+    gproj_allocator hook; /* without `allocate`: the C library */
     gproj_memory account;
 } gproji_heap;
-
-GPROJI_INTERNAL void *gproji_malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-
-GPROJI_INTERNAL void *gproji_realloc(void *user, void *block, size_t old_size, size_t new_size) {
-    (void)user;
-    (void)old_size;
-    return realloc(block, new_size);
-}
-
-GPROJI_INTERNAL void gproji_free(void *user, void *block, size_t size) {
-    (void)user;
-    (void)size;
-    free(block);
-}
 
 GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
     gproji_heap heap;
     memset(&heap, 0, sizeof heap);
     if (host) heap.hook = host->allocator;
-    if (!heap.hook.allocate) {
-        heap.hook.allocate = gproji_malloc;
-        heap.hook.reallocate = gproji_realloc;
-        heap.hook.release = gproji_free;
-    }
     return heap;
 }
 
-/* count * size, at least 1; SIZE_MAX where that overflows (no allocator grants it: see gproji_grant). */
+/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_grant refuses. */
 GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
@@ -2139,13 +2083,13 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
     if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
 }
 
-/* NULL when there is no memory. The contents are undefined. */
+/* Takes a block with undefined contents. NULL when there is no memory. */
 GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
     heap->account.allocations++;
     if (!gproji_grant(heap, 0, bytes)) return NULL;
-    block = heap->hook.allocate(heap->hook.user, bytes);
+    block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
     if (block) gproji_account(heap, 0, bytes);
     return block;
 }
@@ -2161,16 +2105,19 @@ GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, s
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
     gproji_account(heap, bytes, 0);
-    if (heap->hook.release) heap->hook.release(heap->hook.user, block, bytes);
+    if (!heap->hook.allocate)
+        free(block);
+    else if (heap->hook.release)
+        heap->hook.release(heap->hook.user, block, bytes);
 }
 
-/* Changes a block's count and keeps what fits; `block` may be NULL with old_count 0. On failure returns NULL and the
-   old block stays as it is. */
+/* Changes a block's count, keeping the elements that fit; `block` may be NULL with old_count 0. NULL when there is no
+   memory; the old block then stays. */
 GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
     size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
     void *moved;
     if (!block) return gproji_take(heap, new_count, size);
-    if (!heap->hook.reallocate) {
+    if (heap->hook.allocate && !heap->hook.reallocate) {
         moved = gproji_take(heap, new_count, size);
         if (!moved) return NULL;
         memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
@@ -2179,12 +2126,13 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
     }
     heap->account.allocations++;
     if (!gproji_grant(heap, old_bytes, new_bytes)) return NULL;
-    moved = heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes);
+    moved = heap->hook.allocate ? heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes)
+                                : realloc(block, new_bytes);
     if (moved) gproji_account(heap, old_bytes, new_bytes);
     return moved;
 }
 
-/* Makes room in a growing array: *block has *capacity elements, `needed` are wanted. Doubles, so that n additions cost
+/* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
    O(n). False when there is no memory; the array is then unchanged. */
 GPROJI_NOINLINE bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
@@ -2204,9 +2152,9 @@ typedef struct gproji_ints {
     size_t count, capacity;
 } gproji_ints;
 
-#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* how many it may have */
+#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* integers in an array */
 
-/* Appends one; false when there is no memory, or when there are as many as there may be. */
+/* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
     void *block = ints->data;
     if (ints->count >= GPROJI_INTS_MAX) return false;
@@ -2220,8 +2168,7 @@ GPROJI_NOINLINE void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
-/* An object's own memory: its struct is taken from the heap that it then carries. The heap's struct must be the
-   object's first member. */
+/* Takes an object's struct from a new heap, which moves into the object as the first member. */
 GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
     gproji_heap heap = gproji_heap_of(host);
     void *object = gproji_take_zeroed(&heap, 1, size);
@@ -2235,7 +2182,7 @@ GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_give(&heap, object, 1, size);
 }
 
-/* The account of an object by its public part, `offset` bytes from its beginning; zeros where there is none. */
+/* Reads the account of an object whose public part, `offset` bytes from the beginning, is given; zeros for NULL. */
 GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) {
     gproji_heap heap;
     memset(&heap, 0, sizeof heap);
@@ -2243,7 +2190,7 @@ GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) 
     return heap.account;
 }
 
-/* The accounts of an object and its parts, added up. The peak is that of the parts, as if they came together. */
+/* Adds up the accounts of an object and its parts, as if all peaks came together. */
 GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->used += part.used;
     sum->peak += part.peak;
@@ -2252,7 +2199,7 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one piece of work, or of one object, all given back by one call. */
+/* A pool holds the blocks of one task, or of one object; one call gives them all back. */
 enum {
     GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
@@ -2275,7 +2222,7 @@ GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
     }
 }
 
-/* NULL when there is no memory, also where the count is negative or too large for the address space. */
+/* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     size_t bytes;
     void *block;
@@ -2295,8 +2242,7 @@ GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, 
     return block;
 }
 
-/* Makes the block taken last as small as `count` elements, at most what it has. NULL when there is no memory; it then
-   stays as it is. */
+/* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
     int32_t last = pool->count - 1;
     size_t bytes = gproji_bytes((size_t)count, size);
@@ -2320,7 +2266,7 @@ GPROJ_API const char *gproj_code_string(gproj_code code) {
     return index >= 0 && index < count ? sentences[index] : "unknown error";
 }
 
-/* Appends to a text that stays NUL-terminated; what does not fit is cut. Returns the new length. */
+/* Appends to a text that stays NUL-terminated, and cuts the piece if it does not fit. Returns the new length. */
 GPROJI_INTERNAL size_t gproji_append(char *text, size_t size, size_t length, const char *piece, size_t piece_length) {
     size_t room = size - 1 - length;
     if (piece_length > room) piece_length = room;
@@ -2392,7 +2338,7 @@ GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gpro
     return code;
 }
 
-/* Another object's error becomes the caller's, which may be NULL. */
+/* Copies another object's error to the caller's, which may be NULL. */
 GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error *other) {
     return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
