@@ -2365,7 +2365,7 @@ GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, g
     for (i = 0; i < count; ++i) task(data, i);
 }
 
-/* The first item of chunk `chunk` when `items` are cut into `chunks`; chunk `chunks` gives the end. */
+/* Returns the first item in chunk `chunk` when `items` are cut into `chunks`; chunk `chunks` gives the end. */
 GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_t chunk) {
     return (int32_t)((int64_t)items * chunk / chunks);
 }
@@ -2397,7 +2397,7 @@ GPROJI_INLINE void gproji_cross3(const double a[3], const double b[3], double ou
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     out[0] = x, out[1] = y, out[2] = z;
 }
-/* Makes a vector unit; a vector too short to have a direction becomes `fallback`. False then. */
+/* Normalises a vector; one too short for a direction becomes `fallback`. False then. */
 GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
     double length = gproji_length3(a);
     if (!(length > 1e-150)) {
@@ -2408,23 +2408,23 @@ GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
     return true;
 }
 
-/* Two unit vectors that complete a unit vector n to a right-handed orthonormal basis u, v, n. They are a continuous
-   function of n away from n = -e_z (Frisvad 2012, in the form of Duff et al. 2017 without its jump at n_z = 0 being
-   of any consequence here: all users are invariant under rotations in the plane of u and v). */
+/* Completes a unit vector n to a right-handed orthonormal basis u, v, n, continuous away from n = -e_z (Frisvad 2012,
+   in the form by Duff et al. 2017; the jump at n_z = 0 does no harm, as all users are invariant under rotations in the
+   plane of u and v). */
 GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3]) {
     double sign = n[2] < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
     gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
 
-/* Twice the area of the triangle of points i, j, k in the plane, two numbers of xy each, positive when
-   counter-clockwise. */
+/* Twice the area of the triangle i, j, k in the plane, positive if counter-clockwise; xy has two numbers for each
+   point. */
 GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
     const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* The sum of so many parts; more than one, so that none has to wait for the one before. */
+/* Sums with independent accumulators, to hide the latency of additions; they are added up pairwise. */
 enum {
     GPROJI_PARTS = 16
 };
@@ -2455,7 +2455,7 @@ GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, siz
     return gproji_add_parts(part);
 }
 
-/* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
+/* A sum high + low with twice the digits (Dekker 1971); with the usual ones under -ffast-math. */
 typedef struct gproji_sum {
     double high, low;
 } gproji_sum;
@@ -2476,13 +2476,13 @@ GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
 
 GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s->low; }
 
-/* a += e e', a symmetric matrix by its entries xx, xy, xz, yy, yz, zz. */
+/* a += e e', a symmetric matrix stored as xx, xy, xz, yy, yz, zz. */
 GPROJI_INLINE void gproji_add_square3(const double e[3], double a[6]) {
     a[0] += e[0] * e[0], a[1] += e[0] * e[1], a[2] += e[0] * e[2];
     a[3] += e[1] * e[1], a[4] += e[1] * e[2], a[5] += e[2] * e[2];
 }
 
-/* Solves (a + shift trace(a) I) x = b by L D L'. False where a is not positive definite then. */
+/* Solves (a + shift trace(a) I) x = b by L D L'. False if the matrix is not positive definite. */
 GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const double b[3], double x[3]) {
     double ridge = shift * (a[0] + a[3] + a[5]), d0 = a[0] + ridge, d1, d2, l10, l20, l21, y0, y1, y2;
     if (!(d0 > 0)) return false;
@@ -2502,26 +2502,25 @@ GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const
 /* ============================================================================================================
    >>kernels   Small tiles kept in registers, once for each kind of vector unit. Uses platform.
 
-   Matrices are column-major. A tile is one to three times `block` rows by `block` columns; it stays in registers while
-   the product of two strips is subtracted from it (Goto, van de Geijn 2008). No kernel needs a masked edge: see >>dense
-   for how matrices are padded. A tile of diagonal entries may begin with `skip` < block columns that do not exist: its
-   first column in memory is number `skip`, so that pivot j always stands in row j. The rows of such columns are 0.
+   Matrices are column-major. A tile, one to three times `block` rows by `block` columns, stays in registers while the
+   product of two strips is subtracted from it (Goto, van de Geijn 2008). No kernel needs a masked edge, as matrices are
+   padded (see >>dense). In a diagonal tile the first `skip` < block columns may be missing: the first column in memory
+   is number `skip`, so that pivot j always stands in row j. The rows of missing columns are 0.
 
-   The text of the kernels is macros, compiled for each kind of unit: L numbers in a vector, B = `block`. In the scalar
-   kind a vector is a double. A kind's kernels stand in a constant table. On x86-64, where compilers build for the
-   oldest processor unless told otherwise, several kinds are compiled and gproji_kernels_of asks the processor, once for
-   an object; elsewhere the compiler's target decides.
+   The kernels are macros, compiled for each kind of unit: L numbers in a vector (one in the scalar kind), B = `block`.
+   On x86-64, as compilers build for the oldest processor unless told otherwise, several kinds are compiled, and
+   gproji_kernels_of asks the processor, once for an object; elsewhere the compiler's target decides.
 
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
 
 enum {
     GPROJI_CACHE_LINE = 8, /* values */
-    GPROJI_FAR_TILES = 96  /* so wide products fetch their tiles ahead */
+    GPROJI_FAR_TILES = 96  /* products with more columns fetch their tiles ahead */
 };
 
-/* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
-   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many
-   pieces from this one on as `run` says have none and follow each other. */
+/* A scatter run: rows of a matrix, from row `from` on, and their targets in another one. Without gaps: row `to` and the
+   following. With gaps: those of the 8 rows from `to` on, a multiple of 8, with a bit in `mask`; `run` pieces from this
+   one on have no gaps and follow each other. */
 typedef struct gproji_piece {
     int32_t from, rows, to;
     uint16_t mask, run;
@@ -2531,35 +2530,34 @@ typedef struct gproji_kernels {
     const char *name;
     int32_t block;
     int32_t tile_rows; /* of the tallest tile */
-    bool spreads;      /* the pieces of `add` have gaps */
+    bool spreads;      /* pieces of `add` have gaps */
     /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the
        rows of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next,
        but after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc, bool fresh);
-    /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
-       diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
+    /* C = (C - A B') L^-T likewise, with the diagonal tile L (stride ldc like C) and the inverses of the diagonal. C, L
+       and the inverses begin with column `skip`; k = 0 if that is not 0. */
     void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
-    /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
-       column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
+    /* Factors a diagonal tile in place and writes the inverses of the diagonal. Returns -1, or the first column (from 0
+       for `skip`) whose pivot is not positive and finite. */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
-    /* One column block of the solutions of L y = b and L' x = y: z[0..block) become the unknowns, and go into, or
-       come from, the other rows up to `rows` (a multiple of block). `forward_two`: so for z and y, in one pass. */
+    /* Steps of L y = b and L' x = y for one column block: the unknowns replace z[0..block); the other rows up to `rows`
+       (a multiple of block) are updated, or read. `forward_two` takes two right-hand sides, z and y, in one pass. */
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*forward_two)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z,
                         double *y);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
-    /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows
-       from there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one,
-       but after `left` columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column that belongs
-       to row piece[0].to. */
+    /* Adds the columns that belong to the rows of piece[0], lower triangle only: from the diagonal on, the rows in
+       piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but after `left`
+       columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column for row piece[0].to. */
     void (*add)(const gproji_piece *piece, int32_t count, const double *source, ptrdiff_t stride, int32_t left,
                 double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
-/* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
-   matrices are padded: in x86-64 the same for all kinds. */
+/* The kinds that are compiled, the best first, with the condition for using them. Matrices are padded to multiples of
+   GPROJI_BLOCK: on x86-64 the same for all kinds. */
 #if !GPROJI_SIMD || (defined(__i386__) && !defined(__SSE2_MATH__)) /* x87 has no vectors */
 #define GPROJI_KINDS(X) X(scalar, true)
 #define GPROJI_KIND_SCALAR
@@ -2588,8 +2586,8 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 4
 #endif
 
-/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory; where
-   pieces have no gaps, more make them longer, and a BLAS wants matrices that are not too narrow. */
+/* Columns of an update matrix that are stored with the same rows, a multiple of `block`. Few save memory; more make
+   pieces without gaps longer; and a BLAS wants matrices that are not too narrow. */
 #ifdef GPROJ_USE_CBLAS
 #define GPROJI_STRIP 48
 #elif GPROJI_BLOCK == 8
@@ -2609,8 +2607,8 @@ typedef double gproji_lanes_at_4 __attribute__((vector_size(32), aligned(8), may
 typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may_alias));
 #endif
 
-/* A kernel is compiled for its kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
-   begins with GPROJI_BEGIN, which says what a vector is. */
+/* A kernel is compiled for one kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
+   begins with GPROJI_BEGIN, which defines the vectors. */
 #if defined(__clang__)
 #define GPROJI_KERNEL(target) __attribute__((noinline, unused GPROJI_TARGET_##target)) static
 #define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma"), min_vector_width(512)
@@ -2649,8 +2647,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
 #define GPROJI_PAIRS_8(X, i, j) GPROJI_PAIRS_4(X, i, j) X(4, i, j) X(5, i, j) X(6, i, j) X(7, i, j)
 
-/* all columns; all that exist; the order of a forward substitution, in which S(j) finishes column j and E(i, j) takes
-   it from column i; and that of a backward one */
+/* All columns; all that exist; forward substitution, in which S(j) finishes column j and E(i, j) subtracts it from
+   column i; backward substitution. */
 #define GPROJI_COLUMNS_4(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
 #define GPROJI_COLUMNS_8(R, X) GPROJI_COLUMNS_4(R, X) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
 #define GPROJI_EXISTS(j, text) if (skip <= (j)) { text }
@@ -2721,8 +2719,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                          \
     }
 
-/* See `factor`. The pivots come from a chain as short as possible, 1 / pivot -> factor -> next pivot; the square roots
-   are beside it. */
+/* See `factor`. The chain from pivot to pivot is as short as possible, 1 / pivot -> factor -> next pivot, with the
+   square roots beside it. */
 #define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                               \
     GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) {  \
         GPROJI_BEGIN(L)                                                                                                \
@@ -2747,7 +2745,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         return -1;                                                                                                     \
     }
 
-/* One right-hand side: z_j is row j of the column block, l_j column j, sum_j its product with the other rows. */
+/* One right-hand side: z_j is row j of the column block, l_j column j, sum_j the product of l_j with the other rows. */
 #define GPROJI_ONE_ROW(X, j) X(j)
 #define GPROJI_ONE_PAIR(X, i, j) X(i, j)
 #define GPROJI_Z_TAKE(j) double z_##j = z[j]; const double *l_##j = l + gproji_max((j) - skip, 0) * stride;
@@ -2764,13 +2762,13 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                 \
              ((sum_##j[1] + sum_##j[5]) + (sum_##j[3] + sum_##j[7]));
 
-/* The same with a second right-hand side y. */
+/* Likewise with a second right-hand side y. */
 #define GPROJI_ZY_TAKE(j) GPROJI_Z_TAKE(j) double y_##j = y[j];
 #define GPROJI_ZY_SCALE(j) GPROJI_Z_SCALE(j) y_##j *= inverse[(j) - skip]; y[j] = y_##j;
 #define GPROJI_ZY_FORWARD(i, j) GPROJI_Z_FORWARD(i, j) y_##i -= y_##j * l_##j[i];
 #define GPROJI_ZY_SPREAD(j) GPROJI_Z_SPREAD(j) other -= GPROJI_LOAD(l_##j + r) * y_##j;
 
-/* See `forward` and `backward`. A column that does not exist is the first one once more, times 0. */
+/* See `forward` and `backward`. Missing columns reload column `skip`, scaled by 0. */
 #define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                            \
     GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                    \
                                                    const double *inverse, int32_t skip, double *z) {                   \
@@ -2838,36 +2836,32 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         }                                                                                                              \
     }
 
-/* What a wide panel is taken off may not be in the cache any more: it is fetched while the product is made. */
-GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const double *c, ptrdiff_t ldc) {
-    int32_t r, j;
-    for (j = 0; j < columns; ++j)
-        for (r = 0; r < rows; r += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c + j * ldc + r);
-}
-
-/* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
+/* A kind with tiles of SMALL, MIDDLE and TALL vectors (some may be equal): tall ones first, then one for the rest. A
+   wide panel's target may have left the cache, so it is fetched while the product is made. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
                                                   ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,            \
                                                   bool fresh) {                                                        \
+        int32_t r, j;                                                                                                  \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L) {                                     \
-            if (k >= GPROJI_FAR_TILES) gproji_prefetch_tile(TALL * L, B, c, ldc);                                          \
-            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                           \
+            for (j = 0; k >= GPROJI_FAR_TILES && j < B; ++j)                                                           \
+                for (r = 0; r < TALL * L; r += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c + j * ldc + r);                    \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                       \
         }                                                                                                              \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, fresh);                                         \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, fresh);                                     \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                          \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                      \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
                                                  const double *triangle, const double *inverse, int32_t skip) {        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                          \
+            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                      \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                    \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                         \
+            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                     \
     }                                                                                                                  \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
@@ -2876,8 +2870,8 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
         gproji_forward_##kind, gproji_forward_two_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
-/* See `add`; pieces with gaps: the rows of a piece are spread over a vector. Piece after piece in all columns, so that
-   what is known of a piece stays in registers. */
+/* See `add`, with gaps: a vector spreads the rows of a piece. Each piece is added to all columns before the next one,
+   so that masks stay in registers. */
 #define GPROJI_ADD_AT(d, v) _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), v))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, const double *source,
                                              ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride) {
@@ -2944,28 +2938,21 @@ GPROJI_DEFINE_KIND(avx512, "AVX-512", 8, 8, 1, 2, 3)
 #endif
 /* clang-format on */
 
-#if GPROJI_CHOICE
-/* The vector units of this processor whose registers the operating system keeps. */
-typedef struct gproji_units {
-    bool avx2, avx512;
-} gproji_units;
-
-GPROJI_INTERNAL gproji_units gproji_find_units(void) {
-    gproji_units units = {false, false};
-    unsigned a, b, c, d, kept, high;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_OSXSAVE) || !(c & bit_FMA)) return units;
-    __asm__ __volatile__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d)) return units;
-    units.avx2 = (b & bit_AVX2) && (kept & 0x06) == 0x06;      /* xmm, ymm */
-    units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6; /* and masks, zmm */
-    return units;
-}
-#endif
-
-/* Kernels that this processor can run: index 0 the best, then the others; NULL where there are no more. */
+/* Finds kernels that this processor can run: index 0 the best, then the others; NULL after the last. */
 GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 #if GPROJI_CHOICE
-    const gproji_units units = gproji_find_units();
+    struct {
+        bool avx2, avx512;
+    } units = {false, false};
+    unsigned a, b, c, d, kept, high;
+    /* A unit counts if the operating system keeps the registers: xmm and ymm; masks and zmm. */
+    if (__get_cpuid(1, &a, &b, &c, &d) && (c & bit_OSXSAVE) && (c & bit_FMA)) {
+        __asm__ __volatile__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
+        if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) {
+            units.avx2 = (b & bit_AVX2) && (kept & 0x06) == 0x06;
+            units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6;
+        }
+    }
     (void)units;
 #endif
 #define GPROJI_X(kind, have) \
@@ -3550,31 +3537,6 @@ GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->kind[j] = GPROJI_AMD_GONE;
 }
 
-/* Moves all lists in use to the front of the space. */
-GPROJI_INTERNAL void gproji_amd_compact(gproji_amd *amd) {
-    int64_t from, to = 0;
-    int32_t i, k;
-    for (i = 0; i < amd->nodes; ++i) {
-        if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
-        /* a list's first entry waits in list[i] while the node's number, as -1 - i, marks where the list begins */
-        from = amd->list[i];
-        amd->list[i] = amd->space[from];
-        amd->space[from] = -1 - i;
-    }
-    for (from = 0; from < amd->free;) {
-        if (amd->space[from] >= 0) {
-            ++from;
-            continue;
-        }
-        i = -1 - amd->space[from];
-        amd->space[to] = (int32_t)amd->list[i];
-        amd->list[i] = to++;
-        ++from;
-        for (k = 1; k < amd->length[i]; ++k) amd->space[to++] = amd->space[from++];
-    }
-    amd->free = to;
-}
-
 /* Moves the variables of a list into the new element, whose list grows at `free`. */
 GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int32_t *from, int32_t count) {
     int32_t k;
@@ -3590,11 +3552,28 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
 
 /* Forms the element of a pivot and absorbs the elements in its list. */
 GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
-    int32_t k, own = amd->length[pivot], heads = amd->elements[pivot];
-    int64_t needed = own - heads, begin;
+    int32_t i, k, own = amd->length[pivot], heads = amd->elements[pivot];
+    int64_t needed = own - heads, begin, from, to = 0;
     for (k = 0; k < heads; ++k) needed += amd->length[amd->space[amd->list[pivot] + k]];
     if (needed > amd->left) needed = amd->left; /* each variable at most once */
-    if (amd->free + needed > amd->size) gproji_amd_compact(amd);
+    if (amd->free + needed > amd->size) {
+        /* Out of space: move all lists to the front. A list's first entry waits in list[i] while the node's number, as
+           -1 - i, marks the beginning of the list. */
+        for (i = 0; i < amd->nodes; ++i) {
+            if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
+            from = amd->list[i];
+            amd->list[i] = amd->space[from];
+            amd->space[from] = -1 - i;
+        }
+        for (from = 0; from < amd->free;) {
+            i = -1 - amd->space[from++];
+            if (i < 0) continue;
+            amd->space[to] = (int32_t)amd->list[i];
+            amd->list[i] = to++;
+            for (k = 1; k < amd->length[i]; ++k) amd->space[to++] = amd->space[from++];
+        }
+        amd->free = to;
+    }
     GPROJ_ASSERT(amd->free + needed <= amd->size);
     begin = amd->free;
     amd->degree[pivot] = 0;
@@ -4316,8 +4295,10 @@ GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *r
     return gproji_coarsely(low < high ? low : high);
 }
 
-/* Marks the best thresholds by guess, and the coordinates near them, in profile.nearby. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_cut *cut, const double *reach) {
+/* Chooses the best thresholds by guess and marks them, and the coordinates near them, in the profile. exact: also
+   counts the weight of nodes with neighbours across them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_cut *cut, const double *reach,
+                                                 bool exact) {
     int32_t at[GPROJI_ND_THRESHOLDS + 1], count = 0, jump = cut->jump, most = cut->range / (4 * jump), t, k;
     double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
     unsigned char *nearby = nd->profile.nearby;
@@ -4342,26 +4323,19 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_
         for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < cut->range; ++t) nearby[t] |= 1;
         nearby[at[k]] = 3;
     }
-}
-
-/* Counts, for all thresholds at once, the weight of nodes with neighbours across. Nodes far from all chosen thresholds
-   cannot reach one and are skipped. */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *coordinate) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->profile.low, *high = nd->profile.high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = coordinate[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list, *end;
-        if (!nd->profile.nearby[p]) continue;
-        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
+    /* Only nodes near a threshold can have neighbours across it. */
+    for (k = 0; exact && k < nd->nodes; ++k) {
+        int32_t p = cut->coordinate[k], lowest = p, highest = p, w = nd->here.weight[k];
+        const int32_t *list = nd->here.adjacent + nd->here.from[k], *end = list + nd->here.inner[k];
+        if (!nearby[p]) continue;
         for (; list < end; ++list) {
-            int32_t q = coordinate[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
+            int32_t q = cut->coordinate[*list];
+            if (q < lowest) lowest = q;
+            if (q > highest) highest = q;
         }
-        /* below thresholds p + 1..most with a neighbour above; above thresholds least + 1..p with one below */
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
+        /* below thresholds p + 1..highest with a neighbour above; above thresholds lowest + 1..p with one below */
+        nd->profile.low[p + 1] += w, nd->profile.low[highest + 1] -= w;
+        nd->profile.high[lowest + 1] += w, nd->profile.high[p + 1] -= w;
     }
 }
 
@@ -4409,8 +4383,7 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, const double *re
     }
     /* 3. Promising thresholds, and which is best. */
     if (halved > 0) reach = NULL;
-    gproji_nd_choose_thresholds(nd, &cut, reach);
-    if (exact) gproji_nd_count_inner(nd, at);
+    gproji_nd_choose_thresholds(nd, &cut, reach, exact);
     beside[0] = 0, beside[1] = halo->weight;
     for (t = 1; t < cut.range; ++t) {
         double s;
@@ -4550,27 +4523,10 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     return next;
 }
 
-/* Sends a unit along the path in the queue, which has `depth` steps. */
-GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
-    const int32_t *path = band->queue;
-    int32_t k, from = -1; /* the exit that was passed last */
-    for (k = 0; k < depth; ++k) {
-        int32_t s = path[k], v = s >> 1;
-        if (s & 1)
-            from = v;
-        else if ((path[k + 1] ^ s) == 1) /* entry to exit: one unit more */
-            band->origin[band->unit[v] + band->load[v]++] = from;
-        else if (k > 0 && path[k - 1] == (s ^ 1)) /* exit to entry: one less */
-            band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
-        else /* entry to a neighbour's exit: this unit now comes from elsewhere */
-            band->origin[band->turn[s]] = from;
-    }
-}
-
 /* One round: augments along shortest paths until there are none of that length. False when there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
-    int32_t *path = band->queue, i, depth;
+    int32_t *path = band->queue, i, k, depth;
     if (!gproji_band_find_levels(band)) return false;
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
@@ -4579,15 +4535,28 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE) || band->level[2 * i] < 0) continue;
         for (path[0] = 2 * i, depth = 0; depth >= 0;) {
-            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
-            if (next == s) { /* at the sink: begin again */
-                gproji_band_push(band, depth);
-                depth = 0;
-            } else if (next >= 0) {
+            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s, from = -1;
+            if (next >= 0 && next != s) { /* one step further */
                 path[++depth] = next;
-            } else {
-                band->level[path[depth--]] = -1;
+                continue;
             }
+            if (next < 0) { /* a dead end */
+                band->level[path[depth--]] = -1;
+                continue;
+            }
+            /* At the sink: send a unit along the path, and begin again. from: the exit that was passed last */
+            for (k = 0; k < depth; ++k) {
+                int32_t v = path[k] >> 1;
+                if (path[k] & 1)
+                    from = v;
+                else if ((path[k + 1] ^ path[k]) == 1) /* entry to exit: one unit more */
+                    band->origin[band->unit[v] + band->load[v]++] = from;
+                else if (k > 0 && (path[k - 1] ^ path[k]) == 1) /* exit to entry: one less */
+                    band->origin[band->turn[path[k]]] = band->origin[band->unit[v] + --band->load[v]];
+                else /* entry to a neighbour's exit: this unit now comes from elsewhere */
+                    band->origin[band->turn[path[k]]] = from;
+            }
+            depth = 0;
         }
     }
     return true;
