@@ -1750,7 +1750,7 @@ GPROJI_INLINE double gproji_double_of_bits(uint64_t bits) {
     return value;
 }
 
-/* (m + s) 2^exponent rounded to nearest even, where m has its highest bit set and 0 < s < 1 if sticky, else s = 0.
+/* Rounds (m + s) 2^exponent to nearest even; m has the highest bit set, and 0 < s < 1 if sticky, else s = 0.
    Returns the bits of the double. */
 GPROJI_INTERNAL uint64_t gproji_round_significand(uint64_t m, int32_t exponent, bool sticky) {
     int32_t drop = 11; /* bits of m below the last one kept */
@@ -1813,7 +1813,7 @@ GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
         }
         return gproji_round_significand(high, power, low != 0);
     }
-    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved where that would have 65 bits */
+    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved if that would have 65 bits */
     if (w >= five) {
         high = gproji_divide_128(w >> 1, w << 63, five, &low);
         ++power;
@@ -1844,7 +1844,7 @@ GPROJI_INTERNAL uint64_t gproji_read_long(const uint8_t *digit, int32_t count, i
     gproji_big_shift(&a, i - bits_a);
     gproji_big_shift(&b, i - bits_b);
     exponent += bits_a - bits_b;
-    if (gproji_big_compare(&a, &b) >= 0) { /* doubling b would spoil its leading bit: subtract b for the leading 1 */
+    if (gproji_big_compare(&a, &b) >= 0) { /* doubling b would spoil the leading bit: subtract b for the leading 1 */
         gproji_big_divide(&a, &b);
         gproji_big_shift(&a, 31);
         m = (uint64_t)1 << 63 | (uint64_t)gproji_big_divide(&a, &b) << 32;
@@ -2532,8 +2532,8 @@ typedef struct gproji_kernels {
     int32_t tile_rows; /* of the tallest tile */
     bool spreads;      /* pieces of `add` have gaps */
     /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the
-       rows of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next,
-       but after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+       rows of C, B has k columns and block rows. A and B are parts of a panel: `stride` leads from one column to the
+       next, but after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc, bool fresh);
     /* C = (C - A B') L^-T likewise, with the diagonal tile L (stride ldc like C) and the inverses of the diagonal. C, L
@@ -2634,8 +2634,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_LOAD(p) (*(const lanes_at *)(const void *)(p))
 #define GPROJI_STORE(p, v) (*(lanes_at *)(void *)(p) = (v))
 
-/* The loops over a tile are written out, because compilers keep it in registers only when every element of it is a
-   variable of its own: tile_r_j is vector r of column j. Vectors 0..T-1 of column j: */
+/* The loops over a tile are written out, because compilers keep it in registers only when every element is a
+   separate variable: tile_r_j is vector r of column j. Vectors 0..T-1 of column j: */
 #define GPROJI_ROWS_1(X, j) X(0, j)
 #define GPROJI_ROWS_2(X, j) X(0, j) X(1, j)
 #define GPROJI_ROWS_3(X, j) X(0, j) X(1, j) X(2, j)
@@ -2963,26 +2963,26 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 }
 
 /* ============================================================================================================
-   >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel,
+   >>dense   Dense matrices: panels and updates in the sparse factorisation, small ones. Uses platform, parallel,
    kernels.
 
    Matrices are column-major, but for the small ones. A front has a panel with w pivot columns and an update matrix, the
    Schur complement of the rows below. Rows are padded, so that kernels meet whole, aligned tiles only. In "storage
-   rows" a panel has q empty rows, w pivot rows, the rows below, and empty ones up to a multiple of GPROJI_BLOCK; q
-   makes the rows below begin at such a multiple. Pivot j stands in storage row j + q. Column blocks end at multiples of
-   B, the kernels' block, which divides GPROJI_BLOCK; so the first block may have fewer than B columns. Most entries
-   above the diagonal are not stored, see gproji_shape. Kernels compute zeros in empty rows, and what they write above
-   the diagonal in a diagonal tile is never read.
+   rows" a panel has q empty rows, w pivot rows, the rows below, and empty ones that fill the last GPROJI_BLOCK; q
+   lets the rows below begin at a multiple of GPROJI_BLOCK. Pivot j stands in storage row j + q. Column blocks end at
+   multiples of B, the kernels' block, which divides GPROJI_BLOCK; so the first block may have fewer than B columns.
+   Most entries above the diagonal are not stored, see gproji_shape. Kernels compute zeros in empty rows, and what they
+   write above the diagonal in a diagonal tile is never read.
 
    Invariant: every entry is computed by the same operations in the same order however the work is cut into tasks for
    threads, so that results are the same bits. */
 enum {
     GPROJI_CHUNK = 128,   /* pivots eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192,  /* at most so many pivots, if they are the last, update a matrix together */
+    GPROJI_NARROW = 192,  /* last pivots, or fewer, that update a matrix together */
     GPROJI_CLEARED = 240, /* values that are set to 0 by one call */
-    GPROJI_TASK_COLUMNS = 48, /* columns updated by one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
-    GPROJI_TASK_ROWS = 120,   /* rows of a panel solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 240    /* rows, or up to twice as many, that stay in the L2 cache with GPROJI_CHUNK columns */
+    GPROJI_TASK_COLUMNS = 48, /* columns that a task updates; divisible by GPROJI_BLOCK, GPROJI_STRIP and 8 */
+    GPROJI_TASK_ROWS = 120,   /* rows that a task solves for; divisible by the heights of all tiles */
+    GPROJI_ROW_BLOCK = 240    /* rows, or less than twice that, that stay in the L2 cache with GPROJI_CHUNK columns */
 };
 
 /* Pieces of `size` that cover `all`. */
@@ -2991,18 +2991,18 @@ GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + s
 /* Rounds up to a multiple of `size`, a power of 2. */
 GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all + size - 1) & -size; }
 
-/* Empty rows before the pivots of a panel with w pivots. */
+/* Empty rows before w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* Layout of a panel: blocks of columns, each with the storage rows from its first pivot's on, so that strides shrink
-   from block to block. In narrow panels blocks begin at multiples of GPROJI_BLOCK; in wide ones at multiples of
+/* Layout of a panel: blocks of columns that store the rows from the first pivot's on, so that strides shrink from block
+   to block. In narrow panels blocks begin at multiples of GPROJI_BLOCK; in wide ones at multiples of
    GPROJI_CHUNK, as processors predict addresses better if pivots eliminated together have one stride. With a BLAS there
    is one block. The struct has 16 bytes: to return 12, tcc 0.9.27 writes 16. */
 typedef struct gproji_shape {
     int32_t shift;  /* empty rows before the pivots */
-    int32_t stride; /* of the first block, and the number of storage rows */
-    int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
-    int32_t end;    /* where the storage rows of the pivots end */
+    int32_t stride; /* in the first block, and the number of storage rows */
+    int32_t last;   /* first storage row of the last block in a wide panel; -1: narrow */
+    int32_t end;    /* end of the pivots' storage rows */
 } gproji_shape;
 
 GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
@@ -3046,10 +3046,10 @@ GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape) {
     return gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
 }
 
-/* Update matrices are symmetric. Little more than the lower triangle is stored, in strips of GPROJI_STRIP columns, each
-   with the rows from its first column on. `rows` is a multiple of B. */
+/* Update matrices are symmetric. Little more than the lower triangle is stored, in strips of GPROJI_STRIP columns with
+   the rows from the strip's first column on. B divides `rows`. */
 
-/* The first column of the strip with this column, and the first row that it stores. */
+/* The first column, and the first row, of the strip that holds a column. */
 GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
     return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
@@ -3068,8 +3068,8 @@ GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
 }
 
 /* A panel at work: w pivot columns in storage rows [top, rows). The chunk of columns [first, last) is being eliminated,
-   with all updates by earlier columns applied. Both bounds are ends of column blocks (or 0). If B is less than
-   GPROJI_BLOCK, whole empty blocks of rows, `top` rows, are left out. */
+   with all updates by earlier columns applied. `first` and `last` are ends of column blocks (or 0). If B is
+   less than GPROJI_BLOCK, whole empty blocks, `top` rows, are left out. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
     int32_t w, shift, top, rows;
@@ -3077,11 +3077,11 @@ typedef struct gproji_panel {
     bool fresh; /* the update matrix has no values yet: the first update sets it */
     gproji_shape shape;
     double *values;
-    double *inverse;          /* w: inverses of the diagonal of L */
+    double *inverse;          /* w: inverses of L's diagonal */
     double *update;           /* the update matrix */
-    int32_t update_rows;      /* rows of it */
+    int32_t update_rows;      /* stored for it */
     int32_t pivots[2];        /* update tasks: pivots that are applied, from..to, */
-    int32_t at, end, columns; /* to the columns of storage rows [at, end); columns of one task */
+    int32_t at, end, columns; /* to the columns that belong to [at, end), `columns` by each task */
 } gproji_panel;
 
 GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
@@ -3128,7 +3128,8 @@ GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, d
     }
 }
 
-/* The end of the chunk that begins with column `first`; as a storage row a multiple of GPROJI_CHUNK, or the last. */
+/* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides it, but for the last one.
+   */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
@@ -3178,7 +3179,7 @@ GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start
     return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
-/* Solves for a chunk's columns in some of the rows below its pivots, tile by tile. A task. */
+/* Solves for a chunk's columns in some rows below the pivots, tile by tile. A task. */
 GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t tile = panel->kernels->tile_rows, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
@@ -3209,15 +3210,14 @@ GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
     return 2 * groups + below / GPROJI_BLOCK + 2;
 }
 
-/* Cuts the rows of a child's update matrix into pieces for extend-add. Rows in group k, from at[k] - base up to those
-   of the next group or `below`, go to the parent's storage rows from to[k] on. A piece stays within one stride of the
-   parent's columns: before `pivot_end`, the end of the pivots, or within a strip of the update matrix. Returns the
-   number of pieces, at most gproji_pieces_most. */
+/* Cuts a child's rows into pieces for extend-add. Rows in group k, from at[k] - base up to the next group or `below`,
+   go to the parent's storage rows from to[k] on. The columns of a piece have one stride in the parent: none lies beyond
+   `pivot_end`, the end of the pivots, or beyond a strip. Returns the number of pieces, at most gproji_pieces_most. */
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
     gproji_piece *now = piece;
-    int32_t k, row, count = 0, end = INT32_MIN; /* end of the parent's rows that fit into the piece */
+    int32_t k, row, count = 0, end = INT32_MIN; /* end: the parent's first row beyond the piece */
     for (k = 0; k < groups; ++k) {
         int32_t next = k + 1 < groups ? at[k + 1] - base : below, target = to[k], fit;
         for (row = at[k] - base; row < next; row += fit, target += fit) {
@@ -3245,7 +3245,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* A child's update matrix with `rows` rows on its way to its parent. */
+/* The extend-add of a child's update matrix, with `rows` rows. */
 typedef struct gproji_addition {
     const gproji_panel *panel; /* the parent's */
     const gproji_piece *piece;
@@ -3300,8 +3300,8 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
 }
 
 #ifdef GPROJ_USE_CBLAS
-/* By a BLAS: dtrsm, dsyrk and dgemm after our own kernels have factored a chunk's pivot rows. The BLAS has threads of
-   its own. */
+/* By a BLAS: dtrsm, dsyrk and dgemm after our own kernels have factored a chunk's pivot rows. Threads are left to
+   the BLAS. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -3336,8 +3336,8 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     }
 }
 #else
-/* Applies the Schur update of pivots from..to to the columns of storage rows [at, end). A single thread takes all
-   columns in one task: a strip of rows, once in the cache, serves more columns. */
+/* Applies the Schur update by pivots from..to to the columns that belong to storage rows [at, end). A single thread
+   takes all columns in one task: a strip, once in the cache, serves more columns. */
 GPROJI_INTERNAL void gproji_apply_pivots(const gproj_parallel *parallel, double flops, gproji_panel *panel,
                                          int32_t from, int32_t to, int32_t at, int32_t end) {
     panel->pivots[0] = from, panel->pivots[1] = to, panel->at = at, panel->end = end;
@@ -3345,7 +3345,7 @@ GPROJI_INTERNAL void gproji_apply_pivots(const gproj_parallel *parallel, double 
     gproji_run_tasks(parallel, flops, gproji_pieces(end - at, panel->columns), gproji_update_task, panel);
 }
 
-/* Finishes a chunk after its pivots: the rows below, and the update of later pivot columns. */
+/* Finishes a chunk whose pivot rows are factored: solves for the rows below and updates later pivot columns. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
@@ -3354,7 +3354,7 @@ GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_
                         panel->last + panel->shift, panel->shape.end);
 }
 
-/* Applies a factored panel to its update matrix. */
+/* Applies the Schur update by all pivots to the update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->shape.end;
     gproji_apply_pivots(parallel, (double)below * below * panel->w, panel, 0, panel->w, panel->shape.end, panel->rows);
@@ -3368,7 +3368,7 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     int32_t block = kernels->block, start, failed;
     for (panel->last = 0; panel->last < panel->w;) {
         int32_t first = panel->first = panel->last, end = panel->last = gproji_next_chunk(panel, first);
-        /* The chunk's pivot rows: each block of columns is updated by those before, factored, and solved for below. */
+        /* The chunk's pivot rows: each column block is updated by those before, factored, and solved for below. */
         for (start = first; start < end; start = gproji_next_block(panel, start)) {
             int32_t at = gproji_block_row(panel, start), chunk = first + panel->shift;
             int32_t stride = gproji_shape_stride(panel->shape, at);
@@ -3386,8 +3386,8 @@ GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gpro
     return -1;
 }
 
-/* z = L^-1 z on all storage rows of a panel: the solution in the pivots' rows, and in the rows below (0 on entry) their
-   contribution. The second right-hand side y may be NULL. */
+/* z = L^-1 z on a panel's storage rows: the solution in the pivots' rows, and the contribution to the rows below (0 on
+   entry). The second right-hand side y may be NULL. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, double *y) {
     int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
@@ -3407,7 +3407,7 @@ GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
     for (i = 0; i < count; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH_L2(value + i);
 }
 
-/* z = L^-T z on all storage rows of a panel, given the rows below. is_far: the panel is not in the cache, so each
+/* z = L^-T z on a panel's storage rows, given the rows below. is_far: the panel is not in the cache, so each
    column block is fetched ahead, as processors do not predict columns from right to left. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_far, double *z) {
     int32_t block = panel->kernels->block, at = panel->shape.end - block;
@@ -3453,17 +3453,17 @@ GPROJI_INTERNAL void gproji_small_solve(const double *m, int32_t n, int32_t stri
 /* ============================================================================================================
    >>ordering   The order of elimination: graphs of nodes, condensation, minimum degree. Uses platform, memory.
 
-   A node is a group of variables that stay together, its weight their number; degrees and counts are in variables.
+   A node is a group of variables that stay together; weights, degrees and counts are numbers of variables.
    The approximate minimum degree ordering follows Amestoy, Davis, Duff (1996). Elimination is kept as a quotient graph:
-   a pivot p turns into an element, a clique of all variables in L_p = (A_p u union of L_e over its elements e) \ p. The
-   elements are absorbed, also others inside L_p (aggressive absorption). The degree of variable i is bounded by
-     |A_i| + |L_p \ i| + sum over its other elements of |L_e \ L_p|,
-   the last from one scan over the elements. Variables without neighbours outside L_p go with the pivot (mass
+   a pivot p turns into an element, a clique with the variables L_p = (A_p u all L_e) \ p, for the elements e next to p.
+   These are absorbed, and so are others inside L_p (aggressive absorption). The degree of variable i is bounded by
+     |A_i| + |L_p \ i| + sum |L_e \ L_p| over other elements e next to i,
+   the sum from one scan over the elements. Variables without neighbours outside L_p go with the pivot (mass
    elimination); those with equal lists merge into supervariables, found by hashing (Ashcraft 1995).
    Invariant: the order depends on the graph alone; ties go to the variable that entered a degree list last. */
 
-/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
-   a neighbour of each of them. */
+/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and each
+   has i for a neighbour. */
 typedef struct gproji_graph {
     int32_t nodes;
     const int64_t *start;
@@ -3476,39 +3476,39 @@ GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
     return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
 }
 
-/* The kinds of a node during elimination. The list of a variable has first `elements[i]` elements, then variables,
-   `length[i]` altogether. */
+/* Kinds of nodes during elimination. A variable's list has first `elements[i]` elements, then variables, `length[i]`
+   entries altogether. */
 enum {
     GPROJI_AMD_VARIABLE, /* not yet eliminated; stands for `weight` variables, negated while in the new element */
-    GPROJI_AMD_ELEMENT,  /* a pivot; its list: the variables in its column of L that are not yet eliminated */
+    GPROJI_AMD_ELEMENT,  /* a pivot; the list has the variables in that column of L that are not yet eliminated */
     GPROJI_AMD_GONE,     /* absorbed: a variable by another one or by an element, or an element by a later one */
     GPROJI_AMD_DENSE     /* put last, never looked at */
 };
 
 typedef struct gproji_amd {
     int32_t nodes;
-    int32_t total;       /* weight of all nodes that are not dense */
-    int32_t left;        /* of it, not yet eliminated */
+    int32_t total;       /* weight without dense nodes */
+    int32_t left;        /* weight that is not yet eliminated */
     int32_t lowest;      /* no variable has a smaller degree */
     double flops;        /* so far: sum of (column count)^2, with dense nodes in all columns */
     int64_t free;        /* space[free..size-1] is unused */
-    int64_t size;        /* of the space */
+    int64_t size;        /* entries in the space */
     int64_t stamp;       /* marks below it are old */
     int32_t *space;      /* size: all lists */
-    int64_t *list;       /* nodes: where the list begins */
+    int64_t *list;       /* nodes: beginning of the list */
     int32_t *length;     /* nodes */
-    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
+    int32_t *elements;   /* nodes: elements at the head of a variable's list */
     int32_t *weight;     /* nodes */
-    int32_t *degree;     /* nodes: a variable's bound on its external degree; the weight of an element's list */
+    int32_t *degree;     /* nodes: bound on a variable's external degree; weight of an element's list */
     unsigned char *kind; /* nodes */
     int64_t *mark;       /* nodes: an element's weight outside the new one, + stamp; else marks */
-    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int32_t *head;       /* buckets: first variable with this degree, or -1 */
     int32_t buckets;     /* total + 1 */
     int32_t *next;       /* nodes: in a degree list, in a hash list */
     int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
     int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;      /* nodes: next node of that chain, or -1 */
+    int32_t *tail;       /* nodes: last node that a representative has absorbed */
+    int32_t *chain;      /* nodes: next node absorbed by the same one, or -1 */
 } gproji_amd;
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
@@ -3529,7 +3529,7 @@ GPROJI_INTERNAL void gproji_amd_list_remove(gproji_amd *amd, int32_t i) {
         amd->head[amd->degree[i]] = after;
 }
 
-/* Node i absorbs node j, which is eliminated, with all that it has absorbed, right after what i has absorbed so far. */
+/* Node i absorbs node j: the chain of nodes eliminated with j follows the chain of i. */
 GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->chain[amd->tail[i]] = j;
     amd->tail[i] = amd->tail[j];
@@ -3550,7 +3550,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
     }
 }
 
-/* Forms the element of a pivot and absorbs the elements in its list. */
+/* Turns a pivot into an element and absorbs the elements next to it. */
 GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     int32_t i, k, own = amd->length[pivot], heads = amd->elements[pivot];
     int64_t needed = own - heads, begin, from, to = 0;
@@ -3558,7 +3558,7 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     if (needed > amd->left) needed = amd->left; /* each variable at most once */
     if (amd->free + needed > amd->size) {
         /* Out of space: move all lists to the front. A list's first entry waits in list[i] while the node's number, as
-           -1 - i, marks the beginning of the list. */
+           -1 - i, marks the list's beginning. */
         for (i = 0; i < amd->nodes; ++i) {
             if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
             from = amd->list[i];
@@ -3634,7 +3634,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
     return (int32_t)(hash % (uint32_t)amd->nodes);
 }
 
-/* Merges the variables of one hash list that have the same elements and neighbours. */
+/* Merges variables in one hash list that have the same elements and neighbours. */
 GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
     int32_t i, j, before, k;
     for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
@@ -3655,7 +3655,7 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
     }
 }
 
-/* Eliminates one pivot: forms its element and brings all its variables up to date. */
+/* Eliminates one pivot: forms the element and brings all variables in it up to date. */
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t j, k, to = 0, *element;
     amd->left -= amd->weight[pivot];
@@ -3688,7 +3688,7 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         amd->next[i] = amd->hash_head[hash];
         amd->hash_head[hash] = i;
     }
-    /* 3. Supervariables. The hash lists are empty again afterwards. */
+    /* 3. Supervariables. Empties the hash lists. */
     amd->stamp += (int64_t)amd->total + 1;
     for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], first;
@@ -3716,7 +3716,7 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
 }
 
 /* Gives all dense nodes this kind: those with more than 10 sqrt(n) variables next to them. They are put last unseen, as
-   they would make every degree and distance meaningless and the search slow. `total` is the weight of all nodes. */
+   they would make every degree and distance meaningless and the search slow. `total`: the weight of all nodes. */
 GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total, unsigned char *kind,
                                        unsigned char dense) {
     double least = gproji_fmax(16.0, 10.0 * sqrt((double)total));
@@ -3782,8 +3782,8 @@ GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const 
     return true;
 }
 
-/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops of a factorisation: an
-   upper bound, exact without dense nodes. `total` is the weight of all nodes. False when there is no memory. */
+/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops to factor: an upper
+   bound, exact without dense nodes. total: the weight of all nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                       double *flops) {
     gproji_pool pool;
@@ -3816,7 +3816,7 @@ enum {
     GPROJI_CONDENSED_DEGREE = 21 /* largest weight of a condensed node's neighbours */
 };
 
-/* A graph without some of its nodes. */
+/* A graph without some nodes. */
 typedef struct gproji_condensation {
     gproji_pool pool;
     gproji_graph rest;
@@ -3909,44 +3909,43 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
 
    A separator splits a graph into two sides that are not adjacent. Nested dissection eliminates both sides first, each
    dissected in turn, and the separator last (George 1973). Only the graph is known, no positions. For each part:
-     axes         Pseudo-coordinates from distances along the graph: x = d_a - d_b for a node a on the boundary and the
-                  node b farthest from a; y = d_c - d_d for c far from both and d far from all three. On a grid of quads
-                  with adjacent face corners, x and y are the diagonals, x + y and x - y the grid's own directions. Cuts
-                  are tried along these four axes. Sides inherit x and y while cuts by them cost about as little.
-     cut          A threshold on an axis. Costs are guessed from the weights by coordinate and from the spans of edges
-     in
-                  a sample; in large parts the nodes next to the best thresholds are then counted. The cost of a side
-                  includes the halo: nodes of earlier separators next to it, which become rows of all its fronts.
-     separator    The smallest vertex separator in a band around the threshold, by maximum flow (Menger 1927; Ford,
-                  Fulkerson 1956; rounds of shortest paths: Dinitz 1970). It straightens the ragged level sets of
-                  distances. Three minimum cuts are compared: next to the source, to the sink, to the threshold.
-   Small parts are ordered by exact minimum degree, halo included, with sets of bits.
+     axes        Pseudo-coordinates from distances along the graph: x = d_a - d_b for a node a on the boundary and the
+                 node b farthest from a; y = d_c - d_d for c far from both and d far from all three. On a grid of quads
+                 with adjacent face corners, x and y are the diagonals, x + y and x - y the grid's own directions. Cuts
+                 are tried along these four axes. Sides inherit x and y while cuts by them cost about as little.
+     cut         A threshold on an axis. Costs are guessed from the weights by coordinate and from the lengths of edges
+                 in a sample; in large parts the nodes next to the best thresholds are then counted. A side's cost
+                 includes the halo: nodes in earlier separators next to it, which become rows in all fronts.
+     separator   The smallest vertex separator in a band around the threshold, by maximum flow (Menger 1927; Ford,
+                 Fulkerson 1956; rounds along shortest paths: Dinitz 1970). It straightens ragged level sets. Three
+                 minimum cuts are compared: next to the source, to the sink, to the threshold.
+   Small parts are ordered by exact minimum degree, halo included, with bit sets.
 
    Two kinds of nodes are left out. Dense ones (see gproji_mark_dense) come last. A node is dominated if a heavier
-   neighbour has all its other neighbours; eliminated right before the first such neighbour it causes no fill. Forces in
-   edges are such nodes.
+   neighbour is adjacent to all its other neighbours; eliminated right before the first such neighbour it causes no
+   fill. Forces in edges are such nodes.
 
    Invariants: parts on the stack are not adjacent, and their halos are complete. Costs are rounded to single precision
    before they are compared, so that machines that fuse products and sums choose alike. */
 
 enum {
-    GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
-    GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
+    GPROJI_ND_LEAF = 64,      /* nodes in a part that is not cut any more: bits in a word */
+    GPROJI_ND_HALO = 192,     /* halo nodes that count for the degrees then */
     GPROJI_ND_WORDS = 4,      /* for both */
     GPROJI_ND_STACK = 40,     /* parts to do; the smaller side goes on top, so that 32 are enough for all graphs */
     GPROJI_ND_SAMPLES = 64,   /* nodes whose edges are measured along the axes */
     GPROJI_ND_THRESHOLDS = 5, /* tried along an axis */
-    GPROJI_ND_EXACT = 400,    /* nodes of a part whose separators are counted before one is chosen, not guessed */
-    GPROJI_ND_STARTS = 8,     /* nodes from which coordinates of a closed mesh are tried */
-    GPROJI_ND_SORTED = 64,    /* arcs of a node that are sorted; no mesh has more */
-    GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
+    GPROJI_ND_EXACT = 400,    /* nodes in a part whose separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* nodes from which a closed mesh's coordinates are tried */
+    GPROJI_ND_SORTED = 64,    /* arcs that are sorted; no node in a mesh has more */
+    GPROJI_ND_ROUNDS = 200    /* searches for a flow; no mesh needs more than some ten */
 };
 
-/* A part still to be ordered: nodes first..first+nodes-1 in one of the two copies of the graph. */
+/* A part still to be ordered: nodes first..first+nodes-1 in one copy of the graph. */
 typedef struct gproji_nd_part {
     int32_t first, nodes, copy;
-    int32_t position; /* its first position in the order */
-    double expected; /* cost of a good cut over gproji_nd_rest; 0, -1: cut by new coordinates, see gproji_nd_cut_part */
+    int32_t position; /* first position in the order */
+    double expected;  /* a good cut's cost over gproji_nd_rest; 0, -1: cut by new coordinates, see gproji_nd_cut_part */
 } gproji_nd_part;
 
 /* A copy of the graph, sorted by parts. The sides of a part are written into the other copy, at the part's own indices:
@@ -3961,13 +3960,13 @@ typedef struct gproji_nd_nodes {
     int32_t *adjacent; /* one entry for each arc of the graph */
 } gproji_nd_nodes;
 
-/* The halo of the part at work. */
+/* The halo around the part at work. */
 typedef struct gproji_nd_halo {
     double weight;
     int32_t count, *name;
     int32_t *index;                /* by name: index in the halo if name[index] agrees */
     int32_t *least, *most;         /* range of the neighbours' coordinates; or, in `least`, sides next to it as bits */
-    int32_t boundaries, *boundary; /* nodes of the part next to the halo */
+    int32_t boundaries, *boundary; /* nodes in the part next to the halo */
 } gproji_nd_halo;
 
 /* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all.
@@ -3981,12 +3980,12 @@ typedef struct gproji_nd_profile {
 /* A cut of the part at work: nodes with coordinate < at, and the others. */
 typedef struct gproji_nd_cut {
     double cost;
-    double below;        /* weight of the nodes with coordinate < at */
-    double separator;    /* weight of the nodes on one side next to the other, not yet the smallest separator */
+    double below;        /* weight with coordinate < at */
+    double separator;    /* weight on one side next to the other, not yet the smallest separator */
     int32_t at, range;   /* coordinates are 0..range-1 */
     int32_t jump;        /* neighbours differ by no more */
     int32_t *coordinate; /* nodes */
-    int32_t *sum;        /* coordinates: weight of the nodes there */
+    int32_t *sum;        /* coordinates: weight there */
 } gproji_nd_cut;
 
 /* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
@@ -4004,9 +4003,9 @@ typedef struct gproji_band {
     int32_t *queue;      /* states; also the path that is searched */
     int32_t *to;         /* arcs: the neighbour */
     int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
-    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to that side of the band */
+    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
     unsigned char *mark; /* states: GPROJI_BAND_... */
-    void *block;         /* all of these arrays */
+    void *block;         /* all these arrays */
     size_t block_size;
 } gproji_band;
 
@@ -4037,19 +4036,19 @@ typedef struct gproji_nd {
     gproji_nd_part stack[GPROJI_ND_STACK];
     int32_t parts;
     /* the part at work; arrays have room for all nodes */
-    gproji_nd_nodes here; /* its nodes alone */
+    gproji_nd_nodes here; /* these nodes alone */
     int32_t nodes;
     double weight;
     gproji_nd_halo halo;
     gproji_nd_profile profile;
     int32_t *distance[4], *queue;    /* breadth-first searches; the first two distances turn into x and y */
-    int32_t *coordinate[2], *sum[2]; /* of the best cut so far, and of another one on trial */
+    int32_t *coordinate[2], *sum[2]; /* for the best cut so far, and for one on trial */
     int32_t *number;                 /* index in the band or in a side */
-    unsigned char *side[2];          /* 0, 1; 2: separator. Of a cut by inherited coordinates, and of one by new ones */
+    unsigned char *side[2]; /* 0, 1; 2: separator. For a cut by inherited coordinates, and for one by new ones */
     gproji_band band;
 } gproji_nd;
 
-/* Takes the arrays: an entry for each node, or coordinate, and one more for the end of the coordinates. */
+/* Takes the arrays: an entry for each node, or coordinate, and one more. */
 GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
     gproji_nd_nodes *a = &nd->copy[0], *b = &nd->copy[1];
     gproji_nd_halo *halo = &nd->halo;
@@ -4081,7 +4080,7 @@ GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
 
 /* -- parts -- */
 
-/* Is node a, with all its neighbours, adjacent to b? mark: b for b and its neighbours, if mark[b] says so. */
+/* Is b adjacent to node a and all other neighbours of a? mark: b for b and its neighbours, if mark[b] says so. */
 GPROJI_INTERNAL bool gproji_nd_dominates(const gproji_graph *graph, int32_t *mark, int32_t b, int32_t a) {
     int64_t e;
     for (e = graph->start[b]; mark[b] != b && e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
@@ -4091,7 +4090,7 @@ GPROJI_INTERNAL bool gproji_nd_dominates(const gproji_graph *graph, int32_t *mar
     return true;
 }
 
-/* Measures how long the graph's boundary is: the number of nodes with few neighbours, squared, over that of all nodes.
+/* Measures how long the graph's boundary is: (nodes with few neighbours)^2 / nodes.
    Open meshes have 8 to 16, or more if they are narrow; closed ones 0, or little if they are irregular. */
 GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     double all = 0, count = 0, degrees = 0, few = 0;
@@ -4108,7 +4107,7 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* Chooses the nodes that are dissected and makes them the first part. `total` is the weight of all nodes. */
+/* Chooses the nodes that are dissected and makes them the first part. total: the weight of all nodes. */
 GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     gproji_nd_nodes *c = &nd->copy[0];
@@ -4162,8 +4161,8 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     nd->parts = tail > 0;
 }
 
-/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number: indices
-   of nodes in their side; ~name of those in the separator. Returns the end of the arcs. */
+/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number:
+   indices in the sides; ~name in the separator. Returns the end of the arcs. */
 GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, const unsigned char *side, int32_t s, gproji_nd_nodes *b,
                                             int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
@@ -4195,7 +4194,7 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, const unsigned char *
     return e;
 }
 
-/* Divides the part at work: the separator gets its last positions, the sides become parts with the same `expected`. */
+/* Divides the part at work: the separator gets the last positions, the sides become parts with the same `expected`. */
 GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, const unsigned char *side,
                                       double expected) {
     gproji_nd_nodes *other = &nd->copy[!part->copy];
@@ -4222,7 +4221,7 @@ GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part,
 /* -- coordinates -- */
 
 /* Breadth-first search from a root over nodes with distance -1. The queue holds `tail` nodes found before; if 0, all
-   distances become -1 first. Returns how many nodes the queue holds then. */
+   distances become -1 first. Returns the new number. */
 GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
     const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
     const int64_t *from = nd->here.from;
@@ -4265,7 +4264,7 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
 /* Rounds to seven digits, so that cuts tie on all machines if they tie on one: some fuse products and sums. */
 GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
 
-/* Estimates the flops to eliminate a part with weight n and a halo of weight h. Solves
+/* Estimates the flops to eliminate a part with weight n and halo weight h. Solves
      f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n):
    the separator's front with the halo's rows, and twice a half. */
 GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
@@ -4273,7 +4272,8 @@ GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
     return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* Estimates the flops of a cut with weights below, above and s = separator; halo: of the two sides, without it. */
+/* Estimates the flops for a cut with weights below, above and s = separator. halo: the sides' halo weights without it.
+   */
 GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double above, double s, const double halo[2]) {
     double h = nd->halo.weight;
     if (below <= 0 || above <= 0 || s > below + above) return HUGE_VAL;
@@ -4281,8 +4281,8 @@ GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double 
                            gproji_nd_rest(nd, above, halo[1] + s));
 }
 
-/* Guesses the weight of a separator at threshold t: nodes on one side with neighbours on the other, if all were like
-   the sample; on the side where that is less. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
+/* Guesses a separator's weight at threshold t: nodes on one side with neighbours on the other, if all were like the
+   sample; on the lighter side. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
 GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *reach, int32_t t) {
     double low = cut->sum[t - 1], high = cut->sum[t];
     int32_t k;
@@ -4296,7 +4296,7 @@ GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *r
 }
 
 /* Chooses the best thresholds by guess and marks them, and the coordinates near them, in the profile. exact: also
-   counts the weight of nodes with neighbours across them. */
+   weighs the nodes with neighbours across them. */
 GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_cut *cut, const double *reach,
                                                  bool exact) {
     int32_t at[GPROJI_ND_THRESHOLDS + 1], count = 0, jump = cut->jump, most = cut->range / (4 * jump), t, k;
@@ -4339,7 +4339,7 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_
     }
 }
 
-/* Tries thresholds along one axis (0..3: x, y, x + y, x - y). A cut that beats `best` takes its place. */
+/* Tries thresholds along one axis (0..3: x, y, x + y, x - y). A cut that beats `best` replaces it. */
 GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, const double *reach, gproji_nd_cut *best) {
     const gproji_nd_nodes *here = &nd->here;
     const gproji_nd_halo *halo = &nd->halo;
@@ -4398,13 +4398,13 @@ GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, const double *re
     }
 }
 
-/* Tries all axes by the coordinates x and y; a cut that beats `best` takes its place. */
+/* Tries all axes by the coordinates x and y; a cut that beats `best` replaces it. */
 GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
     const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
     double reach[4][4];
-    /* How far edges lead along the axes: a fraction reach[axis][k] of a sample of nodes has a neighbour whose
-       coordinate is more than k higher. */
+    /* The lengths of edges along the axes: in a sample, a fraction reach[axis][k] of the nodes has a neighbour more
+       than k higher. */
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4465,7 +4465,7 @@ GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, in
     return false;
 }
 
-/* Adds a state without a level to a queue of `tail`; returns how many there are then. */
+/* Appends a state without a level to a queue with `tail` entries; returns the new number. */
 GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
     if (band->level[s] >= 0) return tail;
     band->level[s] = level;
@@ -4473,7 +4473,7 @@ GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t lev
     return tail + 1;
 }
 
-/* Finds the levels of all states by breadth-first search from the sink, against the residual arcs. Returns whether the
+/* Finds all levels by breadth-first search from the sink, against the residual arcs. Returns whether the
    source is reached. */
 GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
     int32_t head = 0, tail = 0, i, c;
@@ -4523,7 +4523,7 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     return next;
 }
 
-/* One round: augments along shortest paths until there are none of that length. False when there was none at all; then
+/* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
     int32_t *path = band->queue, i, k, depth;
@@ -4562,7 +4562,7 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
     return true;
 }
 
-/* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
+/* Appends a state that is not marked to a queue with `tail` entries; returns the new number. */
 GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
     if (band->mark[s] & mark) return tail;
     band->mark[s] |= mark;
@@ -4589,7 +4589,7 @@ GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigne
 
 /* -- the smallest separator in a band -- */
 
-/* Lists the arcs of band node i from number e on. Those to higher coordinates come first, the highest before others: a
+/* Lists band node i's arcs from number e on. Those to higher coordinates come first, the highest before others: a
    search then goes ahead first, and leaves nodes free for other paths. Returns the end of the arcs. */
 GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordinate, int32_t low, int32_t i,
                                             int32_t e) {
@@ -4608,7 +4608,7 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordi
                 band->to[k] = band->to[k - 1];
             band->to[k] = u;
         } else {
-            band->to[--back] = u; /* backward arcs fill the node's room from its end */
+            band->to[--back] = u; /* backward arcs fill the node's room from the end */
         }
     }
     band->ahead[i] = e;
@@ -4616,8 +4616,8 @@ GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordi
     return e;
 }
 
-/* The capacity of a weight: in units of the weights' common divisor, or, if these are many, of a part of the largest
-   weight. */
+/* Converts a weight to a capacity: in units of the weights' common divisor or, if these are many, in fractions of the
+   largest weight. */
 GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
     if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
     return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
@@ -4629,7 +4629,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band *band = &nd->band;
     int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
     int64_t arcs = 0, units = 0, n;
-    /* 1. Find its nodes, and the greatest common divisor of their weights. Nodes below the band belong to it if they
+    /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below the band belong to it if they
        are next to nodes above it. */
     for (i = 0; i < nd->nodes; ++i) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4683,7 +4683,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     return true;
 }
 
-/* The side of a node by a minimum cut. In the band: 1 unless the cut's lower side reaches the node's entry, else
+/* Returns a node's side by a minimum cut. In the band: 1 unless the cut's lower side reaches the node's entry, else
    separator unless it reaches the exit. */
 GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t high, int32_t i,
                                        unsigned char mark) {
@@ -4695,7 +4695,7 @@ GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut 
     return out ? 0 : in ? 2 : 1;
 }
 
-/* Estimates the cost of the part if one of the minimum cuts divides it. */
+/* Estimates the part's cost if one of the minimum cuts divides it. */
 GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
                                          unsigned char mark) {
     double weight[3] = {0, 0, 0}, beside[2] = {0, 0};
@@ -4722,14 +4722,14 @@ GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut
     return gproji_nd_cost(nd, weight[0], weight[1], weight[2], beside);
 }
 
-/* Finds the separator of a cut and writes `side`. Returns the cost; HUGE_VAL if there is no separator, or no memory. */
+/* Finds a cut's separator and writes `side`. Returns the cost; HUGE_VAL if there is no separator, or no memory. */
 GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut, unsigned char *side) {
     static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
     gproji_band *band = &nd->band;
     int32_t from[2], i, tail = 0, open = 0, rounds = 0, use = 0;
     double most = gproji_fmin(12.0 * cut->separator, 0.3 * nd->weight), inside = 0, below = 0, above, best;
-    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part's; about a
-       quarter of the weight stays outside on each side. */
+    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part; about a
+       quarter stays outside on each side. */
     from[0] = cut->at > 1 ? cut->at - 1 : cut->at, from[1] = cut->at < cut->range - 1 ? cut->at + 1 : cut->at;
     for (i = 0; i < from[0]; ++i) below += cut->sum[i];
     for (; i < from[1]; ++i) inside += cut->sum[i];
@@ -4778,13 +4778,13 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
 
 /* -- parts that are not cut any more -- */
 
-/* A small part: sets of neighbours as bits; in the first word those of its own nodes, then of its halo's. A plane has
-   the nodes whose weights contain a power of two, so that counting bits weighs a set. */
+/* A small part: sets of neighbours as bits; in the first word nodes in the part, then in the halo. A plane has the
+   nodes whose weights contain a power of two, so that counting bits weighs a set. */
 typedef struct gproji_nd_leaf {
     int32_t words, planes;
     uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
     uint64_t plane[32][GPROJI_ND_WORDS];
-    int32_t unit[32]; /* planes: the power of two, or the sum of several with equal planes */
+    int32_t unit[32]; /* planes: the power of two, or a sum if several have equal planes */
 } gproji_nd_leaf;
 
 /* Counts the bits that are set. */
@@ -4795,7 +4795,7 @@ GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     return (int32_t)((x * 0x0101010101010101u) >> 56);
 }
 
-/* The key of node i: its degree and, behind it, its index, so that the least key belongs to the pivot. */
+/* Node i's key: the degree and, behind it, the index, so that the least key belongs to the pivot. */
 GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i) {
     const uint64_t *set = leaf->set[i];
     int32_t degree = 0, p, k;
@@ -4815,7 +4815,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
     uint64_t alive = ~(uint64_t)0 >> (64 - nodes), todo;
     int64_t key[GPROJI_ND_LEAF];
     gproji_nd_leaf leaf;
-    /* 1. The planes of the weights. */
+    /* 1. Planes for the weights. */
     for (i = 0; i < nodes; ++i) all |= here->weight[i];
     for (i = 0; i < halos; ++i) all |= weight[halo[i]];
     for (bit = 0; bit < 31; ++bit) {
@@ -4830,7 +4830,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
             leaf.unit[p++] = (int32_t)1 << bit;
     }
     leaf.planes = p;
-    /* 2. The sets of neighbours. */
+    /* 2. Sets of neighbours. */
     leaf.words = 1 + (halos + 63) / 64;
     memset(leaf.set, 0, (size_t)nodes * sizeof leaf.set[0]);
     for (i = 0; i < nodes; ++i) {
@@ -4841,7 +4841,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
             if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
         key[i] = gproji_nd_leaf_key(&leaf, i);
     }
-    /* 3. Eliminate the node with the least key; its neighbours become adjacent to each other. */
+    /* 3. Eliminate the node with the least key: the neighbours become adjacent to each other. */
     while (alive) {
         int64_t least = INT64_MAX;
         int32_t pivot;
@@ -4851,7 +4851,7 @@ GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
         key[pivot] = INT64_MAX;
         alive &= ~((uint64_t)1 << pivot);
         for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
-            i = gproji_bits((todo & (~todo + 1)) - 1); /* the index of the lowest bit */
+            i = gproji_bits((todo & (~todo + 1)) - 1); /* the lowest bit's index */
             for (k = 0; k < leaf.words; ++k) leaf.set[i][k] |= leaf.set[pivot][k];
             leaf.set[i][0] &= alive & ~((uint64_t)1 << i);
             key[i] = gproji_nd_leaf_key(&leaf, i);
@@ -4888,7 +4888,7 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t position) {
 /* -- dissection -- */
 
 /* Finds new coordinates for the part at work and the best cut by them. Returns the number of nodes connected to the
-   first one; when these are not all, there is no cut. */
+   first one; unless all are, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
     int32_t *const *d = nd->distance, *value = nd->number, starts = 1, k, i, root, reached = 0;
     /* A closed mesh has no corners, and some nodes are better starts than others. Most depends on the largest part. */
@@ -4954,9 +4954,9 @@ GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *par
         return;
     }
     if (inherited <= own) side = nd->side[0], nd->here.x = x, nd->here.y = y;
-    /* 4. How the sides are cut. New coordinates that were better stay better: -1, also for all parts of the sides. New
-       ones are due, 0, in first parts of meshes that are closed, or may be, and of solids, whose separators are large:
-       two coordinates do not tell all of their nodes apart. */
+    /* 4. How the sides are cut. New coordinates that were better stay better: -1, also for all parts within. New ones
+       are due, 0, in the first parts of meshes that are closed, or may be, and in solids, whose separators are large:
+       two coordinates do not tell all nodes apart. */
     ratio = gproji_coarsely(gproji_fmin(own, inherited) / rest);
     if (expected < 0 || (expected > 0 && own < inherited))
         expected = -1;
@@ -5005,8 +5005,8 @@ GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
         gproji_nd_cut_part(nd, &part);
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are
-   fewer than 2^29. False when there is no memory. */
+/* Finds the order (nodes entries: the node that is eliminated k-th). total: the weight of all nodes, fewer than
+   2^29. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
     int32_t a, b, k, count = 0;
     int64_t e;
