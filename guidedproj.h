@@ -1990,8 +1990,7 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     return count;
 }
 
-/* Writes a number. digits = 0: the shortest text that reads back to the same bits; 1..17: rounded to that many
-   significant digits. */
+/* Writes a number. digits = 0: the shortest text that reads back to the same bits; 1..17: that many digits, rounded. */
 GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
     char digit[20], *at;
     uint64_t bits, fraction;
@@ -2417,8 +2416,7 @@ GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
 
-/* Twice the area of the triangle i, j, k in the plane, positive if counter-clockwise; xy has two numbers for each
-   point. */
+/* Twice the area of the triangle i, j, k in the plane, positive if counter-clockwise; xy: two numbers a point. */
 GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
     const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -3034,8 +3032,7 @@ GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
 }
 
-/* Storage row r of that pivot's column is at this offset + r: as if all rows were stored, less those missing from the
-   columns up to this one. */
+/* Storage row r of that pivot's column is at this offset + r: as if all were stored, less those missing up to it. */
 GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
     int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
     return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
@@ -3054,8 +3051,7 @@ GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
     return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
 
-/* Row r of a column is at this offset + r: as if all rows were stored, less those missing from the columns up to this
-   one. */
+/* Row r of a column is at this offset + r: as if all were stored, less those missing up to it. */
 GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
     int32_t first = gproji_strip_begin(column);
     return (ptrdiff_t)column * rows - (ptrdiff_t)first * (column + 1 - (first + GPROJI_STRIP) / 2);
@@ -4473,8 +4469,7 @@ GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t lev
     return tail + 1;
 }
 
-/* Finds all levels by breadth-first search from the sink, against the residual arcs. Returns whether the
-   source is reached. */
+/* Finds all levels by breadth-first search from the sink, against the residual arcs. Is the source reached? */
 GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
     int32_t head = 0, tail = 0, i, c;
     bool found = false;
