@@ -1615,12 +1615,12 @@ GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
 /* ============================================================================================================
    >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
 
-   Reading: digits up to 19 with small powers of ten go through one exact 128-bit product or quotient; everything
-   else through exact big integers. Both end in a 64-bit significand with a sticky bit, which is rounded once, to
-   nearest even, in integers: no floating-point operation takes part, so excess precision, rounding modes and
-   flushed denormals do not matter.
+   Reading: up to 19 digits with a small power of ten go through one exact 128-bit product or quotient, others through
+   exact big integers. Both ways end in a 64-bit significand with a sticky bit, rounded once, to nearest even, in
+   integers: no floating-point operation takes part, so excess precision, rounding modes and flushed denormals do not
+   matter.
    Writing: Steele and White 1990, in the form of Burger and Dybvig 1996: with v = R/S and half-gaps M/S to the
-   neighbouring doubles, digits are produced until what is left is inside the gap.
+   neighbouring doubles, digits are produced until the rest is inside the gap.
    Invariant: a gproji_big has no leading zero limb; zero has count 0. */
 
 /* 768 digits and a sticky one decide every double; 10^1100 = 5^1100 2^1100, and 5^1100 has 80 limbs. */
@@ -1751,7 +1751,7 @@ GPROJI_INLINE double gproji_double_of_bits(uint64_t bits) {
     return value;
 }
 
-/* (m + s) 2^exponent rounded to nearest even, where m has its highest bit set and 0 < s < 1 if sticky, else s = 0.
+/* Rounds (m + s) 2^exponent to nearest even; m has the highest bit set, and 0 < s < 1 if sticky, else s = 0.
    Returns the bits of the double. */
 GPROJI_INTERNAL uint64_t gproji_round_significand(uint64_t m, int32_t exponent, bool sticky) {
     int32_t drop = 11; /* bits of m below the last one kept */
@@ -1796,19 +1796,11 @@ GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t
     return q;
 }
 
-GPROJI_INLINE uint64_t gproji_power5_64(int32_t power) {
-    uint64_t p = 1, base = 5;
-    for (; power; power >>= 1) {
-        if (power & 1) p *= base;
-        base *= base; /* wraps after the last use for powers up to 27 */
-    }
-    return p;
-}
-
 /* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
-    int32_t shift = 64 - gproji_bit_length(w), shift5;
-    uint64_t five = gproji_power5_64(power < 0 ? -power : power), high, low;
+    int32_t shift = 64 - gproji_bit_length(w), shift5, k;
+    uint64_t five = 1, high, low;
+    for (k = power < 0 ? -power : power; k > 0; --k) five *= 5;
     w <<= shift;
     shift5 = 64 - gproji_bit_length(five);
     five <<= shift5;
@@ -1822,7 +1814,7 @@ GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
         }
         return gproji_round_significand(high, power, low != 0);
     }
-    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved where that would have 65 bits */
+    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved if that would have 65 bits */
     if (w >= five) {
         high = gproji_divide_128(w >> 1, w << 63, five, &low);
         ++power;
@@ -1853,7 +1845,7 @@ GPROJI_INTERNAL uint64_t gproji_read_long(const uint8_t *digit, int32_t count, i
     gproji_big_shift(&a, i - bits_a);
     gproji_big_shift(&b, i - bits_b);
     exponent += bits_a - bits_b;
-    if (gproji_big_compare(&a, &b) >= 0) { /* doubling b would spoil its leading bit: subtract b for the leading 1 */
+    if (gproji_big_compare(&a, &b) >= 0) { /* doubling b would spoil the leading bit: subtract b for the leading 1 */
         gproji_big_divide(&a, &b);
         gproji_big_shift(&a, 31);
         m = (uint64_t)1 << 63 | (uint64_t)gproji_big_divide(&a, &b) << 32;
@@ -1880,96 +1872,73 @@ GPROJI_INTERNAL bool gproji_begins_with(const char *text, size_t size, const cha
     return true;
 }
 
-/* What stands in a decimal text: 0.d1d2... 10^point, the digits without leading zeros. */
-typedef struct gproji_decimal {
-    uint8_t digit[GPROJI_DIGITS_MAX]; /* values 0..9 */
-    int32_t count;
-    uint64_t first; /* the first 19 digits as an integer */
-    int64_t point;
-    bool any;      /* there was a digit, maybe 0 */
-    bool fraction; /* the decimal point has been seen */
-} gproji_decimal;
-
-GPROJI_INLINE void gproji_decimal_push(gproji_decimal *decimal, uint8_t digit) {
-    decimal->any = true;
-    if (!decimal->count && !digit) {
-        if (decimal->fraction) --decimal->point;
-        return;
-    }
-    if (!decimal->fraction) ++decimal->point;
-    if (decimal->count < 19) decimal->first = decimal->first * 10 + digit;
-    if (decimal->count < GPROJI_DIGITS_MAX) {
-        decimal->digit[decimal->count++] = digit;
-    } else if (digit) {
-        decimal->digit[GPROJI_DIGITS_MAX - 1] |= 1; /* not 0, whatever follows: it can only break ties */
-    }
-}
-
-/* Reads [e[+-]digits] at text[at..] and adds it to point; returns the position behind it, or `at`. */
-GPROJI_INTERNAL size_t gproji_read_exponent(const char *text, size_t size, size_t at, int64_t *point) {
-    size_t i = at;
-    int64_t exponent = 0;
-    bool negative = false;
-    if (i >= size || (text[i] != 'e' && text[i] != 'E')) return at;
-    ++i;
-    if (i < size && (text[i] == '+' || text[i] == '-')) negative = text[i++] == '-';
-    if (i >= size || !gproji_is_digit(text[i])) return at;
-    for (; i < size && gproji_is_digit(text[i]); ++i) {
-        if (exponent < INT64_C(100000000000000000)) exponent = exponent * 10 + (text[i] - '0');
-    }
-    *point += negative ? -exponent : exponent;
-    return i;
-}
-
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value) {
-    gproji_decimal decimal;
-    size_t i = 0;
-    uint64_t sign = 0, bits = 0;
+    uint8_t digit[GPROJI_DIGITS_MAX]; /* of 0.d1d2... 10^point, without leading zeros */
+    int32_t count = 0;
+    int64_t point = 0, exponent = 0;
+    size_t i = 0, e;
+    uint64_t sign = 0, bits = 0, first = 0; /* the first 19 digits as an integer */
+    bool any = false, fraction = false, negative = false;
     if (!text || !value) return 0;
+    /* 1. Sign, infinities, NaN. */
     if (i < size && (text[i] == '+' || text[i] == '-')) sign = (uint64_t)(text[i++] == '-') << 63;
     if (gproji_begins_with(text + i, size - i, "inf") || gproji_begins_with(text + i, size - i, "nan")) {
         bool nan = text[i] == 'n' || text[i] == 'N';
         *value = gproji_double_of_bits(sign | (uint64_t)(nan ? 0xfff : 0xffe) << 51);
         return i + (gproji_begins_with(text + i, size - i, "infinity") ? 8 : 3);
     }
-    decimal.count = 0, decimal.first = 0, decimal.point = 0, decimal.any = false, decimal.fraction = false;
-    for (; i < size; ++i) {
-        if (gproji_is_digit(text[i]))
-            gproji_decimal_push(&decimal, (uint8_t)(text[i] - '0'));
-        else if (text[i] == '.' && !decimal.fraction)
-            decimal.fraction = true;
-        else
-            break;
+    /* 2. Digits, with a decimal point maybe. */
+    for (; i < size && (gproji_is_digit(text[i]) || (text[i] == '.' && !fraction)); ++i) {
+        uint8_t d = (uint8_t)(text[i] - '0');
+        if (text[i] == '.') {
+            fraction = true;
+            continue;
+        }
+        any = true;
+        if (count == 0 && d == 0) { /* a leading zero */
+            point -= fraction;
+            continue;
+        }
+        point += !fraction;
+        if (count < 19) first = first * 10 + d;
+        if (count < GPROJI_DIGITS_MAX)
+            digit[count++] = d;
+        else if (d > 0)
+            digit[GPROJI_DIGITS_MAX - 1] |= 1; /* not 0, whatever follows: it can only break ties */
     }
-    if (!decimal.any) return 0;
-    i = gproji_read_exponent(text, size, i, &decimal.point);
-    if (decimal.count) {
-        int64_t power = decimal.point - decimal.count;
-        bool is_short = decimal.count <= 19 && power >= -27 && power <= 27;
-        bits = is_short ? gproji_read_short(decimal.first, (int32_t)power)
-                        : gproji_read_long(decimal.digit, decimal.count, decimal.point);
+    if (!any) return 0;
+    /* 3. An exponent, if a digit follows; else the text ends before the e. */
+    e = i + (i < size && (text[i] == 'e' || text[i] == 'E'));
+    if (e > i && e < size && (text[e] == '+' || text[e] == '-')) negative = text[e++] == '-';
+    if (e > i && e < size && gproji_is_digit(text[e])) {
+        for (i = e; i < size && gproji_is_digit(text[i]); ++i)
+            if (exponent < INT64_C(100000000000000000)) exponent = exponent * 10 + (text[i] - '0');
+        point += negative ? -exponent : exponent;
+    }
+    /* 4. The nearest double. */
+    if (count > 0) {
+        int64_t power = point - count;
+        bool is_short = count <= 19 && power >= -27 && power <= 27;
+        bits = is_short ? gproji_read_short(first, (int32_t)power) : gproji_read_long(digit, count, point);
     }
     *value = gproji_double_of_bits(sign | bits);
     return i;
 }
 
-/* floor(log10(2^b)) for |b| < 1100; 1292913986 = floor(2^32 log10(2)). */
-GPROJI_INLINE int32_t gproji_log10_of_power2(int32_t b) {
-    int64_t product = (int64_t)b * 1292913986;
-    return product >= 0 ? (int32_t)(product / INT64_C(4294967296)) : -(int32_t)((-product) / INT64_C(4294967296)) - 1;
-}
-
-/* The digits of v = fraction 2^exponent > 0: v is about 0.d1d2... 10^point. limit = 0: the fewest that round to v, the
-   nearest to v among those; else `limit` of them, correctly rounded. Returns their number. */
+/* Finds the digits of v = fraction 2^exponent > 0: v is about 0.d1d2... 10^point. limit = 0: the fewest that round to
+   v, the nearest to v among those; else `limit` of them, correctly rounded. Returns their number. */
 GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent, int32_t limit, char digit[20],
                                             int32_t *point) {
     gproji_big r, s, m;
     int32_t up = fraction == (uint64_t)1 << 52 && exponent > -1074; /* the gap below is half of the gap above */
-    int32_t k = gproji_log10_of_power2(exponent + gproji_bit_length(fraction) - 1) + 1;
-    int32_t two_m = gproji_max(exponent, 0) + gproji_max(-k, 0);
-    int32_t two_s = 1 + up + gproji_max(-exponent, 0) + gproji_max(k, 0);
-    int32_t common = gproji_min(two_m, two_s), count = 0, side;
+    int32_t k, two_m, two_s, common, count = 0, side;
     bool even = !(fraction & 1), low = false, high = false;
+    /* k - 1 = floor(log10(2^b)) = floor(b c / 2^32) for |b| < 1100, with c = floor(2^32 log10(2)) */
+    int64_t log10 = (int64_t)(exponent + gproji_bit_length(fraction) - 1) * 1292913986;
+    k = log10 >= 0 ? (int32_t)(log10 / INT64_C(4294967296)) + 1 : -(int32_t)(-log10 / INT64_C(4294967296));
+    two_m = gproji_max(exponent, 0) + gproji_max(-k, 0);
+    two_s = 1 + up + gproji_max(-exponent, 0) + gproji_max(k, 0);
+    common = gproji_min(two_m, two_s);
     /* 1. v / 10^k = r / s in [0.1, 10); the gap to the next double is 2 (m / s) 2^up above and 2 m / s below. */
     gproji_big_set(&r, fraction);
     gproji_big_set(&s, 1);
@@ -2022,12 +1991,36 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     return count;
 }
 
-/* Lays digits out as printf's %g does: with an exponent where it is below -4 or not below `precision`. */
-GPROJI_INTERNAL size_t gproji_layout_digits(const char *digit, int32_t count, int32_t point, int32_t precision,
-                                            char *text) {
-    int32_t exponent = point - 1, i;
-    char *at = text;
-    if (exponent < -4 || exponent >= precision) {
+/* Writes a number. digits = 0: the shortest text that reads back to the same bits; 1..17: that many digits, rounded. */
+GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
+    char digit[20], *at;
+    uint64_t bits, fraction;
+    int32_t exponent, count, point, i;
+    size_t sign = 0;
+    /* 1. Fraction and exponent; infinities, NaN and zero. */
+    memcpy(&bits, &value, sizeof bits);
+    exponent = (int32_t)((bits >> 52) & 0x7ff);
+    fraction = bits & (((uint64_t)1 << 52) - 1);
+    if (exponent == 0x7ff && fraction) {
+        memcpy(text, "nan", 4);
+        return 3;
+    }
+    if (bits >> 63) text[sign++] = '-';
+    if (exponent == 0x7ff) {
+        memcpy(text + sign, "inf", 4);
+        return sign + 3;
+    }
+    if (!exponent && !fraction) {
+        memcpy(text + sign, "0", 2);
+        return sign + 1;
+    }
+    if (exponent) fraction |= (uint64_t)1 << 52;
+    exponent = exponent ? exponent - 1075 : -1074;
+    count = gproji_write_digits(fraction, exponent, digits, digit, &point);
+    /* 2. Layout as by printf's %g: with an exponent below -4 or not below the precision. */
+    exponent = point - 1;
+    at = text + sign;
+    if (exponent < -4 || exponent >= (digits ? digits : 17)) {
         *at++ = digit[0];
         if (count > 1) *at++ = '.';
         for (i = 1; i < count; ++i) *at++ = digit[i];
@@ -2050,34 +2043,6 @@ GPROJI_INTERNAL size_t gproji_layout_digits(const char *digit, int32_t count, in
     return (size_t)(at - text);
 }
 
-/* digits = 0: the shortest text that reads back to the same bits; 1..17: rounded to that many significant digits. */
-GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, char text[GPROJ_NUMBER_SIZE]) {
-    char digit[20];
-    uint64_t bits, fraction;
-    int32_t exponent, count, point;
-    size_t sign = 0;
-    memcpy(&bits, &value, sizeof bits);
-    exponent = (int32_t)((bits >> 52) & 0x7ff);
-    fraction = bits & (((uint64_t)1 << 52) - 1);
-    if (exponent == 0x7ff && fraction) {
-        memcpy(text, "nan", 4);
-        return 3;
-    }
-    if (bits >> 63) text[sign++] = '-';
-    if (exponent == 0x7ff) {
-        memcpy(text + sign, "inf", 4);
-        return sign + 3;
-    }
-    if (!exponent && !fraction) {
-        memcpy(text + sign, "0", 2);
-        return sign + 1;
-    }
-    if (exponent) fraction |= (uint64_t)1 << 52;
-    exponent = exponent ? exponent - 1075 : -1074;
-    count = gproji_write_digits(fraction, exponent, digits, digit, &point);
-    return sign + gproji_layout_digits(digit, count, point, digits ? digits : 17, text + sign);
-}
-
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
     return gproji_number_write_digits(value, 0, text);
 }
@@ -2085,44 +2050,22 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) 
 /* ============================================================================================================
    >>memory   The host's allocator with accounts. Uses platform.
 
-   Every object has one gproji_heap and takes all its memory from it; parts of an object use their owner's heap.
-   Sizes are counts times element sizes, checked for overflow here and nowhere else. A block is given back with
-   the same count and size it was taken with. A count of 0 gives a valid block. */
+   Every object has one gproji_heap and takes all memory from it; parts of an object use their owner's heap. Sizes are
+   counts times element sizes, checked for overflow here and nowhere else. A block is given back with the count and size
+   that it was taken with. A count of 0 gives a valid block. */
 typedef struct gproji_heap {
-    gproj_allocator hook;
+    gproj_allocator hook; /* without `allocate`: the C library */
     gproj_memory account;
 } gproji_heap;
-
-GPROJI_INTERNAL void *gproji_malloc(void *user, size_t size) {
-    (void)user;
-    return malloc(size);
-}
-
-GPROJI_INTERNAL void *gproji_realloc(void *user, void *block, size_t old_size, size_t new_size) {
-    (void)user;
-    (void)old_size;
-    return realloc(block, new_size);
-}
-
-GPROJI_INTERNAL void gproji_free(void *user, void *block, size_t size) {
-    (void)user;
-    (void)size;
-    free(block);
-}
 
 GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
     gproji_heap heap;
     memset(&heap, 0, sizeof heap);
     if (host) heap.hook = host->allocator;
-    if (!heap.hook.allocate) {
-        heap.hook.allocate = gproji_malloc;
-        heap.hook.reallocate = gproji_realloc;
-        heap.hook.release = gproji_free;
-    }
     return heap;
 }
 
-/* count * size, at least 1; SIZE_MAX where that overflows (no allocator grants it: see gproji_grant). */
+/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_grant refuses. */
 GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
@@ -2140,13 +2083,13 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
     if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
 }
 
-/* NULL when there is no memory. The contents are undefined. */
+/* Takes a block with undefined contents. NULL when there is no memory. */
 GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
     heap->account.allocations++;
     if (!gproji_grant(heap, 0, bytes)) return NULL;
-    block = heap->hook.allocate(heap->hook.user, bytes);
+    block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
     if (block) gproji_account(heap, 0, bytes);
     return block;
 }
@@ -2162,16 +2105,19 @@ GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, s
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
     gproji_account(heap, bytes, 0);
-    if (heap->hook.release) heap->hook.release(heap->hook.user, block, bytes);
+    if (!heap->hook.allocate)
+        free(block);
+    else if (heap->hook.release)
+        heap->hook.release(heap->hook.user, block, bytes);
 }
 
-/* Changes a block's count and keeps what fits; `block` may be NULL with old_count 0. On failure returns NULL and the
-   old block stays as it is. */
+/* Changes a block's count, keeping the elements that fit; `block` may be NULL with old_count 0. NULL when there is no
+   memory; the old block then stays. */
 GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
     size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
     void *moved;
     if (!block) return gproji_take(heap, new_count, size);
-    if (!heap->hook.reallocate) {
+    if (heap->hook.allocate && !heap->hook.reallocate) {
         moved = gproji_take(heap, new_count, size);
         if (!moved) return NULL;
         memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
@@ -2180,12 +2126,13 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
     }
     heap->account.allocations++;
     if (!gproji_grant(heap, old_bytes, new_bytes)) return NULL;
-    moved = heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes);
+    moved = heap->hook.allocate ? heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes)
+                                : realloc(block, new_bytes);
     if (moved) gproji_account(heap, old_bytes, new_bytes);
     return moved;
 }
 
-/* Makes room in a growing array: *block has *capacity elements, `needed` are wanted. Doubles, so that n additions cost
+/* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
    O(n). False when there is no memory; the array is then unchanged. */
 GPROJI_NOINLINE bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
@@ -2205,9 +2152,9 @@ typedef struct gproji_ints {
     size_t count, capacity;
 } gproji_ints;
 
-#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* how many it may have */
+#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* integers in an array */
 
-/* Appends one; false when there is no memory, or when there are as many as there may be. */
+/* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
     void *block = ints->data;
     if (ints->count >= GPROJI_INTS_MAX) return false;
@@ -2221,8 +2168,7 @@ GPROJI_NOINLINE void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
-/* An object's own memory: its struct is taken from the heap that it then carries. The heap's struct must be the
-   object's first member. */
+/* Takes an object's struct from a new heap, which moves into the object as the first member. */
 GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
     gproji_heap heap = gproji_heap_of(host);
     void *object = gproji_take_zeroed(&heap, 1, size);
@@ -2236,7 +2182,7 @@ GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_give(&heap, object, 1, size);
 }
 
-/* The account of an object by its public part, `offset` bytes from its beginning; zeros where there is none. */
+/* Reads the account of an object whose public part, `offset` bytes from the beginning, is given; zeros for NULL. */
 GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) {
     gproji_heap heap;
     memset(&heap, 0, sizeof heap);
@@ -2244,7 +2190,7 @@ GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) 
     return heap.account;
 }
 
-/* The accounts of an object and its parts, added up. The peak is that of the parts, as if they came together. */
+/* Adds up the accounts of an object and its parts, as if all peaks came together. */
 GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->used += part.used;
     sum->peak += part.peak;
@@ -2253,7 +2199,7 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one piece of work, or of one object, all given back by one call. */
+/* A pool holds the blocks of one task, or of one object; one call gives them all back. */
 enum {
     GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
@@ -2276,7 +2222,7 @@ GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
     }
 }
 
-/* NULL when there is no memory, also where the count is negative or too large for the address space. */
+/* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     size_t bytes;
     void *block;
@@ -2296,8 +2242,7 @@ GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, 
     return block;
 }
 
-/* Makes the block taken last as small as `count` elements, at most what it has. NULL when there is no memory; it then
-   stays as it is. */
+/* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
     int32_t last = pool->count - 1;
     size_t bytes = gproji_bytes((size_t)count, size);
@@ -2321,7 +2266,7 @@ GPROJ_API const char *gproj_code_string(gproj_code code) {
     return index >= 0 && index < count ? sentences[index] : "unknown error";
 }
 
-/* Appends to a text that stays NUL-terminated; what does not fit is cut. Returns the new length. */
+/* Appends to a text that stays NUL-terminated, and cuts the piece if it does not fit. Returns the new length. */
 GPROJI_INTERNAL size_t gproji_append(char *text, size_t size, size_t length, const char *piece, size_t piece_length) {
     size_t room = size - 1 - length;
     if (piece_length > room) piece_length = room;
@@ -2393,7 +2338,7 @@ GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gpro
     return code;
 }
 
-/* Another object's error becomes the caller's, which may be NULL. */
+/* Copies another object's error to the caller's, which may be NULL. */
 GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error *other) {
     return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
@@ -2420,7 +2365,7 @@ GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, g
     for (i = 0; i < count; ++i) task(data, i);
 }
 
-/* The first item of chunk `chunk` when `items` are cut into `chunks`; chunk `chunks` gives the end. */
+/* Returns the first item in chunk `chunk` when `items` are cut into `chunks`; chunk `chunks` gives the end. */
 GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_t chunk) {
     return (int32_t)((int64_t)items * chunk / chunks);
 }
@@ -2452,7 +2397,7 @@ GPROJI_INLINE void gproji_cross3(const double a[3], const double b[3], double ou
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     out[0] = x, out[1] = y, out[2] = z;
 }
-/* Makes a vector unit; a vector too short to have a direction becomes `fallback`. False then. */
+/* Normalises a vector; one too short for a direction becomes `fallback`. False then. */
 GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
     double length = gproji_length3(a);
     if (!(length > 1e-150)) {
@@ -2463,23 +2408,22 @@ GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
     return true;
 }
 
-/* Two unit vectors that complete a unit vector n to a right-handed orthonormal basis u, v, n. They are a continuous
-   function of n away from n = -e_z (Frisvad 2012, in the form of Duff et al. 2017 without its jump at n_z = 0 being
-   of any consequence here: all users are invariant under rotations in the plane of u and v). */
+/* Completes a unit vector n to a right-handed orthonormal basis u, v, n, continuous away from n = -e_z (Frisvad 2012,
+   in the form by Duff et al. 2017; the jump at n_z = 0 does no harm, as all users are invariant under rotations in the
+   plane of u and v). */
 GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3]) {
     double sign = n[2] < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
     gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
     gproji_set3(b, sign + n[1] * n[1] * a, -n[1], v);
 }
 
-/* Twice the area of the triangle of points i, j, k in the plane, two numbers of xy each, positive when
-   counter-clockwise. */
+/* Twice the area of the triangle i, j, k in the plane, positive if counter-clockwise; xy: two numbers a point. */
 GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_t k) {
     const double *p = xy + 2 * (size_t)i, *q = xy + 2 * (size_t)j, *r = xy + 2 * (size_t)k;
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* The sum of so many parts; more than one, so that none has to wait for the one before. */
+/* Sums with independent accumulators, to hide the latency of additions; they are added up pairwise. */
 enum {
     GPROJI_PARTS = 16
 };
@@ -2510,7 +2454,7 @@ GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, siz
     return gproji_add_parts(part);
 }
 
-/* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
+/* A sum high + low with twice the digits (Dekker 1971); with the usual ones under -ffast-math. */
 typedef struct gproji_sum {
     double high, low;
 } gproji_sum;
@@ -2531,13 +2475,13 @@ GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
 
 GPROJI_INLINE double gproji_sum_value(const gproji_sum *s) { return s->high + s->low; }
 
-/* a += e e', a symmetric matrix by its entries xx, xy, xz, yy, yz, zz. */
+/* a += e e', a symmetric matrix stored as xx, xy, xz, yy, yz, zz. */
 GPROJI_INLINE void gproji_add_square3(const double e[3], double a[6]) {
     a[0] += e[0] * e[0], a[1] += e[0] * e[1], a[2] += e[0] * e[2];
     a[3] += e[1] * e[1], a[4] += e[1] * e[2], a[5] += e[2] * e[2];
 }
 
-/* Solves (a + shift trace(a) I) x = b by L D L'. False where a is not positive definite then. */
+/* Solves (a + shift trace(a) I) x = b by L D L'. False if the matrix is not positive definite. */
 GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const double b[3], double x[3]) {
     double ridge = shift * (a[0] + a[3] + a[5]), d0 = a[0] + ridge, d1, d2, l10, l20, l21, y0, y1, y2;
     if (!(d0 > 0)) return false;
@@ -2557,26 +2501,25 @@ GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const
 /* ============================================================================================================
    >>kernels   Small tiles kept in registers, once for each kind of vector unit. Uses platform.
 
-   Matrices are column-major. A tile is one to three times `block` rows by `block` columns; it stays in registers while
-   the product of two strips is subtracted from it (Goto, van de Geijn 2008). No kernel needs a masked edge: see >>dense
-   for how matrices are padded. A tile of diagonal entries may begin with `skip` < block columns that do not exist: its
-   first column in memory is number `skip`, so that pivot j always stands in row j. The rows of such columns are 0.
+   Matrices are column-major. A tile, one to three times `block` rows by `block` columns, stays in registers while the
+   product of two strips is subtracted from it (Goto, van de Geijn 2008). No kernel needs a masked edge, as matrices are
+   padded (see >>dense). In a diagonal tile the first `skip` < block columns may be missing: the first column in memory
+   is number `skip`, so that pivot j always stands in row j. The rows of missing columns are 0.
 
-   The text of the kernels is macros, compiled for each kind of unit: L numbers in a vector, B = `block`. In the scalar
-   kind a vector is a double. A kind's kernels stand in a constant table. On x86-64, where compilers build for the
-   oldest processor unless told otherwise, several kinds are compiled and gproji_kernels_of asks the processor, once for
-   an object; elsewhere the compiler's target decides.
+   The kernels are macros, compiled for each kind of unit: L numbers in a vector (one in the scalar kind), B = `block`.
+   On x86-64, as compilers build for the oldest processor unless told otherwise, several kinds are compiled, and
+   gproji_kernels_of asks the processor, once for an object; elsewhere the compiler's target decides.
 
    Invariant: an entry is computed by the same operations in the same order in tiles of all heights. */
 
 enum {
     GPROJI_CACHE_LINE = 8, /* values */
-    GPROJI_FAR_TILES = 96  /* so wide products fetch their tiles ahead */
+    GPROJI_FAR_TILES = 96  /* products with more columns fetch their tiles ahead */
 };
 
-/* Some rows of a matrix, from row `from` on, and where they go in another one. Without gaps: to row `to` and the
-   following. With gaps: to those of the 8 rows from `to` on, a multiple of 8, whose bit in `mask` is set; so many pieces
-   from this one on as `run` says have none and follow each other. */
+/* A scatter run: rows of a matrix, from row `from` on, and their targets in another one. Without gaps: row `to` and the
+   following. With gaps: those of the 8 rows from `to` on, a multiple of 8, with a bit in `mask`; `run` pieces from this
+   one on have no gaps and follow each other. */
 typedef struct gproji_piece {
     int32_t from, rows, to;
     uint16_t mask, run;
@@ -2586,35 +2529,34 @@ typedef struct gproji_kernels {
     const char *name;
     int32_t block;
     int32_t tile_rows; /* of the tallest tile */
-    bool spreads;      /* the pieces of `add` have gaps */
-    /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the rows
-       of C, B has k columns and block rows. Both are parts of a panel: `stride` leads from one column to the next, but
-       after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
+    bool spreads;      /* pieces of `add` have gaps */
+    /* C -= A B', or, fresh, C = - A B': `rows` rows (a multiple of block) by block columns; A has k columns and the
+       rows of C, B has k columns and block rows. A and B are parts of a panel: `stride` leads from one column to the
+       next, but after `left` columns, and then after every GPROJI_BLOCK, it becomes less by GPROJI_BLOCK. */
     void (*update)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                    ptrdiff_t ldc, bool fresh);
-    /* C = (C - A B') L^-T in the same way, with the tile L on the diagonal (stride ldc like C) and the inverses of its
-       diagonal. C, L and the inverses begin with column `skip`; where that is not 0, k = 0. */
+    /* C = (C - A B') L^-T likewise, with the diagonal tile L (stride ldc like C) and the inverses of the diagonal. C, L
+       and the inverses begin with column `skip`; k = 0 if that is not 0. */
     void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
-    /* Cholesky of a tile on the diagonal, in place. Writes the inverses of the diagonal. Returns -1, or the first
-       column (from 0 for `skip`) whose pivot is not > 0 (also NaN; an infinite one counts as that). */
+    /* Factors a diagonal tile in place and writes the inverses of the diagonal. Returns -1, or the first column (from 0
+       for `skip`) whose pivot is not positive and finite. */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
-    /* One column block of the solutions of L y = b and L' x = y: z[0..block) become the unknowns, and go into, or
-       come from, the other rows up to `rows` (a multiple of block). `forward_two`: so for z and y, in one pass. */
+    /* Steps of L y = b and L' x = y for one column block: the unknowns replace z[0..block); the other rows up to `rows`
+       (a multiple of block) are updated, or read. `forward_two` takes two right-hand sides, z and y, in one pass. */
     void (*forward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
     void (*forward_two)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z,
                         double *y);
     void (*backward)(int32_t rows, const double *l, ptrdiff_t stride, const double *inverse, int32_t skip, double *z);
-    /* Adds the columns that belong to the rows of piece[0], of which only the lower triangle counts: all their rows from
-       there on in piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but
-       after `left` columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column that belongs to
-       row piece[0].to. */
+    /* Adds the columns that belong to the rows of piece[0], lower triangle only: from the diagonal on, the rows in
+       piece[0..count). `source` points to row 0 of the first column; `stride` leads to the next one, but after `left`
+       columns it has become less by GPROJI_STRIP. `target` points to row 0 of the column for row piece[0].to. */
     void (*add)(const gproji_piece *piece, int32_t count, const double *source, ptrdiff_t stride, int32_t left,
                 double *target, ptrdiff_t target_stride);
 } gproji_kernels;
 
-/* The kinds that are compiled, the best first, and when this processor has them. GPROJI_BLOCK is the multiple to which
-   matrices are padded: in x86-64 the same for all kinds. */
+/* The kinds that are compiled, the best first, with the condition for using them. Matrices are padded to multiples of
+   GPROJI_BLOCK: on x86-64 the same for all kinds. */
 #if !GPROJI_SIMD || (defined(__i386__) && !defined(__SSE2_MATH__)) /* x87 has no vectors */
 #define GPROJI_KINDS(X) X(scalar, true)
 #define GPROJI_KIND_SCALAR
@@ -2643,8 +2585,8 @@ typedef struct gproji_kernels {
 #define GPROJI_BLOCK 4
 #endif
 
-/* The columns of an update matrix that are stored with the same rows, a multiple of `block`: few spare memory; where
-   pieces have no gaps, more make them longer, and a BLAS wants matrices that are not too narrow. */
+/* Columns of an update matrix that are stored with the same rows, a multiple of `block`. Few save memory; more make
+   pieces without gaps longer; and a BLAS wants matrices that are not too narrow. */
 #ifdef GPROJ_USE_CBLAS
 #define GPROJI_STRIP 48
 #elif GPROJI_BLOCK == 8
@@ -2664,8 +2606,8 @@ typedef double gproji_lanes_at_4 __attribute__((vector_size(32), aligned(8), may
 typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may_alias));
 #endif
 
-/* A kernel is compiled for its kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
-   begins with GPROJI_BEGIN, which says what a vector is. */
+/* A kernel is compiled for one kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
+   begins with GPROJI_BEGIN, which defines the vectors. */
 #if defined(__clang__)
 #define GPROJI_KERNEL(target) __attribute__((noinline, unused GPROJI_TARGET_##target)) static
 #define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma"), min_vector_width(512)
@@ -2691,8 +2633,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_LOAD(p) (*(const lanes_at *)(const void *)(p))
 #define GPROJI_STORE(p, v) (*(lanes_at *)(void *)(p) = (v))
 
-/* The loops over a tile are written out, because compilers keep it in registers only when every element of it is a
-   variable of its own: tile_r_j is vector r of column j. Vectors 0..T-1 of column j: */
+/* The loops over a tile are written out, because compilers keep it in registers only when every element is a
+   separate variable: tile_r_j is vector r of column j. Vectors 0..T-1 of column j: */
 #define GPROJI_ROWS_1(X, j) X(0, j)
 #define GPROJI_ROWS_2(X, j) X(0, j) X(1, j)
 #define GPROJI_ROWS_3(X, j) X(0, j) X(1, j) X(2, j)
@@ -2704,8 +2646,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
 #define GPROJI_PAIRS_8(X, i, j) GPROJI_PAIRS_4(X, i, j) X(4, i, j) X(5, i, j) X(6, i, j) X(7, i, j)
 
-/* all columns; all that exist; the order of a forward substitution, in which S(j) finishes column j and E(i, j) takes
-   it from column i; and that of a backward one */
+/* All columns; all that exist; forward substitution, in which S(j) finishes column j and E(i, j) subtracts it from
+   column i; backward substitution. */
 #define GPROJI_COLUMNS_4(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
 #define GPROJI_COLUMNS_8(R, X) GPROJI_COLUMNS_4(R, X) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
 #define GPROJI_EXISTS(j, text) if (skip <= (j)) { text }
@@ -2776,8 +2718,8 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                          \
     }
 
-/* See `factor`. The pivots come from a chain as short as possible, 1 / pivot -> factor -> next pivot; the square roots
-   are beside it. */
+/* See `factor`. The chain from pivot to pivot is as short as possible, 1 / pivot -> factor -> next pivot, with the
+   square roots beside it. */
 #define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                               \
     GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) {  \
         GPROJI_BEGIN(L)                                                                                                \
@@ -2802,7 +2744,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         return -1;                                                                                                     \
     }
 
-/* One right-hand side: z_j is row j of the column block, l_j column j, sum_j its product with the other rows. */
+/* One right-hand side: z_j is row j of the column block, l_j column j, sum_j the product of l_j with the other rows. */
 #define GPROJI_ONE_ROW(X, j) X(j)
 #define GPROJI_ONE_PAIR(X, i, j) X(i, j)
 #define GPROJI_Z_TAKE(j) double z_##j = z[j]; const double *l_##j = l + gproji_max((j) - skip, 0) * stride;
@@ -2819,13 +2761,13 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     z_##j -= ((sum_##j[0] + sum_##j[4]) + (sum_##j[2] + sum_##j[6])) +                                                 \
              ((sum_##j[1] + sum_##j[5]) + (sum_##j[3] + sum_##j[7]));
 
-/* The same with a second right-hand side y. */
+/* Likewise with a second right-hand side y. */
 #define GPROJI_ZY_TAKE(j) GPROJI_Z_TAKE(j) double y_##j = y[j];
 #define GPROJI_ZY_SCALE(j) GPROJI_Z_SCALE(j) y_##j *= inverse[(j) - skip]; y[j] = y_##j;
 #define GPROJI_ZY_FORWARD(i, j) GPROJI_Z_FORWARD(i, j) y_##i -= y_##j * l_##j[i];
 #define GPROJI_ZY_SPREAD(j) GPROJI_Z_SPREAD(j) other -= GPROJI_LOAD(l_##j + r) * y_##j;
 
-/* See `forward` and `backward`. A column that does not exist is the first one once more, times 0. */
+/* See `forward` and `backward`. Missing columns reload column `skip`, scaled by 0. */
 #define GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                            \
     GPROJI_KERNEL(kind) void gproji_forward_##kind(int32_t rows, const double *l, ptrdiff_t stride,                    \
                                                    const double *inverse, int32_t skip, double *z) {                   \
@@ -2893,36 +2835,32 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         }                                                                                                              \
     }
 
-/* What a wide panel is taken off may not be in the cache any more: it is fetched while the product is made. */
-GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const double *c, ptrdiff_t ldc) {
-    int32_t r, j;
-    for (j = 0; j < columns; ++j)
-        for (r = 0; r < rows; r += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c + j * ldc + r);
-}
-
-/* A kind whose tiles have SMALL, MIDDLE or TALL vectors (which may be the same): first tall ones, then what is left. */
+/* A kind with tiles of SMALL, MIDDLE and TALL vectors (some may be equal): tall ones first, then one for the rest. A
+   wide panel's target may have left the cache, so it is fetched while the product is made. */
 #define GPROJI_DEFINE_KIND(kind, name, L, B, SMALL, MIDDLE, TALL)                                                      \
     GPROJI_KERNEL(kind) void gproji_update_##kind(int32_t rows, int32_t k, const double *a, const double *b,           \
                                                   ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,            \
                                                   bool fresh) {                                                        \
+        int32_t r, j;                                                                                                  \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L) {                                     \
-            if (k >= GPROJI_FAR_TILES) gproji_prefetch_tile(TALL * L, B, c, ldc);                                          \
-            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                           \
+            for (j = 0; k >= GPROJI_FAR_TILES && j < B; ++j)                                                           \
+                for (r = 0; r < TALL * L; r += GPROJI_CACHE_LINE) GPROJI_PREFETCH(c + j * ldc + r);                    \
+            gproji_update_##TALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                       \
         }                                                                                                              \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, fresh);                                         \
+            gproji_update_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, fresh);                                     \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                          \
+            gproji_update_##SMALL##_##kind(k, a, b, stride, left, c, ldc, fresh);                                      \
     }                                                                                                                  \
     GPROJI_KERNEL(kind) void gproji_solve_##kind(int32_t rows, int32_t k, const double *a, const double *b,            \
                                                  ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,             \
                                                  const double *triangle, const double *inverse, int32_t skip) {        \
         for (; rows >= TALL * L; rows -= TALL * L, a += TALL * L, c += TALL * L)                                       \
-            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                          \
+            gproji_solve_##TALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                      \
         if (rows == MIDDLE * L)                                                                                        \
-            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                        \
+            gproji_solve_##MIDDLE##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                    \
         else if (rows == SMALL * L)                                                                                    \
-            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                         \
+            gproji_solve_##SMALL##_##kind(k, a, b, stride, left, c, ldc, triangle, inverse, skip);                     \
     }                                                                                                                  \
     GPROJI_DEFINE_FACTOR(kind, L, B)                                                                                   \
     GPROJI_DEFINE_SOLUTIONS(kind, L, B)                                                                                \
@@ -2931,8 +2869,8 @@ GPROJI_INLINED void gproji_prefetch_tile(int32_t rows, int32_t columns, const do
         gproji_forward_##kind, gproji_forward_two_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
-/* See `add`; pieces with gaps: the rows of a piece are spread over a vector. Piece after piece in all columns, so that
-   what is known of a piece stays in registers. */
+/* See `add`, with gaps: a vector spreads the rows of a piece. Each piece is added to all columns before the next one,
+   so that masks stay in registers. */
 #define GPROJI_ADD_AT(d, v) _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), v))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, const double *source,
                                              ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride) {
@@ -2999,28 +2937,21 @@ GPROJI_DEFINE_KIND(avx512, "AVX-512", 8, 8, 1, 2, 3)
 #endif
 /* clang-format on */
 
-#if GPROJI_CHOICE
-/* The vector units of this processor whose registers the operating system keeps. */
-typedef struct gproji_units {
-    bool avx2, avx512;
-} gproji_units;
-
-GPROJI_INTERNAL gproji_units gproji_find_units(void) {
-    gproji_units units = {false, false};
-    unsigned a, b, c, d, kept, high;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_OSXSAVE) || !(c & bit_FMA)) return units;
-    __asm__ __volatile__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d)) return units;
-    units.avx2 = (b & bit_AVX2) && (kept & 0x06) == 0x06;      /* xmm, ymm */
-    units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6; /* and masks, zmm */
-    return units;
-}
-#endif
-
-/* Kernels that this processor can run: index 0 the best, then the others; NULL where there are no more. */
+/* Finds kernels that this processor can run: index 0 the best, then the others; NULL after the last. */
 GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 #if GPROJI_CHOICE
-    const gproji_units units = gproji_find_units();
+    struct {
+        bool avx2, avx512;
+    } units = {false, false};
+    unsigned a, b, c, d, kept, high;
+    /* A unit counts if the operating system keeps the registers: xmm and ymm; masks and zmm. */
+    if (__get_cpuid(1, &a, &b, &c, &d) && (c & bit_OSXSAVE) && (c & bit_FMA)) {
+        __asm__ __volatile__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
+        if (__get_cpuid_count(7, 0, &a, &b, &c, &d)) {
+            units.avx2 = (b & bit_AVX2) && (kept & 0x06) == 0x06;
+            units.avx512 = (b & bit_AVX512F) && (kept & 0xe6) == 0xe6;
+        }
+    }
     (void)units;
 #endif
 #define GPROJI_X(kind, have) \
@@ -3031,45 +2962,46 @@ GPROJI_INTERNAL const gproji_kernels *gproji_kernels_of(int32_t index) {
 }
 
 /* ============================================================================================================
-   >>dense   Dense matrices: panels and updates of the sparse factorisation, small ones. Uses platform, parallel, kernels.
+   >>dense   Dense matrices: panels and updates in the sparse factorisation, small ones. Uses platform, parallel,
+   kernels.
 
-   All matrices but the small ones are column-major. A front's panel has w pivot columns and its rows in "storage
-   rows": first q empty ones, then the w pivot rows, then the rows below, padded by empty rows. q is chosen so that the
-   rows below begin at a multiple of GPROJI_BLOCK, and the pivots are cut into column blocks at the same places: block
-   t has the storage rows [t B, t B + B), where B is the kernels' block, which divides GPROJI_BLOCK, and its columns
-   (the first block may have fewer than B). Pivot j stands in storage row j + q. Of what is above the diagonal most is not
-   stored: see gproji_shape. Strides are multiples of B, so every tile is whole and aligned: what kernels compute in empty
-   rows is zero, and what they write above the diagonal of a diagonal tile is never read.
+   Matrices are column-major, but for the small ones. A front has a panel with w pivot columns and an update matrix, the
+   Schur complement of the rows below. Rows are padded, so that kernels meet whole, aligned tiles only. In "storage
+   rows" a panel has q empty rows, w pivot rows, the rows below, and empty ones that fill the last GPROJI_BLOCK; q
+   lets the rows below begin at a multiple of GPROJI_BLOCK. Pivot j stands in storage row j + q. Column blocks end at
+   multiples of B, the kernels' block, which divides GPROJI_BLOCK; so the first block may have fewer than B columns.
+   Most entries above the diagonal are not stored, see gproji_shape. Kernels compute zeros in empty rows, and what they
+   write above the diagonal in a diagonal tile is never read.
 
-   The parts of a large panel's work that do not depend on each other may run on several threads. Invariant: every entry
-   is computed by the same operations in the same order however the work is cut, so that results are the same bits. */
+   Invariant: every entry is computed by the same operations in the same order however the work is cut into tasks for
+   threads, so that results are the same bits. */
 enum {
-    GPROJI_CHUNK = 128,   /* columns eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
-    GPROJI_NARROW = 192,  /* so many columns, if they are the last, are taken off an update matrix together */
-    GPROJI_CLEARED = 240, /* values that are set to 0 together */
-    GPROJI_TASK_COLUMNS = 48, /* columns that are one task; a multiple of GPROJI_BLOCK, GPROJI_STRIP and 8 */
-    GPROJI_TASK_ROWS = 120,   /* rows of a panel that are solved by one task; a multiple of all tiles */
-    GPROJI_ROW_BLOCK = 240    /* rows, or up to twice as many, that stay in the L2 cache with GPROJI_CHUNK columns */
+    GPROJI_CHUNK = 128,   /* pivots eliminated together in a wide panel, 2^n: a tile's strips stay in the L1 cache */
+    GPROJI_NARROW = 192,  /* last pivots, or fewer, that update a matrix together */
+    GPROJI_CLEARED = 240, /* values that are set to 0 by one call */
+    GPROJI_TASK_COLUMNS = 48, /* columns that a task updates; divisible by GPROJI_BLOCK, GPROJI_STRIP and 8 */
+    GPROJI_TASK_ROWS = 120,   /* rows that a task solves for; divisible by the heights of all tiles */
+    GPROJI_ROW_BLOCK = 240    /* rows, or less than twice that, that stay in the L2 cache with GPROJI_CHUNK columns */
 };
 
-/* The number of pieces of `size` that cover `all`. */
+/* Pieces of `size` that cover `all`. */
 GPROJI_INLINE int32_t gproji_pieces(int32_t all, int32_t size) { return (all + size - 1) / size; }
 
-/* The next multiple of `size`, a power of 2. */
+/* Rounds up to a multiple of `size`, a power of 2. */
 GPROJI_INLINE int32_t gproji_round_up(int32_t all, int32_t size) { return (all + size - 1) & -size; }
 
-/* The number of empty rows before the pivots of a panel with w pivots. */
+/* Empty rows before w pivots. */
 GPROJI_INLINE int32_t gproji_panel_shift(int32_t w) { return gproji_round_up(w, GPROJI_BLOCK) - w; }
 
-/* How a panel is stored: in blocks of columns that have the rows from the storage row of their first pivot on, so that
-   each block's stride is as much less. Blocks of narrow panels begin at multiples of GPROJI_BLOCK; those of wide ones at
-   multiples of GPROJI_CHUNK, so that columns that are eliminated together have one stride: processors foresee where they
-   are. With a BLAS there is but one block. The struct has 16 bytes: where a function returns 12, tcc 0.9.27 writes 16. */
+/* Layout of a panel: blocks of columns that store the rows from the first pivot's on, so that strides shrink from block
+   to block. In narrow panels blocks begin at multiples of GPROJI_BLOCK; in wide ones at multiples of
+   GPROJI_CHUNK, as processors predict addresses better if pivots eliminated together have one stride. With a BLAS there
+   is one block. The struct has 16 bytes: to return 12, tcc 0.9.27 writes 16. */
 typedef struct gproji_shape {
     int32_t shift;  /* empty rows before the pivots */
-    int32_t stride; /* of the first block, and the number of storage rows */
-    int32_t last;   /* of a wide panel: where the last block begins; -1: narrow */
-    int32_t end;    /* where the storage rows of the pivots end */
+    int32_t stride; /* in the first block, and the number of storage rows */
+    int32_t last;   /* first storage row of the last block in a wide panel; -1: narrow */
+    int32_t end;    /* end of the pivots' storage rows */
 } gproji_shape;
 
 GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
@@ -3088,12 +3020,12 @@ GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
     return shape;
 }
 
-/* The first row that the column of the pivot in storage row `at` has. */
+/* The first storage row of the block with the pivot in storage row `at`. */
 GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
 }
 
-/* Its stride; and how many columns, eliminated together, have it: that one and those after it. */
+/* The stride in that block; the number of columns, from that pivot's on, before it shrinks. */
 GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
     return shape.stride - gproji_shape_first(shape, at);
 }
@@ -3101,56 +3033,52 @@ GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? GPROJI_BLOCK - (at & (GPROJI_BLOCK - 1)) : INT32_MAX;
 }
 
-/* Storage row r of that column is at this offset + r, for rows that are stored: as if all were, less those that the
-   columns up to this one do not have. */
+/* Storage row r of that pivot's column is at this offset + r: as if all were stored, less those missing up to it. */
 GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
     int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
     return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
 }
 
-/* The number of entries of a panel. */
+/* Entries of a panel. */
 GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape) {
     return gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
 }
 
-/* Update matrices are symmetric and keep little more than their lower triangle: strips of GPROJI_STRIP columns, one
-   after the other, each with the rows from its first column on. A matrix has `rows` rows, a multiple of B. */
+/* Update matrices are symmetric. Little more than the lower triangle is stored, in strips of GPROJI_STRIP columns with
+   the rows from the strip's first column on. B divides `rows`. */
 
-/* The first column of the strip that holds a column. */
+/* The first column, and the first row, of the strip that holds a column. */
 GPROJI_INLINE int32_t gproji_strip_begin(int32_t column) {
     return (int32_t)((uint32_t)column / GPROJI_STRIP * GPROJI_STRIP);
 }
 
-/* The strip's stride. */
-GPROJI_INLINE ptrdiff_t gproji_update_stride(int32_t rows, int32_t column) { return rows - gproji_strip_begin(column); }
-
-/* Row r of a column is at this offset + r; r is at least the strip's first column. As if all rows were stored, less those
-   that the columns up to this one do not have. */
+/* Row r of a column is at this offset + r: as if all were stored, less those missing up to it. */
 GPROJI_INLINE ptrdiff_t gproji_update_offset(int32_t rows, int32_t column) {
     int32_t first = gproji_strip_begin(column);
     return (ptrdiff_t)column * rows - (ptrdiff_t)first * (column + 1 - (first + GPROJI_STRIP) / 2);
 }
 
-/* The number of entries. */
+/* Entries of an update matrix. */
 GPROJI_INTERNAL int64_t gproji_update_entries(int32_t rows) {
     int64_t first = gproji_strip_begin(rows), rest = rows - first;
     return first * rows - first * (first - GPROJI_STRIP) / 2 + rest * rest;
 }
 
-/* A panel at work: w pivot columns in storage rows [top, rows); columns [first, last) are being eliminated as a chunk,
-   after the effect of all columns before `first` has been taken off. Both bounds are ends of column blocks (or 0). Where
-   B is less than GPROJI_BLOCK, whole empty blocks of rows are left out: `top` rows. */
+/* A panel at work: w pivot columns in storage rows [top, rows). The chunk of columns [first, last) is being eliminated,
+   with all updates by earlier columns applied. `first` and `last` are ends of column blocks (or 0). If B is
+   less than GPROJI_BLOCK, whole empty blocks, `top` rows, are left out. */
 typedef struct gproji_panel {
     const gproji_kernels *kernels;
     int32_t w, shift, top, rows;
     int32_t first, last;
-    int32_t task_columns; /* that a task takes the pivots' effect off */
-    bool fresh;           /* the update matrix has no values yet: it begins with the pivots' effect */
+    bool fresh; /* the update matrix has no values yet: the first update sets it */
     gproji_shape shape;
-    int32_t update_rows; /* of the update matrix */
     double *values;
-    double *inverse; /* w: inverses of the diagonal of L */
-    double *update;  /* the update matrix */
+    double *inverse;          /* w: inverses of L's diagonal */
+    double *update;           /* the update matrix */
+    int32_t update_rows;      /* stored for it */
+    int32_t pivots[2];        /* update tasks: pivots that are applied, from..to, */
+    int32_t at, end, columns; /* to the columns that belong to [at, end), `columns` by each task */
 } gproji_panel;
 
 GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, int32_t w, int32_t below, double *values,
@@ -3162,7 +3090,7 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
     panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
     panel.first = panel.last = 0;
-    panel.task_columns = GPROJI_TASK_COLUMNS;
+    panel.pivots[0] = panel.pivots[1] = panel.at = panel.end = panel.columns = 0;
     panel.fresh = false;
     panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
@@ -3173,22 +3101,21 @@ GPROJI_INLINE double *gproji_panel_at(const gproji_panel *panel, int32_t row, in
     return panel->values + gproji_shape_offset(panel->shape, column + panel->shift) + row;
 }
 
-/* The column of the pivot, or of the row below the pivots, that stands in storage row `at`: its entry in storage row
-   r >= at is the r-th. */
+/* The column that belongs to storage row `at`, a pivot's or the update matrix's; entry r is in storage row r >= at. */
 GPROJI_INLINE double *gproji_panel_column(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return panel->values + gproji_shape_offset(panel->shape, at);
     return panel->update - pivot_end + gproji_update_offset(panel->update_rows, at - pivot_end);
 }
 
-/* Its stride: that of all columns of its block, or of its strip of the update matrix. */
+/* The stride in that column's block, or strip of the update matrix. */
 GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t at) {
     int32_t pivot_end = panel->shape.end;
     if (at < pivot_end) return gproji_shape_stride(panel->shape, at);
-    return gproji_update_stride(panel->update_rows, at - pivot_end);
+    return panel->update_rows - gproji_strip_begin(at - pivot_end);
 }
 
-/* The columns of all storage rows up to `to`, the end of a block: column[at]. */
+/* Writes the columns that belong to all storage rows before `to`, the end of a block, to column[at]. */
 GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, double **column) {
     int32_t at, i;
     for (at = 0; at < to; at += GPROJI_BLOCK) {
@@ -3198,50 +3125,35 @@ GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, d
     }
 }
 
-/* The first column of the chunk after the one that begins with column `first`: a multiple of GPROJI_CHUNK as a storage
-   row. */
+/* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides it, but for the last one.
+   */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
 
-/* Takes the effect of the pivot columns [first, last) off the columns of later pivots, or of the update matrix, that
-   belong to the storage rows [at, end). fresh: off nothing. */
-GPROJI_INTERNAL void gproji_strip_update(const gproji_panel *panel, int32_t at, int32_t end, int32_t first,
-                                         int32_t last, bool fresh) {
-    const gproji_kernels *kernels = panel->kernels;
-    const double *l = gproji_panel_at(panel, 0, first);
-    int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
-    int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
-    int32_t begin, stop, column;
-    for (begin = at; begin < panel->rows; begin = stop) {
-        stop = panel->rows - begin < 2 * GPROJI_ROW_BLOCK ? panel->rows : begin + GPROJI_ROW_BLOCK;
-        for (column = at; column < gproji_min(end, stop); column += kernels->block) {
-            int32_t row = gproji_max(begin, column);
-            kernels->update(stop - row, last - first, l + row, l + column, stride, left,
-                            gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column), fresh);
-        }
-    }
-}
-
-/* Some columns of the update matrix: U -= L2 L2', where L2 stands below the pivots. A task. */
+/* Applies the Schur update of the panel's `pivots` to some columns: U -= L2 L2'. A task. */
 GPROJI_INTERNAL void gproji_update_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->shape.end + index * panel->task_columns;
-    int32_t end = gproji_min(at + panel->task_columns, panel->rows);
-    int32_t first, last;
-    for (first = 0; first < panel->w; first = last) {
+    const gproji_kernels *kernels = panel->kernels;
+    int32_t at = panel->at + index * panel->columns, end = gproji_min(at + panel->columns, panel->end);
+    int32_t first, last, begin, stop, column;
+    for (first = panel->pivots[0]; first < panel->pivots[1]; first = last) {
+        const double *l = gproji_panel_at(panel, 0, first);
+        int32_t stride = gproji_shape_stride(panel->shape, first + panel->shift);
+        int32_t left = gproji_shape_left(panel->shape, first + panel->shift);
+        bool fresh = panel->fresh && first == 0 && at >= panel->shape.end;
         last = gproji_next_chunk(panel, first);
-        if (panel->w - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->w;
-        gproji_strip_update(panel, at, end, first, last, panel->fresh && first == 0);
+        if (panel->pivots[1] - last <= GPROJI_NARROW - GPROJI_CHUNK) last = panel->pivots[1];
+        /* Blocks of rows: the chunk's part of them stays in the L2 cache for all columns. */
+        for (begin = at; begin < panel->rows; begin = stop) {
+            stop = panel->rows - begin < 2 * GPROJI_ROW_BLOCK ? panel->rows : begin + GPROJI_ROW_BLOCK;
+            for (column = at; column < gproji_min(end, stop); column += kernels->block) {
+                int32_t row = gproji_max(begin, column);
+                kernels->update(stop - row, last - first, l + row, l + column, stride, left,
+                                gproji_panel_column(panel, column) + row, gproji_column_stride(panel, column), fresh);
+            }
+        }
     }
-}
-
-/* Some of the pivot columns after a chunk: takes off the chunk's effect. A task. */
-GPROJI_INTERNAL void gproji_trailing_task(void *data, int32_t index) {
-    const gproji_panel *panel = (const gproji_panel *)data;
-    int32_t at = panel->last + panel->shift + index * panel->task_columns;
-    int32_t end = gproji_min(at + panel->task_columns, panel->shape.end);
-    gproji_strip_update(panel, at, end, panel->first, panel->last, false);
 }
 
 /* The first storage row of the column block that begins with column `start`. */
@@ -3249,7 +3161,7 @@ GPROJI_INLINE int32_t gproji_block_row(const gproji_panel *panel, int32_t start)
     return start == 0 ? panel->top : start + panel->shift;
 }
 
-/* The column block with the first column `start` in `rows` rows from `row` on: C = (C - A B') L^-T. */
+/* Solves for the column block from `start` on in `rows` rows from `row` on: C = (C - A B') L^-T. */
 GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, int32_t row, int32_t rows) {
     int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
     const double *l = gproji_panel_at(panel, 0, panel->first);
@@ -3259,12 +3171,12 @@ GPROJI_INLINE void gproji_block_solve(const gproji_panel *panel, int32_t start, 
                           block + at, panel->inverse + start, start + panel->shift - at);
 }
 
-/* The first column of the block after the one that begins with column `start`. */
+/* The end of the column block that begins with column `start`. */
 GPROJI_INLINE int32_t gproji_next_block(const gproji_panel *panel, int32_t start) {
     return gproji_block_row(panel, start) + panel->kernels->block - panel->shift;
 }
 
-/* A chunk's columns in some of the rows below its pivots, tile by tile. A task. */
+/* Solves for a chunk's columns in some rows below the pivots, tile by tile. A task. */
 GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
     const gproji_panel *panel = (const gproji_panel *)data;
     int32_t tile = panel->kernels->tile_rows, row = panel->last + panel->shift + index * GPROJI_TASK_ROWS;
@@ -3274,31 +3186,12 @@ GPROJI_INTERNAL void gproji_solve_task(void *data, int32_t index) {
             gproji_block_solve(panel, start, row, gproji_min(tile, end - row));
 }
 
-/* The chunk's pivot rows, column block by column block. Returns -1 or the failing column. */
-GPROJI_INTERNAL int32_t gproji_chunk_pivots(const gproji_panel *panel) {
-    const gproji_kernels *kernels = panel->kernels;
-    int32_t block = kernels->block, end = panel->last + panel->shift, start, failed;
-    for (start = panel->first; start < panel->last; start = gproji_next_block(panel, start)) {
-        int32_t at = gproji_block_row(panel, start), chunk = panel->first + panel->shift;
-        int32_t stride = gproji_shape_stride(panel->shape, at);
-        const double *strip = gproji_panel_at(panel, at, panel->first);
-        double *corner = gproji_panel_at(panel, at, start);
-        if (start > panel->first)
-            kernels->update(block, start - panel->first, strip, strip, gproji_shape_stride(panel->shape, chunk),
-                            gproji_shape_left(panel->shape, chunk), corner, stride, false);
-        failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
-        if (failed >= 0) return start + failed;
-        gproji_block_solve(panel, start, at + block, end - at - block);
-    }
-    return -1;
-}
-
-/* Are the host's threads given, and is the work, in flops, worth sharing? */
+/* Are there threads, and is the work, in flops, worth sharing? */
 GPROJI_INLINE bool gproji_is_shared(const gproj_parallel *parallel, double flops) {
     return parallel && parallel->run && flops > 4e6;
 }
 
-/* Runs tasks, on the host's threads where that is worth it. */
+/* Runs tasks, on the host's threads if that is worth it. */
 GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
                                       void *data) {
     int32_t i;
@@ -3309,21 +3202,19 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     for (i = 0; i < count; ++i) task(data, i);
 }
 
-/* The pieces of a child's `below` rows in `groups` groups are at most so many. */
+/* An upper bound on the pieces of a child's `below` rows in `groups` groups. */
 GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
     return 2 * groups + below / GPROJI_BLOCK + 2;
 }
 
-/* The rows of a child's update matrix in its parent's panel. Group k of `groups` has the child's rows from at[k] - base
-   on, up to those of the next group or the `below`-th, and goes to the parent's storage rows from to[k] on. A piece's
-   columns have the same stride in the parent: none reaches beyond the parent's pivots, which end at storage row
-   `pivot_end`, or beyond a strip of its update matrix. piece: gproji_pieces_most entries are enough. Returns their
-   number. */
+/* Cuts a child's rows into pieces for extend-add. Rows in group k, from at[k] - base up to the next group or `below`,
+   go to the parent's storage rows from to[k] on. The columns of a piece have one stride in the parent: none lies beyond
+   `pivot_end`, the end of the pivots, or beyond a strip. Returns the number of pieces, at most gproji_pieces_most. */
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
     gproji_piece *now = piece;
-    int32_t k, row, count = 0, end = INT32_MIN; /* end: of the parent's rows that fit into the piece at hand */
+    int32_t k, row, count = 0, end = INT32_MIN; /* end: the parent's first row beyond the piece */
     for (k = 0; k < groups; ++k) {
         int32_t next = k + 1 < groups ? at[k + 1] - base : below, target = to[k], fit;
         for (row = at[k] - base; row < next; row += fit, target += fit) {
@@ -3343,6 +3234,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
             if (kernels->spreads) now->mask = (uint16_t)(now->mask | ((1u << fit) - 1) << (target - now->to));
         }
     }
+    /* Runs of pieces without gaps, see gproji_piece. */
     for (k = count - 1; kernels->spreads && k >= 0; --k) {
         bool goes_on = k + 1 < count && piece[k + 1].to == piece[k].to + 8 && piece[k + 1].run < UINT16_MAX;
         if (piece[k].rows == 8) piece[k].run = (uint16_t)(goes_on ? piece[k + 1].run + 1 : 1);
@@ -3350,7 +3242,7 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* A child's update matrix with `rows` rows on its way to its parent. */
+/* The extend-add of a child's update matrix, with `rows` rows. */
 typedef struct gproji_addition {
     const gproji_panel *panel; /* the parent's */
     const gproji_piece *piece;
@@ -3359,38 +3251,35 @@ typedef struct gproji_addition {
     int32_t rows;
 } gproji_addition;
 
-/* Adds the columns of the k-th piece's rows. */
-GPROJI_INLINE void gproji_add_piece(const gproji_addition *add, int32_t k) {
-    const gproji_panel *panel = add->panel;
-    const gproji_piece *piece = add->piece + k;
-    int32_t column = piece->from;
-    panel->kernels->add(piece, add->pieces - k, add->update + gproji_update_offset(add->rows, column),
-                        gproji_update_stride(add->rows, column), gproji_strip_begin(column) + GPROJI_STRIP - column,
-                        gproji_panel_column(panel, piece->to), gproji_column_stride(panel, piece->to));
-}
-
-/* Adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
+/* Extend-adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
 GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from, int32_t to) {
+    const gproji_panel *panel = add->panel;
     int32_t first = 0, last = add->pieces;
-    while (first < last) { /* the first piece from there on */
+    while (first < last) { /* find the first piece from there on */
         int32_t middle = first + (last - first) / 2;
         if (add->piece[middle].to < from)
             first = middle + 1;
         else
             last = middle;
     }
-    for (; first < add->pieces && add->piece[first].to < to; ++first) gproji_add_piece(add, first);
+    for (; first < add->pieces && add->piece[first].to < to; ++first) {
+        const gproji_piece *piece = add->piece + first;
+        int32_t column = piece->from, strip = gproji_strip_begin(column);
+        panel->kernels->add(piece, add->pieces - first, add->update + gproji_update_offset(add->rows, column),
+                            add->rows - strip, strip + GPROJI_STRIP - column, gproji_panel_column(panel, piece->to),
+                            gproji_column_stride(panel, piece->to));
+    }
 }
 
-/* Sets values to 0, in pieces: for more than 2 KB some C libraries use an x86 instruction that takes long to begin, and
-   for which all that is added to these values must wait. */
+/* Sets values to 0, a few at a time: for more than 2 KB some C libraries use an x86 instruction that is slow to start
+   and holds up all additions to these values. */
 GPROJI_INTERNAL void gproji_clear(double *values, ptrdiff_t count) {
     for (; count > GPROJI_CLEARED; count -= GPROJI_CLEARED, values += GPROJI_CLEARED)
         memset(values, 0, GPROJI_CLEARED * sizeof *values);
     memset(values, 0, (size_t)count * sizeof *values);
 }
 
-/* Sets the columns that belong to the storage rows [from, to) to 0. */
+/* Sets the columns that belong to storage rows [from, to) to 0. */
 GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
     int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
     from = gproji_max(from, panel->shift);
@@ -3408,8 +3297,8 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
 }
 
 #ifdef GPROJ_USE_CBLAS
-/* By a BLAS: our own kernels factor the pivot rows of a chunk, all else is dtrsm, dsyrk and dgemm; threads are the
-   BLAS's own business. */
+/* By a BLAS: dtrsm, dsyrk and dgemm after our own kernels have factored a chunk's pivot rows. Threads are left to
+   the BLAS. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -3444,44 +3333,58 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
     }
 }
 #else
-/* Runs the tasks that take the effect of pivots off so many columns. One thread alone does all of them in one: a strip of
-   rows, once in the cache, serves more columns. */
-GPROJI_INTERNAL void gproji_take_off(const gproj_parallel *parallel, double flops, int32_t columns, gproj_task task,
-                                     gproji_panel *panel) {
-    panel->task_columns = gproji_is_shared(parallel, flops) ? GPROJI_TASK_COLUMNS : gproji_max(columns, 1);
-    gproji_run_tasks(parallel, flops, gproji_pieces(columns, panel->task_columns), task, panel);
+/* Applies the Schur update by pivots from..to to the columns that belong to storage rows [at, end). A single thread
+   takes all columns in one task: a strip, once in the cache, serves more columns. */
+GPROJI_INTERNAL void gproji_apply_pivots(const gproj_parallel *parallel, double flops, gproji_panel *panel,
+                                         int32_t from, int32_t to, int32_t at, int32_t end) {
+    panel->pivots[0] = from, panel->pivots[1] = to, panel->at = at, panel->end = end;
+    panel->columns = gproji_is_shared(parallel, flops) ? GPROJI_TASK_COLUMNS : gproji_max(end - at, 1);
+    gproji_run_tasks(parallel, flops, gproji_pieces(end - at, panel->columns), gproji_update_task, panel);
 }
 
-/* After its pivots: a chunk's rows below, and its effect on the pivot columns after it. */
+/* Finishes a chunk whose pivot rows are factored: solves for the rows below and updates later pivot columns. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t under = panel->rows - panel->last - panel->shift, later = panel->w - panel->last;
     double width = panel->last - panel->first;
     gproji_run_tasks(parallel, width * width * under, gproji_pieces(under, GPROJI_TASK_ROWS), gproji_solve_task, panel);
-    gproji_take_off(parallel, 2 * width * under * later, later, gproji_trailing_task, panel);
+    gproji_apply_pivots(parallel, 2 * width * under * later, panel, panel->first, panel->last,
+                        panel->last + panel->shift, panel->shape.end);
 }
 
-/* The effect of a factored panel on its update matrix. */
+/* Applies the Schur update by all pivots to the update matrix. */
 GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t below = panel->rows - panel->shape.end;
-    gproji_take_off(parallel, (double)below * below * panel->w, below, gproji_update_task, panel);
+    gproji_apply_pivots(parallel, (double)below * below * panel->w, panel, 0, panel->w, panel->shape.end, panel->rows);
 }
 #endif
 
-/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
+/* Factors a panel in place, chunk by chunk. Returns -1 or the first column whose pivot is not > 0. parallel: NULL
+   within a task. */
 GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
+    const gproji_kernels *kernels = panel->kernels;
+    int32_t block = kernels->block, start, failed;
     for (panel->last = 0; panel->last < panel->w;) {
-        int32_t failed;
-        panel->first = panel->last;
-        panel->last = gproji_next_chunk(panel, panel->first);
-        failed = gproji_chunk_pivots(panel);
-        if (failed >= 0) return failed;
+        int32_t first = panel->first = panel->last, end = panel->last = gproji_next_chunk(panel, first);
+        /* The chunk's pivot rows: each column block is updated by those before, factored, and solved for below. */
+        for (start = first; start < end; start = gproji_next_block(panel, start)) {
+            int32_t at = gproji_block_row(panel, start), chunk = first + panel->shift;
+            int32_t stride = gproji_shape_stride(panel->shape, at);
+            const double *strip = gproji_panel_at(panel, at, first);
+            double *corner = gproji_panel_at(panel, at, start);
+            if (start > first)
+                kernels->update(block, start - first, strip, strip, gproji_shape_stride(panel->shape, chunk),
+                                gproji_shape_left(panel->shape, chunk), corner, stride, false);
+            failed = kernels->factor(corner, stride, panel->inverse + start, start + panel->shift - at);
+            if (failed >= 0) return start + failed;
+            gproji_block_solve(panel, start, at + block, end + panel->shift - at - block);
+        }
         gproji_chunk_finish(parallel, panel);
     }
     return -1;
 }
 
-/* z = L^-1 z on all storage rows of a panel: the pivots' part becomes the solution, the part below (0 on entry) minus
-   what it takes from the rows below. So for y, unless it is NULL. */
+/* z = L^-1 z on a panel's storage rows: the solution in the pivots' rows, and the contribution to the rows below (0 on
+   entry). The second right-hand side y may be NULL. */
 GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, double *y) {
     int32_t start;
     for (start = 0; start < panel->w; start = gproji_next_block(panel, start)) {
@@ -3495,14 +3398,14 @@ GPROJI_INTERNAL void gproji_panel_forward(const gproji_panel *panel, double *z, 
     }
 }
 
-/* Begins to bring values into the cache. */
+/* Prefetches values. */
 GPROJI_INLINED void gproji_prefetch_values(const double *value, int64_t count) {
     int64_t i;
     for (i = 0; i < count; i += GPROJI_CACHE_LINE) GPROJI_PREFETCH_L2(value + i);
 }
 
-/* z = L^-T z on all storage rows of a panel, where the part below is known. is_far: the panel is not in the cache, so each
-   column block is fetched ahead: processors do not foresee columns from right to left. */
+/* z = L^-T z on a panel's storage rows, given the rows below. is_far: the panel is not in the cache, so each
+   column block is fetched ahead, as processors do not predict columns from right to left. */
 GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_far, double *z) {
     int32_t block = panel->kernels->block, at = panel->shape.end - block;
     for (; at >= panel->top; at -= block) {
@@ -3516,8 +3419,8 @@ GPROJI_INTERNAL void gproji_panel_backward(const gproji_panel *panel, bool is_fa
 
 /* -- small matrices, by rows -- */
 
-/* L L' = M in place. No pivot is less than `floor`, which is 1 for I plus a positive semidefinite matrix; where rounding
-   says so (columns that depend on each other), the pivot is what rounding lets be known. */
+/* Factors M = L L' in place. Pivots are at least `floor`, which is 1 for I plus a positive semidefinite matrix, and at
+   least the rounding error, which decides if columns depend on each other. */
 GPROJI_INTERNAL void gproji_small_factor(double *m, int32_t n, int32_t stride, double floor) {
     int32_t i, j, k;
     for (i = 0; i < n; ++i) {
@@ -3547,14 +3450,17 @@ GPROJI_INTERNAL void gproji_small_solve(const double *m, int32_t n, int32_t stri
 /* ============================================================================================================
    >>ordering   The order of elimination: graphs of nodes, condensation, minimum degree. Uses platform, memory.
 
-   A node is a group of variables that stay together; its weight is their number. All degrees and counts here are in
-   variables. The minimum degree ordering is written after Amestoy, Davis, Duff, "An approximate minimum degree
-   ordering algorithm" (1996): quotient graph, element absorption (also aggressive), approximate external degrees,
-   mass elimination, supervariables found by hashing (Ashcraft 1995), dense rows put last. It is deterministic: ties
-   are broken by the order in which nodes reach a degree list. */
+   A node is a group of variables that stay together; weights, degrees and counts are numbers of variables.
+   The approximate minimum degree ordering follows Amestoy, Davis, Duff (1996). Elimination is kept as a quotient graph:
+   a pivot p turns into an element, a clique with the variables L_p = (A_p u all L_e) \ p, for the elements e next to p.
+   These are absorbed, and so are others inside L_p (aggressive absorption). The degree of variable i is bounded by
+     |A_i| + |L_p \ i| + sum |L_e \ L_p| over other elements e next to i,
+   the sum from one scan over the elements. Variables without neighbours outside L_p go with the pivot (mass
+   elimination); those with equal lists merge into supervariables, found by hashing (Ashcraft 1995).
+   Invariant: the order depends on the graph alone; ties go to the variable that entered a degree list last. */
 
-/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and i is
-   a neighbour of each of them. */
+/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and each
+   has i for a neighbour. */
 typedef struct gproji_graph {
     int32_t nodes;
     const int64_t *start;
@@ -3562,49 +3468,44 @@ typedef struct gproji_graph {
     const int32_t *weight;
 } gproji_graph;
 
-/* sum over the columns of a front, or of a node, of (column count)^2 */
+/* Sums (column count)^2 over the columns of a front, or of a node. */
 GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
     return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
 }
 
-/* The state of the elimination. Each of the graph's nodes is, at any time, one of
-     variable  (weight > 0)   not yet eliminated, standing for `weight` matrix variables; its list in `space` has first
-                              `elements[i]` elements, then variables, `length[i]` altogether
-     element   (kind ELEMENT) a pivot; its list holds the variables of its column of L that are not yet eliminated
-     gone      (kind GONE)    a variable absorbed by another one or by an element, or an element absorbed by a later one
-     dense     (kind DENSE)   put last, never looked at
-   While a new element is formed, the weight of its variables is negated. */
+/* Kinds of nodes during elimination. A variable's list has first `elements[i]` elements, then variables, `length[i]`
+   entries altogether. */
 enum {
-    GPROJI_AMD_VARIABLE,
-    GPROJI_AMD_ELEMENT,
-    GPROJI_AMD_GONE,
-    GPROJI_AMD_DENSE
+    GPROJI_AMD_VARIABLE, /* not yet eliminated; stands for `weight` variables, negated while in the new element */
+    GPROJI_AMD_ELEMENT,  /* a pivot; the list has the variables in that column of L that are not yet eliminated */
+    GPROJI_AMD_GONE,     /* absorbed: a variable by another one or by an element, or an element by a later one */
+    GPROJI_AMD_DENSE     /* put last, never looked at */
 };
 
 typedef struct gproji_amd {
     int32_t nodes;
-    int32_t total;  /* weight of all nodes that are not dense */
-    int32_t left;   /* of it, not yet eliminated */
-    int32_t lowest; /* no variable has a smaller degree */
-    double flops; /* of what is eliminated: sum of (column count)^2; the dense nodes are taken for neighbours of all */
-    int64_t free; /* space[free..size-1] is unused */
-    int64_t size;
+    int32_t total;       /* weight without dense nodes */
+    int32_t left;        /* weight that is not yet eliminated */
+    int32_t lowest;      /* no variable has a smaller degree */
+    double flops;        /* so far: sum of (column count)^2, with dense nodes in all columns */
+    int64_t free;        /* space[free..size-1] is unused */
+    int64_t size;        /* entries in the space */
     int64_t stamp;       /* marks below it are old */
     int32_t *space;      /* size: all lists */
-    int64_t *list;       /* nodes: where the list begins */
+    int64_t *list;       /* nodes: beginning of the list */
     int32_t *length;     /* nodes */
-    int32_t *elements;   /* nodes: of a variable, the elements at the head of its list */
+    int32_t *elements;   /* nodes: elements at the head of a variable's list */
     int32_t *weight;     /* nodes */
-    int32_t *degree;     /* nodes: variable: bound of the external degree; element: weight of its list */
+    int32_t *degree;     /* nodes: bound on a variable's external degree; weight of an element's list */
     unsigned char *kind; /* nodes */
-    int64_t *mark;       /* nodes: elements: stamp + weight of what lies outside the new element; else marks */
-    int32_t *head;       /* buckets: first variable of a degree, or -1; used for hash values while comparing */
+    int64_t *mark;       /* nodes: an element's weight outside the new one, + stamp; else marks */
+    int32_t *head;       /* buckets: first variable with this degree, or -1 */
     int32_t buckets;     /* total + 1 */
     int32_t *next;       /* nodes: in a degree list, in a hash list */
     int32_t *previous;   /* nodes: in a degree list; while comparing, the hash value */
     int32_t *hash_head;  /* nodes: first variable with a hash value, or -1 */
-    int32_t *tail;       /* nodes: last node of the chain that a representative has absorbed */
-    int32_t *chain;      /* nodes: next node of that chain, or -1 */
+    int32_t *tail;       /* nodes: last node that a representative has absorbed */
+    int32_t *chain;      /* nodes: next node absorbed by the same one, or -1 */
 } gproji_amd;
 
 GPROJI_INTERNAL void gproji_amd_list_add(gproji_amd *amd, int32_t i) {
@@ -3625,7 +3526,7 @@ GPROJI_INTERNAL void gproji_amd_list_remove(gproji_amd *amd, int32_t i) {
         amd->head[amd->degree[i]] = after;
 }
 
-/* Node j, with all that it has absorbed, is from now on eliminated right after what `i` has absorbed. */
+/* Node i absorbs node j: the chain of nodes eliminated with j follows the chain of i. */
 GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->chain[amd->tail[i]] = j;
     amd->tail[i] = amd->tail[j];
@@ -3633,32 +3534,7 @@ GPROJI_INTERNAL void gproji_amd_absorb(gproji_amd *amd, int32_t i, int32_t j) {
     amd->kind[j] = GPROJI_AMD_GONE;
 }
 
-/* Moves all living lists to the front of the space. The first entry of a list lends its place to the node's number
-   (as -1 - i), so that a sweep over the space meets the lists in their order. */
-GPROJI_INTERNAL void gproji_amd_compact(gproji_amd *amd) {
-    int64_t from, to = 0;
-    int32_t i, k;
-    for (i = 0; i < amd->nodes; ++i) {
-        if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
-        from = amd->list[i];
-        amd->list[i] = amd->space[from];
-        amd->space[from] = -1 - i;
-    }
-    for (from = 0; from < amd->free;) {
-        if (amd->space[from] >= 0) {
-            ++from;
-            continue;
-        }
-        i = -1 - amd->space[from];
-        amd->space[to] = (int32_t)amd->list[i];
-        amd->list[i] = to++;
-        ++from;
-        for (k = 1; k < amd->length[i]; ++k) amd->space[to++] = amd->space[from++];
-    }
-    amd->free = to;
-}
-
-/* Takes the variables of a list into the new element, whose list is being written at `free`. */
+/* Moves the variables of a list into the new element, whose list grows at `free`. */
 GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int32_t *from, int32_t count) {
     int32_t k;
     for (k = 0; k < count; ++k) {
@@ -3671,13 +3547,30 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
     }
 }
 
-/* Forms the element of a pivot: L_p = (A_p u union of L_e for all its elements e) \ p. The elements are absorbed. */
+/* Turns a pivot into an element and absorbs the elements next to it. */
 GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
-    int32_t k, own = amd->length[pivot], heads = amd->elements[pivot];
-    int64_t needed = own - heads, begin;
+    int32_t i, k, own = amd->length[pivot], heads = amd->elements[pivot];
+    int64_t needed = own - heads, begin, from, to = 0;
     for (k = 0; k < heads; ++k) needed += amd->length[amd->space[amd->list[pivot] + k]];
     if (needed > amd->left) needed = amd->left; /* each variable at most once */
-    if (amd->free + needed > amd->size) gproji_amd_compact(amd);
+    if (amd->free + needed > amd->size) {
+        /* Out of space: move all lists to the front. A list's first entry waits in list[i] while the node's number, as
+           -1 - i, marks the list's beginning. */
+        for (i = 0; i < amd->nodes; ++i) {
+            if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
+            from = amd->list[i];
+            amd->list[i] = amd->space[from];
+            amd->space[from] = -1 - i;
+        }
+        for (from = 0; from < amd->free;) {
+            i = -1 - amd->space[from++];
+            if (i < 0) continue;
+            amd->space[to] = (int32_t)amd->list[i];
+            amd->list[i] = to++;
+            for (k = 1; k < amd->length[i]; ++k) amd->space[to++] = amd->space[from++];
+        }
+        amd->free = to;
+    }
     GPROJ_ASSERT(amd->free + needed <= amd->size);
     begin = amd->free;
     amd->degree[pivot] = 0;
@@ -3695,26 +3588,9 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     amd->elements[pivot] = 0;
 }
 
-/* For every element e that shares variables with the new one: mark[e] - stamp = weight of L_e \ L_p. */
-GPROJI_INTERNAL void gproji_amd_scan(gproji_amd *amd, int32_t pivot) {
-    const int32_t *element = amd->space + amd->list[pivot];
-    int32_t k, j;
-    amd->stamp += (int64_t)amd->total + 1;
-    for (k = 0; k < amd->length[pivot]; ++k) {
-        int32_t i = element[k], weight = -amd->weight[i];
-        const int32_t *list = amd->space + amd->list[i];
-        for (j = 0; j < amd->elements[i]; ++j) {
-            int32_t e = list[j];
-            if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
-            if (amd->mark[e] < amd->stamp) amd->mark[e] = amd->stamp + amd->degree[e];
-            amd->mark[e] -= weight;
-        }
-    }
-}
-
-/* Rewrites the list of variable i of the new element: its other elements, with the new one in front, then the variables
-   not reached by the new element. Sets its degree bound without the new element's part, and returns its hash value;
-   -1 when the variable has nothing outside the new element (then it can be eliminated with the pivot). */
+/* Rewrites the list of variable i in the new element: the new element, the other elements, the variables outside the
+   new element. Sets the degree bound without the new element's part. Returns a hash value of the list; -1 if nothing is
+   left outside the new element. */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -3742,7 +3618,7 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
         list[to++] = j;
     }
     if (degree == 0) return -1;
-    /* the new element takes the first place: at least one entry has gone (the pivot, or an element it absorbed) */
+    /* the new element comes first: there is room, as the pivot, or an element that it absorbed, has left the list */
     GPROJ_ASSERT(to < own);
     moved = list[heads];
     if (to > heads) list[to] = moved;
@@ -3755,24 +3631,17 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
     return (int32_t)(hash % (uint32_t)amd->nodes);
 }
 
-/* Have variables i and j the same elements and neighbours? Those of i are marked by the stamp. */
-GPROJI_INTERNAL bool gproji_amd_same(const gproji_amd *amd, int32_t i, int32_t j) {
-    const int32_t *list = amd->space + amd->list[j];
-    int32_t k;
-    if (amd->length[i] != amd->length[j] || amd->elements[i] != amd->elements[j]) return false;
-    for (k = 1; k < amd->length[j]; ++k)
-        if (amd->mark[list[k]] != amd->stamp) return false;
-    return true;
-}
-
-/* Merges the variables of one hash list that cannot be told apart. */
+/* Merges variables in one hash list that have the same elements and neighbours. */
 GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
     int32_t i, j, before, k;
     for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
         amd->stamp++;
         for (k = 1; k < amd->length[i]; ++k) amd->mark[amd->space[amd->list[i] + k]] = amd->stamp;
         for (before = i, j = amd->next[i]; j >= 0; j = amd->next[j]) {
-            if (gproji_amd_same(amd, i, j)) {
+            const int32_t *list = amd->space + amd->list[j]; /* begins with the new element, as that of i */
+            bool same = amd->length[i] == amd->length[j] && amd->elements[i] == amd->elements[j];
+            for (k = 1; same && k < amd->length[j]; ++k) same = amd->mark[list[k]] == amd->stamp;
+            if (same) {
                 amd->weight[i] += amd->weight[j]; /* both negative */
                 gproji_amd_absorb(amd, i, j);
                 amd->next[before] = amd->next[j];
@@ -3783,16 +3652,28 @@ GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
     }
 }
 
-/* Eliminates one pivot: forms its element and brings all its variables up to date. */
+/* Eliminates one pivot: forms the element and brings all variables in it up to date. */
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
-    int32_t k, to = 0, *element;
+    int32_t j, k, to = 0, *element;
     amd->left -= amd->weight[pivot];
     gproji_amd_form_element(amd, pivot);
     element = amd->space + amd->list[pivot];
-    gproji_amd_scan(amd, pivot);
+    /* 1. Scan: mark[e] - stamp = |L_e \ L_p| for all elements e that share variables with the new one. */
+    amd->stamp += (int64_t)amd->total + 1;
+    for (k = 0; k < amd->length[pivot]; ++k) {
+        int32_t i = element[k], weight = -amd->weight[i];
+        const int32_t *list = amd->space + amd->list[i];
+        for (j = 0; j < amd->elements[i]; ++j) {
+            int32_t e = list[j];
+            if (amd->kind[e] != GPROJI_AMD_ELEMENT) continue;
+            if (amd->mark[e] < amd->stamp) amd->mark[e] = amd->stamp + amd->degree[e];
+            amd->mark[e] -= weight;
+        }
+    }
+    /* 2. New lists for the variables; mass elimination. */
     for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], hash = gproji_amd_prune(amd, pivot, i);
-        if (hash < 0) { /* mass elimination */
+        if (hash < 0) {
             int32_t weight = -amd->weight[i];
             amd->left -= weight;
             amd->degree[pivot] -= weight;
@@ -3804,15 +3685,17 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         amd->next[i] = amd->hash_head[hash];
         amd->hash_head[hash] = i;
     }
+    /* 3. Supervariables. Empties the hash lists. */
     amd->stamp += (int64_t)amd->total + 1;
-    for (k = 0; k < amd->length[pivot]; ++k) { /* supervariables; empties the hash lists */
+    for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], first;
         if (amd->weight[i] == 0) continue;
         first = amd->hash_head[amd->previous[i]];
         amd->hash_head[amd->previous[i]] = -1;
         if (first >= 0) gproji_amd_merge(amd, first);
     }
-    for (k = 0; k < amd->length[pivot]; ++k) { /* final degrees; what was absorbed leaves the element's list */
+    /* 4. Final degrees. Absorbed variables leave the element's list. */
+    for (k = 0; k < amd->length[pivot]; ++k) {
         int32_t i = element[k], weight = -amd->weight[i];
         int64_t degree;
         if (weight == 0) continue;
@@ -3829,67 +3712,53 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
 }
 
-GPROJI_INTERNAL bool gproji_amd_take(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph) {
-    int64_t n = graph->nodes;
+/* Gives all dense nodes this kind: those with more than 10 sqrt(n) variables next to them. They are put last unseen, as
+   they would make every degree and distance meaningless and the search slow. `total`: the weight of all nodes. */
+GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total, unsigned char *kind,
+                                       unsigned char dense) {
+    double least = gproji_fmax(16.0, 10.0 * sqrt((double)total));
+    int32_t i, heaviest = 0;
+    int64_t k;
+    for (i = 0; i < graph->nodes; ++i) heaviest = gproji_max(heaviest, graph->weight[i]);
+    for (i = 0; i < graph->nodes; ++i) {
+        int64_t degree = 0;
+        /* few neighbours: most nodes need no look at them */
+        if ((double)(graph->start[i + 1] - graph->start[i]) * heaviest <= least) continue;
+        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) degree += graph->weight[graph->adjacent[k]];
+        if ((double)degree > least) kind[i] = dense;
+    }
+}
+
+/* Takes memory for a graph and fills the lists with all nodes that are not dense. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph, int32_t total) {
+    int32_t **const ints[] = {&amd->length,   &amd->weight,    &amd->degree, &amd->next,
+                              &amd->previous, &amd->hash_head, &amd->tail,   &amd->chain};
+    int32_t i, n = graph->nodes;
+    int64_t k;
+    size_t a;
+    memset(amd, 0, sizeof *amd);
+    amd->nodes = n;
+    amd->buckets = total + 1;
+    amd->stamp = 1;
     amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
     amd->space = (int32_t *)gproji_pool_take(pool, amd->size, sizeof(int32_t));
     amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-    amd->length = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    amd->weight = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->degree = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
     amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
+    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
     amd->head = (int32_t *)gproji_pool_take(pool, amd->buckets, sizeof(int32_t));
-    amd->next = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->previous = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->hash_head = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->tail = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    amd->chain = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-    return amd->space && amd->list && amd->length && amd->elements && amd->weight && amd->degree && amd->kind &&
-           amd->mark && amd->head && amd->next && amd->previous && amd->hash_head && amd->tail && amd->chain;
-}
-
-/* The weight of a node's neighbours. */
-GPROJI_INTERNAL int64_t gproji_graph_degree(const gproji_graph *graph, int32_t node) {
-    int64_t k, degree = 0;
-    for (k = graph->start[node]; k < graph->start[node + 1]; ++k) degree += graph->weight[graph->adjacent[k]];
-    return degree;
-}
-
-/* Dense nodes have more than 10 sqrt(n) variables next to them. They are put last without looking at them: they would
-   make every degree and distance meaningless and the search slow. */
-GPROJI_INTERNAL double gproji_dense_degree(int32_t total) { return gproji_fmax(16.0, 10.0 * sqrt((double)total)); }
-
-GPROJI_INTERNAL int32_t gproji_graph_heaviest(const gproji_graph *graph) {
-    int32_t i, most = 0;
-    for (i = 0; i < graph->nodes; ++i) most = gproji_max(most, graph->weight[i]);
-    return most;
-}
-
-/* Is a node dense? dense: see gproji_dense_degree. heaviest: of all nodes; most need no look at their neighbours. */
-GPROJI_INTERNAL bool gproji_graph_is_dense(const gproji_graph *graph, int32_t node, double dense, int32_t heaviest) {
-    if ((double)(graph->start[node + 1] - graph->start[node]) * heaviest <= dense) return false;
-    return (double)gproji_graph_degree(graph, node) > dense;
-}
-
-/* Fills the lists with all nodes that are not dense. */
-GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph) {
-    double dense = gproji_dense_degree(amd->buckets - 1);
-    int32_t i, heaviest = gproji_graph_heaviest(graph);
-    int64_t k;
-    amd->stamp = 1;
-    amd->lowest = 0;
-    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
-    for (i = 0; i < amd->nodes; ++i) {
-        amd->hash_head[i] = -1;
-        amd->tail[i] = i;
-        amd->chain[i] = -1;
-        amd->weight[i] = graph->weight[i];
-        if (gproji_graph_is_dense(graph, i, dense, heaviest)) amd->kind[i] = GPROJI_AMD_DENSE;
+    if (!amd->space || !amd->list || !amd->mark || !amd->elements || !amd->kind || !amd->head) return false;
+    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) {
+        *ints[a] = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
+        if (!*ints[a]) return false;
     }
-    for (i = 0; i < amd->nodes; ++i) {
+    gproji_mark_dense(graph, total, amd->kind, GPROJI_AMD_DENSE);
+    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
+    for (i = 0; i < n; ++i) {
         int32_t degree = 0;
+        amd->hash_head[i] = amd->chain[i] = -1;
+        amd->tail[i] = i;
+        amd->weight[i] = graph->weight[i];
         amd->list[i] = amd->free;
         amd->length[i] = 0;
         if (amd->kind[i] == GPROJI_AMD_DENSE) continue;
@@ -3898,34 +3767,30 @@ GPROJI_INTERNAL void gproji_amd_start(gproji_amd *amd, const gproji_graph *graph
             int32_t j = graph->adjacent[k];
             if (amd->kind[j] == GPROJI_AMD_DENSE) continue;
             amd->space[amd->free++] = j;
-            degree += amd->weight[j];
+            degree += graph->weight[j];
         }
         amd->length[i] = (int32_t)(amd->free - amd->list[i]);
         amd->degree[i] = degree;
     }
     amd->left = amd->total;
-    for (i = amd->nodes - 1; i >= 0; --i)
+    for (i = n - 1; i >= 0; --i)
         if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
     amd->lowest = 0;
+    return true;
 }
 
-/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, how many flops a factorisation
-   takes at most: exactly so many without dense nodes. `total` is the weight of all nodes. False when there is no
-   memory. */
+/* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops to factor: an upper
+   bound, exact without dense nodes. total: the weight of all nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                       double *flops) {
     gproji_pool pool;
     gproji_amd amd;
     int32_t i, count = 0;
     gproji_pool_start(&pool, heap);
-    memset(&amd, 0, sizeof amd);
-    amd.nodes = graph->nodes;
-    amd.buckets = total + 1;
-    if (!gproji_amd_take(&amd, &pool, graph)) {
+    if (!gproji_amd_start(&amd, &pool, graph, total)) {
         gproji_pool_give_all(&pool);
         return false;
     }
-    gproji_amd_start(&amd, graph);
     while (amd.left > 0) {
         int32_t pivot, member;
         while (amd.head[amd.lowest] < 0) amd.lowest++;
@@ -3945,20 +3810,20 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
 /* -- condensation -- */
 
 enum {
-    GPROJI_CONDENSED_DEGREE = 21 /* weight of the neighbours of a node that is condensed */
+    GPROJI_CONDENSED_DEGREE = 21 /* largest weight of a condensed node's neighbours */
 };
 
-/* A graph without some of its nodes. */
+/* A graph without some nodes. */
 typedef struct gproji_condensation {
     gproji_pool pool;
     gproji_graph rest;
     int32_t count;   /* nodes that are eliminated first */
     int32_t *first;  /* all nodes: those, then the others, as `rest` numbers them */
-    int32_t *number; /* all nodes: place in `first` */
+    int32_t *number; /* all nodes: index in `first` */
 } gproji_condensation;
 
-/* Chooses nodes with at least 3 light neighbours, no two of them adjacent, the lightest first: the normals of faces,
-   say. (Chains and trees are left to the minimum degree ordering, which orders them without fill.) */
+/* Chooses an independent set of nodes with at least 3 neighbours, all light, the lightest first: the normals of faces,
+   say. Chains and trees are left to the minimum degree ordering, which orders them without fill. */
 GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
     int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
     int64_t e;
@@ -3976,6 +3841,7 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
         degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
         start[degree[i] + 1]++;
     }
+    /* sort by degree, by counting */
     for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start[d + 1] += start[d];
     for (i = 0; i < n; ++i) sorted[start[degree[i]]++] = i;
     for (k = 0; k < n && degree[sorted[k]] <= GPROJI_CONDENSED_DEGREE; ++k) {
@@ -3991,37 +3857,18 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     return true;
 }
 
-/* Writes the neighbours of node i in the graph that is left to `to` and returns their number; mark: of all nodes. */
-GPROJI_INTERNAL int64_t gproji_condensed_neighbours(const gproji_condensation *x, const gproji_graph *graph, int32_t i,
-                                                    int32_t *mark, int32_t *to) {
-    int64_t e, f, count = 0;
-    mark[i] = i;
-    for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
-        int32_t j = graph->adjacent[e];
-        int64_t from = x->number[j] < x->count ? graph->start[j] : e,
-                end = x->number[j] < x->count ? graph->start[j + 1] : e + 1;
-        for (f = from; f < end; ++f) { /* those of a condensed node, or the node itself */
-            int32_t other = graph->adjacent[f];
-            if (mark[other] == i) continue;
-            mark[other] = i;
-            to[count++] = x->number[other] - x->count;
-        }
-    }
-    return count;
-}
-
-/* The graph without a first set of nodes, whose elimination is taken into account: the neighbours of each of them have
-   become adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). What remains is half the size
-   where normals have gone, and shows the mesh. False when there is no memory. */
+/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
+   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
+   size and shows the mesh. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
     int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room;
+    int64_t *start, room, e, f, to = 0;
     memset(x, 0, sizeof *x);
     gproji_pool_start(&x->pool, heap);
     if (!gproji_choose_condensed(x, graph)) return false;
     left = graph->nodes - x->count;
     room = graph->start[graph->nodes];
-    for (k = 0; k < x->count; ++k) { /* its neighbours lose it, and gain at most all of its neighbours */
+    for (k = 0; k < x->count; ++k) { /* the neighbours lose this node, and gain at most each other */
         int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
         room += degree * (degree - 2);
     }
@@ -4031,12 +3878,25 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
     mark = (int32_t *)gproji_pool_take(&x->pool, graph->nodes, sizeof(int32_t));
     if (!start || !adjacent || !weight || !mark) return false;
     for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
-    start[0] = 0;
     for (k = 0; k < left; ++k) {
         i = x->first[x->count + k];
+        mark[i] = i;
         weight[k] = graph->weight[i];
-        start[k + 1] = start[k] + gproji_condensed_neighbours(x, graph, i, mark, adjacent + start[k]);
+        start[k] = to;
+        /* each neighbour, or the neighbours of a condensed one */
+        for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
+            int32_t j = graph->adjacent[e];
+            bool condensed = x->number[j] < x->count;
+            int64_t end = condensed ? graph->start[j + 1] : e + 1;
+            for (f = condensed ? graph->start[j] : e; f < end; ++f) {
+                int32_t other = graph->adjacent[f];
+                if (mark[other] == i) continue;
+                mark[other] = i;
+                adjacent[to++] = x->number[other] - x->count;
+            }
+        }
     }
+    start[left] = to;
     x->rest.nodes = left, x->rest.start = start, x->rest.adjacent = adjacent, x->rest.weight = weight;
     return true;
 }
@@ -4044,89 +3904,105 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
 /* ============================================================================================================
    >>dissection   The order of elimination by nested dissection. Uses platform, memory, ordering.
 
-   A separator is a set of nodes without which the rest falls into two sides that are not adjacent. It is eliminated
-   after both sides, and they are dissected in turn (George 1973). All that is known is the graph. Of each part:
-     coordinates  From a node a at its rim and the node b farthest from it, x = d_a - d_b in steps along the graph; from
-                  c, far from both, and d, far from all, y = d_c - d_d. On a grid whose faces' corners are all adjacent
-                  these are its diagonals, and x + y, x - y are its axes. The four are the directions to cut in. Its two
-                  sides keep these coordinates while cuts by them cost about as little.
-     cut          The best of some thresholds of the four. Which are promising, and in small parts which is best, is
-                  guessed from the weights at the positions and from how far a sample of nodes has neighbours. A side's
-                  cost is estimated from its weight and that of its halo, the separators next to it, which become rows
-                  of all its fronts.
-     separator    The smallest set of nodes of a band about the threshold that keeps the band's two rims apart: minimum
-                  cut, maximum flow (Menger 1927; Ford, Fulkerson 1956; augmentation along shortest paths, all of a
-                  length at once: Dinitz 1970). It straightens what distances leave ragged. Of the smallest sets those
-                  next to the two rims and the one next to the threshold are compared.
-   Small parts are ordered by exact minimum degree, halo included, with sets of bits.
+   A separator splits a graph into two sides that are not adjacent. Nested dissection eliminates both sides first, each
+   dissected in turn, and the separator last (George 1973). Only the graph is known, no positions. For each part:
+     axes        Pseudo-coordinates from distances along the graph: x = d_a - d_b for a node a on the boundary and the
+                 node b farthest from a; y = d_c - d_d for c far from both and d far from all three. On a grid of quads
+                 with adjacent face corners, x and y are the diagonals, x + y and x - y the grid's own directions. Cuts
+                 are tried along these four axes. Sides inherit x and y while cuts by them cost about as little.
+     cut         A threshold on an axis. Costs are guessed from the weights by coordinate and from the lengths of edges
+                 in a sample; in large parts the nodes next to the best thresholds are then counted. A side's cost
+                 includes the halo: nodes in earlier separators next to it, which become rows in all fronts.
+     separator   The smallest vertex separator in a band around the threshold, by maximum flow (Menger 1927; Ford,
+                 Fulkerson 1956; rounds along shortest paths: Dinitz 1970). It straightens ragged level sets. Three
+                 minimum cuts are compared: next to the source, to the sink, to the threshold.
+   Small parts are ordered by exact minimum degree, halo included, with bit sets.
 
-   Two kinds of nodes are not dissected. Dense ones (see gproji_dense_degree) come last. Light ones come right before the
-   first of their hosts, where they cause no fill: the forces in edges. A host is a heavier neighbour that has all their
-   neighbours. */
+   Two kinds of nodes are left out. Dense ones (see gproji_mark_dense) come last. A node is dominated if a heavier
+   neighbour is adjacent to all its other neighbours; eliminated right before the first such neighbour it causes no
+   fill. Forces in edges are such nodes.
+
+   Invariants: parts on the stack are not adjacent, and their halos are complete. Costs are rounded to single precision
+   before they are compared, so that machines that fuse products and sums choose alike. */
 
 enum {
-    GPROJI_ND_LEAF = 64,      /* nodes of a part that is not cut any more: bits of a word */
-    GPROJI_ND_HALO = 192,     /* nodes of its halo that count for the degrees */
+    GPROJI_ND_LEAF = 64,      /* nodes in a part that is not cut any more: bits in a word */
+    GPROJI_ND_HALO = 192,     /* halo nodes that count for the degrees then */
     GPROJI_ND_WORDS = 4,      /* for both */
-    GPROJI_ND_STACK = 40,     /* parts that wait: the smaller of two is always taken first */
-    GPROJI_ND_SAMPLES = 64,   /* nodes whose neighbours are looked at */
-    GPROJI_ND_THRESHOLDS = 5, /* that are tried in a direction */
-    GPROJI_ND_EXACT = 400,    /* nodes of a part for which separators are counted before one is chosen, not guessed */
-    GPROJI_ND_STARTS = 8,     /* coordinates that are tried for the first cut */
-    GPROJI_ND_SORTED = 64,    /* arcs of a node that are sorted; no mesh has more */
-    GPROJI_ND_ROUNDS = 200    /* of searches for a flow; no mesh needs more than some ten */
+    GPROJI_ND_STACK = 40,     /* parts to do; the smaller side goes on top, so that 32 are enough for all graphs */
+    GPROJI_ND_SAMPLES = 64,   /* nodes whose edges are measured along the axes */
+    GPROJI_ND_THRESHOLDS = 5, /* tried along an axis */
+    GPROJI_ND_EXACT = 400,    /* nodes in a part whose separators are counted before one is chosen, not guessed */
+    GPROJI_ND_STARTS = 8,     /* nodes from which a closed mesh's coordinates are tried */
+    GPROJI_ND_SORTED = 64,    /* arcs that are sorted; no node in a mesh has more */
+    GPROJI_ND_ROUNDS = 200    /* searches for a flow; no mesh needs more than some ten */
 };
 
-/* A part that is still to be ordered: nodes first..first+nodes-1 of one of the two copies of the graph. */
+/* A part still to be ordered: nodes first..first+nodes-1 in one copy of the graph. */
 typedef struct gproji_nd_part {
-    int32_t first;
-    int32_t nodes;
-    int32_t place; /* its first place in the order */
-    int32_t copy;
-    double par; /* what its cut costs if its coordinates are good, over gproji_nd_rest; see gproji_nd_next_par */
+    int32_t first, nodes, copy;
+    int32_t position; /* first position in the order */
+    double expected;  /* a good cut's cost over gproji_nd_rest; 0, -1: cut by new coordinates, see gproji_nd_cut_part */
 } gproji_nd_part;
 
-/* A copy of the graph, its nodes sorted by parts. A part's two sides are written into the other copy, at the part's own
-   places: so no part is in the way of another one. */
+/* A copy of the graph, sorted by parts. The sides of a part are written into the other copy, at the part's own indices:
+   so no part overwrites another. */
 typedef struct gproji_nd_nodes {
-    int32_t *name;     /* the node in the graph that is dissected */
-    int32_t *weight;   /* its weight */
-    int32_t *x, *y;    /* its coordinates */
-    int64_t *from;     /* its neighbours begin at adjacent[from]: */
-    int32_t *inner;    /* so many in the same part, by their numbers in it, */
-    int32_t *outer;    /* then so many in the halo, by name (while the part is at work, by number in the halo) */
-    int32_t *adjacent; /* not by node: as many as in the graph */
+    int32_t *name; /* the node in the graph that is dissected */
+    int32_t *weight;
+    int32_t *x, *y;    /* pseudo-coordinates */
+    int64_t *from;     /* neighbours begin at adjacent[from]: */
+    int32_t *inner;    /* first those in the same part, by index in the part; this is their number, */
+    int32_t *outer;    /* then those in the halo, by name; in the part at work by index in the halo */
+    int32_t *adjacent; /* one entry for each arc of the graph */
 } gproji_nd_nodes;
 
-/* A cut of a part: nodes with position < at, and the others. */
+/* The halo around the part at work. */
+typedef struct gproji_nd_halo {
+    double weight;
+    int32_t count, *name;
+    int32_t *index;                /* by name: index in the halo if name[index] agrees */
+    int32_t *least, *most;         /* range of the neighbours' coordinates; or, in `least`, sides next to it as bits */
+    int32_t boundaries, *boundary; /* nodes in the part next to the halo */
+} gproji_nd_halo;
+
+/* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all.
+   */
+typedef struct gproji_nd_profile {
+    int32_t *halo_low, *halo_high; /* halo nodes next to nodes below; to subtract: no longer next to nodes above */
+    int32_t *low, *high;           /* nodes below next to others above, and the other way round */
+    unsigned char *nearby;         /* 1: near a chosen threshold, 3: a chosen threshold */
+} gproji_nd_profile;
+
+/* A cut of the part at work: nodes with coordinate < at, and the others. */
 typedef struct gproji_nd_cut {
     double cost;
-    int32_t axis;
-    int32_t at;
-    int32_t range; /* positions are 0..range-1 */
-    double below;  /* weight of the nodes with position < at */
-    double weight; /* of a separator, not yet the smallest */
+    double below;        /* weight with coordinate < at */
+    double separator;    /* weight on one side next to the other, not yet the smallest separator */
+    int32_t at, range;   /* coordinates are 0..range-1 */
+    int32_t jump;        /* neighbours differ by no more */
+    int32_t *coordinate; /* nodes */
+    int32_t *sum;        /* coordinates: weight there */
 } gproji_nd_cut;
 
-/* A network for the flow through a band of nodes. Each node i has an entry, state 2 i, and an exit, state 2 i + 1. Arcs
-   lead from the exit to the entries of its neighbours, without limit. What passes between entry and exit is at most the
-   node's capacity, its weight in whole units. A unit of flow is known by where it comes from: that is all that a search
-   for more needs. */
+/* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
+   joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
+   limit. Each unit in a node stores the neighbour it comes from, which is all that augmentation needs. */
 typedef struct gproji_band {
     int32_t nodes;
-    int32_t *id;         /* nodes: number in the part */
-    int32_t *start;      /* nodes + 1: its arcs are start[i]..start[i + 1] - 1 */
-    int32_t *unit;       /* nodes + 1: it has room for units unit[i]..unit[i + 1] - 1, */
-    int32_t *ahead;      /* nodes: its arcs before that one lead upwards */
-    int32_t *load;       /* nodes: and so many of these pass, the first ones */
+    int32_t *id;         /* nodes: index in the part */
+    int32_t *start;      /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
+    int32_t *unit;       /* nodes + 1: room for units unit[i]..unit[i + 1] - 1, */
+    int32_t *load;       /* nodes: of which the first `load` are in use */
+    int32_t *ahead;      /* nodes: arcs before that one lead to higher coordinates */
     int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
-    int32_t *queue;      /* states; also the path that is looked for */
+    int32_t *queue;      /* states; also the path that is searched */
     int32_t *to;         /* arcs: the neighbour */
     int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
-    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: has neighbours on that side of the band */
+    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
     unsigned char *mark; /* states: GPROJI_BAND_... */
-    void *block;         /* all of these arrays */
+    void *block;         /* all these arrays */
     size_t block_size;
 } gproji_band;
 
@@ -4134,156 +4010,91 @@ enum {
     GPROJI_BAND_UNITS = 16, /* the largest capacity */
     GPROJI_BAND_SOURCE = 1, /* reached from the source */
     GPROJI_BAND_SINK = 2,   /* reaches the sink */
-    GPROJI_BAND_MIDDLE = 4  /* reached from the source and from all below the cut that does not reach the sink */
+    GPROJI_BAND_MIDDLE = 4  /* reached from the source or from states below the cut that do not reach the sink */
+};
+
+enum {
+    GPROJI_ND_KEPT,
+    GPROJI_ND_DOMINATED,
+    GPROJI_ND_DENSE,
+    GPROJI_ND_PLACED /* dominated, and already in the order */
 };
 
 typedef struct gproji_nd {
     const gproji_graph *graph;
     gproji_heap *heap;
-    bool failed;         /* there was no memory */
-    double unit;         /* sqrt(mean weight of a node): a separator of n nodes of a mesh has about sqrt(n) */
+    bool failed;         /* out of memory */
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
-    int32_t light;       /* how many are light */
-    int32_t kept;        /* nodes that are dissected */
-    double openness;     /* see gproji_rim */
-    int32_t *order;      /* kept: the result */
+    int32_t kept, dominated;
+    double unit;     /* sqrt(mean weight of a node): a separator in n nodes of a mesh has about sqrt(n) */
+    double openness; /* see gproji_rim */
+    int32_t *order;  /* kept: the result */
     gproji_nd_nodes copy[2];
     gproji_nd_part stack[GPROJI_ND_STACK];
     int32_t parts;
     /* the part at work; arrays have room for all nodes */
-    gproji_nd_nodes here; /* its nodes alone */
+    gproji_nd_nodes here; /* these nodes alone */
     int32_t nodes;
-    double weight, halo_weight;
-    int32_t rims, *rim;              /* its nodes with neighbours in the halo */
-    int32_t halos, *halo;            /* names */
-    int32_t *halo_of;                /* by name: number in the halo, if halo[..] says so */
-    int32_t *halo_least, *halo_most; /* positions of a halo node's neighbours; or, in halo_least, the sides it is at */
-    int32_t *distance[4], *queue;    /* coordinates: x and y take the places of the first two */
-    int32_t *number;                 /* in the band or in a side */
-    int32_t *position, *best_position;
-    unsigned char *side;       /* 0, 1; 2: separator */
-    unsigned char *other_side; /* those of another cut */
-    /* by position; how much more there is than at the position before */
-    int32_t *sum, *best_sum;       /* but these: the weight of the nodes at a position */
-    int32_t *halo_low, *halo_high; /* of halo nodes next to nodes below; taken off: next to nodes above */
-    int32_t *low, *high;           /* of nodes below a threshold next to others above it, and the other way round */
-    unsigned char *nearby;         /* 1: near a threshold, 3: a threshold */
-    double reach[4][4];            /* see gproji_nd_sample */
+    double weight;
+    gproji_nd_halo halo;
+    gproji_nd_profile profile;
+    int32_t *distance[4], *queue;    /* breadth-first searches; the first two distances turn into x and y */
+    int32_t *coordinate[2], *sum[2]; /* for the best cut so far, and for one on trial */
+    int32_t *number;                 /* index in the band or in a side */
+    unsigned char *side[2]; /* 0, 1; 2: separator. For a cut by inherited coordinates, and for one by new ones */
     gproji_band band;
 } gproji_nd;
 
-enum {
-    GPROJI_ND_KEPT,
-    GPROJI_ND_LIGHT,
-    GPROJI_ND_DENSE,
-    GPROJI_ND_PLACED
-};
-
-/* Arrays with an entry for each node, or position, and one more for the end of the positions. */
+/* Takes the arrays: an entry for each node, or coordinate, and one more. */
 GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
+    gproji_nd_nodes *a = &nd->copy[0], *b = &nd->copy[1];
+    gproji_nd_halo *halo = &nd->halo;
+    gproji_nd_profile *profile = &nd->profile;
     int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **all[30], i, k = 0;
-    for (i = 0; i < 2; ++i) {
-        gproji_nd_nodes *c = &nd->copy[i];
-        all[k++] = &c->name, all[k++] = &c->weight, all[k++] = &c->inner, all[k++] = &c->outer;
-        all[k++] = &c->x, all[k++] = &c->y;
-        c->from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-        c->adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
-        if (!c->from || !c->adjacent) return false;
+    int32_t **const ints[] = {
+        &a->name,           &a->weight,         &a->inner,        &a->outer,        &a->x,          &a->y,
+        &b->name,           &b->weight,         &b->inner,        &b->outer,        &b->x,          &b->y,
+        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
+        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
+        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
+        &profile->halo_high};
+    size_t k;
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) {
+        *ints[k] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
+        if (!*ints[k]) return false;
     }
-    for (i = 0; i < 4; ++i) all[k++] = &nd->distance[i];
-    all[k++] = &nd->queue, all[k++] = &nd->number, all[k++] = &nd->order, all[k++] = &nd->rim;
-    all[k++] = &nd->halo_least, all[k++] = &nd->halo_most;
-    all[k++] = &nd->position, all[k++] = &nd->best_position, all[k++] = &nd->sum, all[k++] = &nd->best_sum;
-    all[k++] = &nd->low, all[k++] = &nd->high, all[k++] = &nd->halo_low, all[k++] = &nd->halo_high;
-    GPROJ_ASSERT(k == (int32_t)(sizeof all / sizeof all[0]));
-    for (i = 0; i < k; ++i) {
-        *all[i] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
-        if (!*all[i]) return false;
+    for (k = 0; k < 2; ++k) {
+        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        nd->copy[k].adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
+        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
+        if (!nd->copy[k].from || !nd->copy[k].adjacent || !nd->side[k]) return false;
     }
-    nd->halo = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    nd->halo_of = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    nd->side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    nd->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    nd->other_side = (unsigned char *)gproji_pool_take(pool, n, 1);
-    return nd->halo && nd->halo_of && nd->kind && nd->side && nd->nearby && nd->other_side;
+    return halo->index && profile->nearby && nd->kind;
 }
 
-/* -- nodes that are not dissected -- */
+/* -- parts -- */
 
-/* Has b all neighbours of a, and a itself? mark: b where its neighbours, and itself, are. */
-GPROJI_INTERNAL bool gproji_nd_hosts(const gproji_graph *graph, const int32_t *mark, int32_t b, int32_t a) {
+/* Is b adjacent to node a and all other neighbours of a? mark: b for b and its neighbours, if mark[b] says so. */
+GPROJI_INTERNAL bool gproji_nd_dominates(const gproji_graph *graph, int32_t *mark, int32_t b, int32_t a) {
     int64_t e;
+    for (e = graph->start[b]; mark[b] != b && e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
+    mark[b] = b;
     for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
         if (mark[graph->adjacent[e]] != b) return false;
     return true;
 }
 
-GPROJI_INTERNAL void gproji_nd_mark_neighbours(const gproji_graph *graph, int32_t *mark, int32_t b) {
-    int64_t e;
-    if (mark[b] == b) return;
-    mark[b] = b;
-    for (e = graph->start[b]; e < graph->start[b + 1]; ++e) mark[graph->adjacent[e]] = b;
-}
-
-/* Finds the nodes that are not dissected. A light node's heaviest host is kept: hosts of hosts are hosts. */
-GPROJI_INTERNAL void gproji_nd_sort_out(gproji_nd *nd, int32_t total) {
-    const gproji_graph *graph = nd->graph;
-    double dense = gproji_dense_degree(total);
-    int32_t a, b, heaviest = gproji_graph_heaviest(graph), lightest = heaviest, *mark = nd->number;
-    int64_t e;
-    for (a = 0; a < graph->nodes; ++a) {
-        mark[a] = -1;
-        lightest = gproji_min(lightest, graph->weight[a]);
-        if (gproji_graph_is_dense(graph, a, dense, heaviest)) nd->kind[a] = GPROJI_ND_DENSE;
-    }
-    for (b = 0; b < graph->nodes; ++b) {
-        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
-        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
-            a = graph->adjacent[e];
-            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
-            gproji_nd_mark_neighbours(graph, mark, b);
-            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
-            nd->kind[a] = GPROJI_ND_LIGHT;
-            nd->light++;
-        }
-    }
-}
-
-/* The order of all nodes from that of the kept ones. A light node is taken with its first host. */
-GPROJI_INTERNAL void gproji_nd_put_back(gproji_nd *nd, int32_t *order) {
-    const gproji_graph *graph = nd->graph;
-    int32_t a, b, k, count = 0, *mark = nd->number;
-    int64_t e;
-    for (b = 0; b < graph->nodes; ++b) mark[b] = -1;
-    for (k = 0; k < nd->kept; ++k) {
-        b = nd->order[k];
-        for (e = graph->start[b]; nd->light > 0 && e < graph->start[b + 1]; ++e) {
-            a = graph->adjacent[e];
-            if (nd->kind[a] != GPROJI_ND_LIGHT) continue;
-            gproji_nd_mark_neighbours(graph, mark, b);
-            if (!gproji_nd_hosts(graph, mark, b, a)) continue;
-            nd->kind[a] = GPROJI_ND_PLACED;
-            order[count++] = a;
-        }
-        order[count++] = b;
-    }
-    for (b = 0; b < graph->nodes; ++b)
-        if (nd->kind[b] == GPROJI_ND_DENSE) order[count++] = b;
-    GPROJ_ASSERT(count == graph->nodes);
-}
-
-/* -- parts -- */
-
-/* How long the graph's rim is, in nodes with few neighbours: its square over the number of nodes. Light nodes do not
-   count. Open meshes have 8 to 16, or more if they are narrow; closed ones none, or a little where they are irregular. */
+/* Measures how long the graph's boundary is: (nodes with few neighbours)^2 / nodes.
+   Open meshes have 8 to 16, or more if they are narrow; closed ones 0, or little if they are irregular. */
 GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     double all = 0, count = 0, degrees = 0, few = 0;
     int32_t i;
     for (i = 0; i < graph->nodes; ++i) all += graph->weight[i];
     for (i = 0; i < graph->nodes; ++i) {
-        if ((double)graph->weight[i] * graph->nodes < all) continue;
+        if ((double)graph->weight[i] * graph->nodes < all) continue; /* light nodes, such as forces, do not count */
         degrees += (double)(graph->start[i + 1] - graph->start[i]), count += 1;
     }
     for (i = 0; i < graph->nodes; ++i) {
@@ -4293,31 +4104,48 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* The first part: all kept nodes, in the order of breadth-first searches, so that neighbours are near each other in
-   memory. */
-GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
+/* Chooses the nodes that are dissected and makes them the first part. total: the weight of all nodes. */
+GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     const gproji_graph *graph = nd->graph;
     gproji_nd_nodes *c = &nd->copy[0];
-    int32_t root, i, head = 0, tail = 0, *number = nd->number;
+    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number = nd->number;
     int64_t e, to = 0;
     double weight = 0;
+    /* 1. Leave out dense and dominated nodes. Domination is transitive: a dominated node's heaviest dominator stays. */
+    gproji_mark_dense(graph, total, nd->kind, GPROJI_ND_DENSE);
+    for (a = 0; a < graph->nodes; ++a) {
+        number[a] = -1;
+        lightest = gproji_min(lightest, graph->weight[a]);
+    }
+    for (b = 0; b < graph->nodes; ++b) {
+        if (nd->kind[b] == GPROJI_ND_DENSE || graph->weight[b] == lightest) continue;
+        for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
+            a = graph->adjacent[e];
+            if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
+            if (!gproji_nd_dominates(graph, number, b, a)) continue;
+            nd->kind[a] = GPROJI_ND_DOMINATED;
+            nd->dominated++;
+        }
+    }
+    /* 2. Number the others in breadth-first order, which keeps neighbours near each other in memory. */
     for (i = 0; i < graph->nodes; ++i) number[i] = -1;
-    for (root = 0; root < graph->nodes; ++root) {
-        if (nd->kind[root] != GPROJI_ND_KEPT || number[root] >= 0) continue;
-        number[root] = tail, c->name[tail++] = root;
+    for (a = 0; a < graph->nodes; ++a) {
+        if (nd->kind[a] != GPROJI_ND_KEPT || number[a] >= 0) continue;
+        number[a] = tail, c->name[tail++] = a;
         while (head < tail) {
-            int32_t at = c->name[head++];
-            for (e = graph->start[at]; e < graph->start[at + 1]; ++e) {
+            b = c->name[head++];
+            for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
                 i = graph->adjacent[e];
                 if (nd->kind[i] == GPROJI_ND_KEPT && number[i] < 0) number[i] = tail, c->name[tail++] = i;
             }
         }
     }
+    /* 3. Copy their graph: all neighbours are inner ones. */
     for (i = 0; i < tail; ++i) {
-        int32_t at = c->name[i];
-        weight += c->weight[i] = graph->weight[at];
+        a = c->name[i];
+        weight += c->weight[i] = graph->weight[a];
         c->from[i] = to;
-        for (e = graph->start[at]; e < graph->start[at + 1]; ++e)
+        for (e = graph->start[a]; e < graph->start[a + 1]; ++e)
             if (nd->kind[graph->adjacent[e]] == GPROJI_ND_KEPT) c->adjacent[to++] = number[graph->adjacent[e]];
         c->inner[i] = (int32_t)(to - c->from[i]);
         c->outer[i] = 0;
@@ -4330,61 +4158,24 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd) {
     nd->parts = tail > 0;
 }
 
-/* Makes a part the one at work: its nodes, their weight and its halo. */
-GPROJI_INTERNAL void gproji_nd_enter(gproji_nd *nd, const gproji_nd_part *part) {
-    const gproji_nd_nodes *c = &nd->copy[part->copy];
-    gproji_nd_nodes *here = &nd->here;
-    double weight = 0;
-    int32_t i, k;
-    here->name = c->name + part->first, here->weight = c->weight + part->first, here->from = c->from + part->first;
-    here->inner = c->inner + part->first, here->outer = c->outer + part->first;
-    here->x = c->x + part->first, here->y = c->y + part->first;
-    here->adjacent = c->adjacent;
-    nd->nodes = part->nodes;
-    nd->rims = nd->halos = 0;
-    nd->halo_weight = 0;
-    for (i = 0; i < part->nodes; ++i) {
-        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
-        weight += here->weight[i];
-        if (here->outer[i] == 0) continue;
-        nd->rim[nd->rims++] = i;
-        for (k = 0; k < here->outer[i]; ++k) {
-            int32_t name = list[k], at = nd->halo_of[name];
-            if (at >= nd->halos || nd->halo[at] != name) {
-                at = nd->halo_of[name] = nd->halos++;
-                nd->halo[at] = name;
-                nd->halo_weight += nd->graph->weight[name];
-            }
-            list[k] = at;
-        }
-    }
-    nd->weight = weight;
-}
-
-GPROJI_INTERNAL void gproji_nd_wait(gproji_nd *nd, int32_t first, int32_t nodes, int32_t place, int32_t copy,
-                                    double par) {
-    gproji_nd_part *part = &nd->stack[nd->parts++];
-    GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
-    part->first = first, part->nodes = nodes, part->place = place, part->copy = copy, part->par = par;
-}
-
-/* Writes the nodes of one side into the other copy, from node `to` on and with arcs from `e` on. nd->number: the numbers
-   of nodes in their side; ~name of those in the separator. Returns where the arcs end. */
-GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, int32_t side, int32_t to, int64_t e) {
+/* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number:
+   indices in the sides; ~name in the separator. Returns the end of the arcs. */
+GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, const unsigned char *side, int32_t s, gproji_nd_nodes *b,
+                                            int32_t to, int64_t e) {
     const gproji_nd_nodes *a = &nd->here;
-    const int32_t *number = nd->number, *halo = nd->halo, nodes = nd->nodes;
+    const int32_t *number = nd->number, *halo = nd->halo.name, nodes = nd->nodes;
     int32_t i;
     for (i = 0; i < nodes; ++i) {
         const int32_t *list, *end;
         int32_t all, *in, *out;
-        if (nd->side[i] != side) continue;
+        if (side[i] != s) continue;
         list = a->adjacent + a->from[i], end = list + a->inner[i];
         all = a->inner[i] + a->outer[i];
         in = b->adjacent + e, out = in + all;
         b->name[to] = a->name[i], b->weight[to] = a->weight[i];
         b->x[to] = a->x[i], b->y[to] = a->y[i];
         b->from[to] = e;
-        for (; list < end; ++list) {
+        for (; list < end; ++list) { /* a neighbour in the separator moves to the halo, at the list's end */
             int32_t k = number[*list];
             if (k < 0)
                 *--out = ~k;
@@ -4400,34 +4191,39 @@ GPROJI_INTERNAL int64_t gproji_nd_copy_side(gproji_nd *nd, gproji_nd_nodes *b, i
     return e;
 }
 
-/* Divides the part by `side`: the separator gets its last places, the sides become parts. par: theirs. */
-GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, double par) {
+/* Divides the part at work: the separator gets the last positions, the sides become parts with the same `expected`. */
+GPROJI_INTERNAL void gproji_nd_divide(gproji_nd *nd, const gproji_nd_part *part, const unsigned char *side,
+                                      double expected) {
     gproji_nd_nodes *other = &nd->copy[!part->copy];
     int32_t i, count[3] = {0, 0, 0}, at, small;
     int64_t e;
-    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[nd->side[i]]++;
-    for (i = 0, at = part->place + count[0] + count[1]; i < nd->nodes; ++i) {
-        if (nd->side[i] != 2) continue;
+    for (i = 0; i < nd->nodes; ++i) nd->number[i] = count[side[i]]++;
+    for (i = 0, at = part->position + count[0] + count[1]; i < nd->nodes; ++i) {
+        if (side[i] != 2) continue;
         nd->order[at++] = nd->here.name[i];
         nd->number[i] = ~nd->here.name[i];
     }
-    e = gproji_nd_copy_side(nd, other, 0, part->first, nd->here.from[0]);
-    gproji_nd_copy_side(nd, other, 1, part->first + count[0], e);
+    e = gproji_nd_copy_side(nd, side, 0, other, part->first, nd->here.from[0]);
+    gproji_nd_copy_side(nd, side, 1, other, part->first + count[0], e);
     small = count[1] < count[0];
     for (i = 0; i < 2; ++i) {
-        int32_t side = i ? small : !small, skip = side ? count[0] : 0;
-        gproji_nd_wait(nd, part->first + skip, count[side], part->place + skip, !part->copy, par);
+        int32_t s = i ? small : !small, skip = s ? count[0] : 0;
+        gproji_nd_part *next = &nd->stack[nd->parts++];
+        GPROJ_ASSERT(nd->parts <= GPROJI_ND_STACK);
+        next->first = part->first + skip, next->nodes = count[s], next->copy = !part->copy;
+        next->position = part->position + skip, next->expected = expected;
     }
 }
 
 /* -- coordinates -- */
 
-/* Breadth-first search from a root over nodes without distance (-1), until all have one. The queue has `tail` nodes
-   before; returns how many afterwards. */
-GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
+/* Breadth-first search from a root over nodes with distance -1. The queue holds `tail` nodes found before; if 0, all
+   distances become -1 first. Returns the new number. */
+GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance, int32_t tail) {
     const int32_t *inner = nd->here.inner, *adjacent = nd->here.adjacent;
     const int64_t *from = nd->here.from;
-    int32_t *queue = nd->queue, head = tail;
+    int32_t *queue = nd->queue, head = tail, i;
+    for (i = 0; tail == 0 && i < nd->nodes; ++i) distance[i] = -1;
     distance[root] = 0;
     queue[tail++] = root;
     while (head < tail && tail < nd->nodes) {
@@ -4440,13 +4236,6 @@ GPROJI_INTERNAL int32_t gproji_nd_spread(gproji_nd *nd, int32_t root, int32_t *d
         }
     }
     return tail;
-}
-
-/* The distances of all nodes from one of them. Returns how many it reaches. */
-GPROJI_INTERNAL int32_t gproji_nd_search(gproji_nd *nd, int32_t root, int32_t *distance) {
-    int32_t i;
-    for (i = 0; i < nd->nodes; ++i) distance[i] = -1;
-    return gproji_nd_spread(nd, root, distance, 0);
 }
 
 /* The node with the largest value; among equals one with few neighbours. */
@@ -4467,88 +4256,152 @@ GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *dista
     return best;
 }
 
-/* Coordinates from distances, the first ones from node `start`, or from one at the rim if that is 0. Returns how many
-   nodes a search reaches; when these are not all, there are none. */
-GPROJI_INTERNAL int32_t gproji_nd_coordinates(gproji_nd *nd, int32_t start) {
-    int32_t *const *d = nd->distance, *value = nd->position;
-    int32_t i, reached = gproji_nd_search(nd, start, d[0]);
-    if (reached < nd->nodes) return reached;
-    if (start == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0]);
-    gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1]);
-    for (i = 0; i < nd->nodes; ++i) /* where many nodes are as far from both, one in the middle */
-        value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
-    gproji_nd_search(nd, gproji_nd_most(nd, value), d[2]);
-    for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
-    gproji_nd_search(nd, gproji_nd_most(nd, value), d[3]);
-    for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
-    nd->here.x = d[0], nd->here.y = d[1];
-    return reached;
-}
-
-/* Sides of a part that is not connected, after a search that has reached `end` nodes: the components one after the other
-   up to half of the nodes, the last one only if it does not end the part. */
-GPROJI_INTERNAL void gproji_nd_split_components(gproji_nd *nd, int32_t end) {
-    int32_t k, root = 0, before = end;
-    while (end < nd->nodes - end) {
-        while (nd->distance[0][root] >= 0) ++root;
-        before = end;
-        end = gproji_nd_spread(nd, root, nd->distance[0], end);
-    }
-    if (end == nd->nodes) end = before;
-    for (k = 0; k < nd->nodes; ++k) nd->side[k] = 1;
-    for (k = 0; k < end; ++k) nd->side[nd->queue[k]] = 0;
-}
-
 /* -- cuts -- */
 
-/* Rounds to seven digits, so that cuts are equally good on all machines if they are: some fuse products and sums. */
+/* Rounds to seven digits, so that cuts tie on all machines if they tie on one: some fuse products and sums. */
 GPROJI_INLINE double gproji_coarsely(double x) { return (double)(float)x; }
 
-/* What the elimination of a part is thought to cost in flops: the solution of
-     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n),
-   which is its separator's front, with the halo's rows, and twice a half. */
+/* Estimates the flops to eliminate a part with weight n and halo weight h. Solves
+     f(n, h) = s h^2 + s^2 h + s^3 / 3 + 2 f(n / 2, h / 2 + s),  s = c sqrt(n):
+   the separator's front with the halo's rows, and twice a half. */
 GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
     double c = nd->unit, r = sqrt(n);
     return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* The same for a part with these weights of its sides and its separator, and of the sides' halos without it. */
-GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, const double weight[3], const double halo[2]) {
-    double s = weight[2], h = nd->halo_weight;
-    if (weight[0] <= 0 || weight[1] <= 0 || s > weight[0] + weight[1]) return HUGE_VAL;
-    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, weight[0], halo[0] + s) +
-                           gproji_nd_rest(nd, weight[1], halo[1] + s));
+/* Estimates the flops for a cut with weights below, above and s = separator. halo: the sides' halo weights without it.
+   */
+GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double above, double s, const double halo[2]) {
+    double h = nd->halo.weight;
+    if (below <= 0 || above <= 0 || s > below + above) return HUGE_VAL;
+    return gproji_coarsely(s * (h * h + s * h + s * s / 3) + gproji_nd_rest(nd, below, halo[0] + s) +
+                           gproji_nd_rest(nd, above, halo[1] + s));
 }
 
-/* The four directions' parts of x and y. */
-GPROJI_INLINE int32_t gproji_nd_direction(int32_t axis, int32_t part) {
-    return axis < 2 ? axis == part : axis == 3 && part == 1 ? -1 : 1;
-}
-
-/* In a direction, 0 to 3: neighbours differ by at most that much. */
-GPROJI_INTERNAL int32_t gproji_nd_jump(int32_t axis) { return axis < 2 ? 2 : 4; }
-
-/* Positions of all nodes along x, y, x + y, x - y, counted from 0, not more of them than nodes. Returns how many; shift:
-   positions are halved so many times. */
-GPROJI_INTERNAL int32_t gproji_nd_project(const gproji_nd *nd, int32_t axis, int32_t *position, int32_t *shift) {
-    const int32_t *x = nd->here.x, *y = nd->here.y, fx = gproji_nd_direction(axis, 0);
-    const int32_t fy = gproji_nd_direction(axis, 1), nodes = nd->nodes;
-    int32_t least = INT32_MAX, most = INT32_MIN, halved = 0, i;
-    for (i = 0; i < nodes; ++i) {
-        int32_t p = position[i] = fx * x[i] + fy * y[i];
-        least = gproji_min(least, p), most = gproji_max(most, p);
+/* Guesses a separator's weight at threshold t: nodes on one side with neighbours on the other, if all were like the
+   sample; on the lighter side. reach: see gproji_nd_try_all; NULL: coordinates were halved. */
+GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd_cut *cut, const double *reach, int32_t t) {
+    double low = cut->sum[t - 1], high = cut->sum[t];
+    int32_t k;
+    if (!reach) return low < high ? low : high;
+    low *= reach[0], high *= reach[0];
+    for (k = 1; k < 4; ++k) {
+        if (t - 1 - k >= 0) low += reach[k] * cut->sum[t - 1 - k];
+        if (t + k < cut->range) high += reach[k] * cut->sum[t + k];
     }
-    while ((most - least) >> halved >= nodes) ++halved;
-    for (i = 0; i < nodes; ++i) position[i] = (position[i] - least) >> halved;
-    *shift = halved;
-    return ((most - least) >> halved) + 1;
+    return gproji_coarsely(low < high ? low : high);
 }
 
-/* How far neighbours are apart in the four directions: reach[axis][k] of a sample of nodes have one that is more than k
-   positions higher. */
-GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
+/* Chooses the best thresholds by guess and marks them, and the coordinates near them, in the profile. exact: also
+   weighs the nodes with neighbours across them. */
+GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_cut *cut, const double *reach,
+                                                 bool exact) {
+    int32_t at[GPROJI_ND_THRESHOLDS + 1], count = 0, jump = cut->jump, most = cut->range / (4 * jump), t, k;
+    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
+    unsigned char *nearby = nd->profile.nearby;
+    /* few, or the nodes near them would be most of the part */
+    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
+    halo[0] = 0, halo[1] = nd->halo.weight;
+    memset(nearby, 0, (size_t)cut->range + 1);
+    for (t = 1; t < cut->range && 10 * below <= 7 * nd->weight; ++t) {
+        double s, own;
+        below += cut->sum[t - 1];
+        halo[0] += nd->profile.halo_low[t], halo[1] -= nd->profile.halo_high[t];
+        /* candidates leave 0.3 to 0.7 of the weight below and are a tenth apart */
+        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
+        last = below;
+        s = gproji_nd_guess(cut, reach, t);
+        own = gproji_nd_cost(nd, below - s / 2, nd->weight - below - s / 2, s, halo);
+        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
+        cost[k] = own, at[k] = t;
+        count = gproji_min(count + 1, most);
+    }
+    for (k = 0; k < count; ++k) {
+        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < cut->range; ++t) nearby[t] |= 1;
+        nearby[at[k]] = 3;
+    }
+    /* Only nodes near a threshold can have neighbours across it. */
+    for (k = 0; exact && k < nd->nodes; ++k) {
+        int32_t p = cut->coordinate[k], lowest = p, highest = p, w = nd->here.weight[k];
+        const int32_t *list = nd->here.adjacent + nd->here.from[k], *end = list + nd->here.inner[k];
+        if (!nearby[p]) continue;
+        for (; list < end; ++list) {
+            int32_t q = cut->coordinate[*list];
+            if (q < lowest) lowest = q;
+            if (q > highest) highest = q;
+        }
+        /* below thresholds p + 1..highest with a neighbour above; above thresholds lowest + 1..p with one below */
+        nd->profile.low[p + 1] += w, nd->profile.low[highest + 1] -= w;
+        nd->profile.high[lowest + 1] += w, nd->profile.high[p + 1] -= w;
+    }
+}
+
+/* Tries thresholds along one axis (0..3: x, y, x + y, x - y). A cut that beats `best` replaces it. */
+GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, const double *reach, gproji_nd_cut *best) {
+    const gproji_nd_nodes *here = &nd->here;
+    const gproji_nd_halo *halo = &nd->halo;
+    const gproji_nd_profile *profile = &nd->profile;
+    const int32_t *list, *end, spare = best->coordinate == nd->coordinate[0];
+    int32_t fx = axis != 1, fy = axis == 0 ? 0 : axis == 3 ? -1 : 1, lowest = INT32_MAX, highest = INT32_MIN;
+    int32_t *at = nd->coordinate[spare], halved = 0, i, k, t;
+    double below = 0, low = 0, high = 0, beside[2];
+    size_t bytes;
+    bool exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
+    gproji_nd_cut cut = *best;
+    /* 1. Coordinates along the axis, from 0, halved until they are not more than nodes. */
+    for (i = 0; i < nd->nodes; ++i) {
+        at[i] = fx * here->x[i] + fy * here->y[i];
+        lowest = gproji_min(lowest, at[i]), highest = gproji_max(highest, at[i]);
+    }
+    while ((highest - lowest) >> halved >= nd->nodes) ++halved;
+    cut.range = ((highest - lowest) >> halved) + 1, cut.jump = axis < 2 ? 2 : 4;
+    cut.coordinate = at, cut.sum = nd->sum[spare];
+    bytes = ((size_t)cut.range + 1) * sizeof(int32_t);
+    memset(cut.sum, 0, bytes);
+    memset(profile->low, 0, bytes), memset(profile->high, 0, bytes);
+    memset(profile->halo_low, 0, bytes), memset(profile->halo_high, 0, bytes);
+    for (i = 0; i < nd->nodes; ++i) {
+        at[i] = (at[i] - lowest) >> halved;
+        cut.sum[at[i]] += here->weight[i];
+    }
+    /* 2. The halo next to nodes below each threshold, and above. */
+    for (k = 0; k < halo->count; ++k) halo->least[k] = INT32_MAX, halo->most[k] = -1;
+    for (k = 0; k < halo->boundaries; ++k) {
+        i = halo->boundary[k];
+        list = here->adjacent + here->from[i] + here->inner[i], end = list + here->outer[i];
+        for (; list < end; ++list) {
+            halo->least[*list] = gproji_min(halo->least[*list], at[i]);
+            halo->most[*list] = gproji_max(halo->most[*list], at[i]);
+        }
+    }
+    for (k = 0; k < halo->count; ++k) {
+        profile->halo_low[halo->least[k] + 1] += nd->graph->weight[halo->name[k]];
+        profile->halo_high[halo->most[k] + 1] += nd->graph->weight[halo->name[k]];
+    }
+    /* 3. Promising thresholds, and which is best. */
+    if (halved > 0) reach = NULL;
+    gproji_nd_choose_thresholds(nd, &cut, reach, exact);
+    beside[0] = 0, beside[1] = halo->weight;
+    for (t = 1; t < cut.range; ++t) {
+        double s;
+        below += cut.sum[t - 1];
+        low += profile->low[t], high += profile->high[t];
+        beside[0] += profile->halo_low[t], beside[1] -= profile->halo_high[t];
+        if (profile->nearby[t] != 3) continue;
+        s = exact ? gproji_fmin(low, high) : gproji_nd_guess(&cut, reach, t);
+        cut.cost = gproji_nd_cost(nd, below - s / 2, nd->weight - below - s / 2, s, beside);
+        cut.at = t, cut.below = below, cut.separator = s;
+        if (cut.cost < best->cost) *best = cut;
+    }
+}
+
+/* Tries all axes by the coordinates x and y; a cut that beats `best` replaces it. */
+GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
     const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
+    double reach[4][4];
+    /* The lengths of edges along the axes: in a sample, a fraction reach[axis][k] of the nodes has a neighbour more
+       than k higher. */
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4564,308 +4417,85 @@ GPROJI_INTERNAL void gproji_nd_sample(gproji_nd *nd) {
         int32_t more = 0;
         for (k = 4; k > 0; --k) {
             more += found[axis][k];
-            nd->reach[axis][k - 1] = (double)more / count;
+            reach[axis][k - 1] = (double)more / count;
         }
     }
+    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, reach[axis], best);
 }
 
-/* The weight of a separator at a threshold: of the nodes on one side of it with neighbours on the other, if they were as
-   those of the sample; on the side where that is less. */
-GPROJI_INTERNAL double gproji_nd_guess(const gproji_nd *nd, int32_t axis, int32_t t, int32_t range, int32_t shift) {
-    double low = nd->sum[t - 1], high = nd->sum[t];
-    int32_t k;
-    if (shift > 0) return low < high ? low : high;
-    low *= nd->reach[axis][0], high *= nd->reach[axis][0];
-    for (k = 1; k < 4; ++k) {
-        if (t - 1 - k >= 0) low += nd->reach[axis][k] * nd->sum[t - 1 - k];
-        if (t + k < range) high += nd->reach[axis][k] * nd->sum[t + k];
-    }
-    return gproji_coarsely(low < high ? low : high);
-}
-
-/* Halo nodes next to nodes below each threshold, and above. */
-GPROJI_INTERNAL void gproji_nd_count_halo(gproji_nd *nd, const int32_t *position) {
-    int32_t k, *least = nd->halo_least, *most = nd->halo_most;
-    for (k = 0; k < nd->halos; ++k) least[k] = INT32_MAX, most[k] = -1;
-    for (k = 0; k < nd->rims; ++k) {
-        int32_t i = nd->rim[k], p = position[i];
-        const int32_t *list = nd->here.adjacent + nd->here.from[i] + nd->here.inner[i], *end = list + nd->here.outer[i];
-        for (; list < end; ++list) {
-            least[*list] = gproji_min(least[*list], p);
-            most[*list] = gproji_max(most[*list], p);
-        }
-    }
-    for (k = 0; k < nd->halos; ++k) {
-        int32_t w = nd->graph->weight[nd->halo[k]];
-        nd->halo_low[least[k] + 1] += w;
-        nd->halo_high[most[k] + 1] += w;
-    }
-}
-
-/* The cost of a cut with `below` below it and a separator that takes from both sides. */
-GPROJI_INTERNAL double gproji_nd_threshold_cost(const gproji_nd *nd, double below, double separator,
-                                                const double halo[2]) {
-    double weight[3];
-    weight[0] = below - separator / 2, weight[1] = nd->weight - below - separator / 2, weight[2] = separator;
-    return gproji_nd_cost(nd, weight, halo);
-}
-
-/* Chooses thresholds, some tenth of the weight apart, that leave 0.3 to 0.7 of it below: so few that the nodes near them
-   are not most of the part, the best ones by guess. Marks the positions near them. */
-GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, int32_t axis, int32_t range, int32_t shift) {
-    int32_t jump = gproji_nd_jump(axis), at[GPROJI_ND_THRESHOLDS + 1], count = 0, most = range / (4 * jump), t, k;
-    double cost[GPROJI_ND_THRESHOLDS + 1], below = 0, last = 0, halo[2];
-    most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
-    halo[0] = 0, halo[1] = nd->halo_weight;
-    memset(nd->nearby, 0, (size_t)range + 1);
-    for (t = 1; t < range && 10 * below <= 7 * nd->weight; ++t) {
-        double own;
-        below += nd->sum[t - 1];
-        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (10 * (below - last) < (last > 0 ? 1 : 3) * nd->weight || 10 * below > 7 * nd->weight) continue;
-        last = below;
-        own = gproji_nd_threshold_cost(nd, below, gproji_nd_guess(nd, axis, t, range, shift), halo);
-        for (k = count; k > 0 && own < cost[k - 1]; --k) cost[k] = cost[k - 1], at[k] = at[k - 1];
-        cost[k] = own, at[k] = t;
-        count = gproji_min(count + 1, most);
-    }
-    for (k = 0; k < count; ++k) {
-        for (t = at[k] > jump ? at[k] - jump : 0; t < at[k] + jump && t < range; ++t) nd->nearby[t] |= 1;
-        nd->nearby[at[k]] = 3;
-    }
-}
-
-/* For all thresholds at once, what has neighbours across. */
-GPROJI_INTERNAL void gproji_nd_count_inner(gproji_nd *nd, const int32_t *position) {
-    const int32_t *adjacent = nd->here.adjacent;
-    int32_t i, *low = nd->low, *high = nd->high;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t p = position[i], least = p, most = p, w = nd->here.weight[i];
-        const int32_t *list, *end;
-        if (!nd->nearby[p]) continue;
-        list = adjacent + nd->here.from[i], end = list + nd->here.inner[i];
-        for (; list < end; ++list) {
-            int32_t q = position[*list];
-            if (q < least) least = q;
-            if (q > most) most = q;
-        }
-        low[p + 1] += w, low[most + 1] -= w;
-        high[least + 1] += w, high[p + 1] -= w;
-    }
-}
-
-/* Tries thresholds in one direction; one that beats `best` takes its place, with positions and sums. */
-GPROJI_INTERNAL void gproji_nd_try(gproji_nd *nd, int32_t axis, gproji_nd_cut *best) {
-    int32_t *position = nd->position, *sum = nd->sum, shift, range = gproji_nd_project(nd, axis, position, &shift), i,
-            t;
-    double below = 0, low = 0, high = 0, halo[2];
-    size_t bytes = ((size_t)range + 1) * sizeof(int32_t);
-    bool better = false, exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
-    memset(sum, 0, bytes);
-    memset(nd->low, 0, bytes), memset(nd->high, 0, bytes);
-    memset(nd->halo_low, 0, bytes), memset(nd->halo_high, 0, bytes);
-    for (i = 0; i < nd->nodes; ++i) sum[position[i]] += nd->here.weight[i];
-    gproji_nd_count_halo(nd, position);
-    gproji_nd_choose_thresholds(nd, axis, range, shift);
-    if (exact) gproji_nd_count_inner(nd, position);
-    halo[0] = 0, halo[1] = nd->halo_weight;
-    for (t = 1; t < range; ++t) {
-        double separator, cost;
-        below += sum[t - 1];
-        low += nd->low[t], high += nd->high[t];
-        halo[0] += nd->halo_low[t], halo[1] -= nd->halo_high[t];
-        if (nd->nearby[t] != 3) continue;
-        separator = exact ? gproji_fmin(low, high) : gproji_nd_guess(nd, axis, t, range, shift);
-        cost = gproji_nd_threshold_cost(nd, below, separator, halo);
-        if (cost >= best->cost) continue;
-        best->cost = cost, best->axis = axis, best->at = t, best->range = range, best->below = below;
-        best->weight = separator;
-        better = true;
-    }
-    if (!better) return;
-    nd->position = nd->best_position, nd->best_position = position;
-    nd->sum = nd->best_sum, nd->best_sum = sum;
-}
-
-/* -- the smallest separator in a band -- */
-
-/* The band of a cut: positions from[0]..from[1]-1, of the weight of a dozen separators, but not more than 0.3 of
-   the part's; and each rim keeps about a quarter of the weight behind it. */
-GPROJI_INTERNAL void gproji_nd_band_limits(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t from[2]) {
-    const int32_t *sum = nd->best_sum;
-    int32_t low = cut->at > 1 ? cut->at - 1 : cut->at, high = cut->at < cut->range - 1 ? cut->at + 1 : cut->at, i;
-    double most = gproji_fmin(12.0 * cut->weight, 0.3 * nd->weight), band = 0, below = 0, above;
-    for (i = 0; i < low; ++i) below += sum[i];
-    for (; i < high; ++i) band += sum[i];
-    above = nd->weight - below - band;
-    for (;;) {
-        bool down = below > above;
-        int32_t more;
-        if (down ? low <= 1 : high >= cut->range - 1) break;
-        more = sum[down ? low - 1 : high];
-        if (band + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
-        band += more;
-        if (down)
-            below -= more, --low;
-        else
-            above -= more, ++high;
-    }
-    from[0] = low, from[1] = high;
-}
-
-/* Is node i in the band? So are nodes below it with neighbours above it. */
-GPROJI_INTERNAL bool gproji_nd_in_band(const gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                       int32_t i) {
-    const int32_t *position = nd->best_position, *list = nd->here.adjacent + nd->here.from[i];
-    const int32_t *end = list + nd->here.inner[i];
-    if (position[i] >= from[0]) return position[i] < from[1];
-    if (position[i] < from[0] - gproji_nd_jump(cut->axis)) return false;
-    for (; list < end; ++list)
-        if (position[*list] >= from[1]) return true;
-    return false;
-}
-
-GPROJI_INTERNAL bool gproji_band_take(gproji_heap *heap, gproji_band *band, int64_t nodes, int64_t arcs,
-                                      int64_t units) {
-    size_t ints = (size_t)nodes * 11 + 2 + (size_t)arcs + (size_t)units;
-    int32_t *at;
-    if (!gproji_reserve(heap, &band->block, &band->block_size, ints * sizeof(int32_t) + (size_t)nodes * 3, 1))
-        return false;
-    at = (int32_t *)band->block;
-    band->id = at, at += nodes;
-    band->start = at, at += nodes + 1;
-    band->unit = at, at += nodes + 1;
-    band->ahead = at, at += nodes;
-    band->load = at, at += nodes;
-    band->level = at, at += 2 * nodes;
-    band->turn = at, at += 2 * nodes;
-    band->queue = at, at += 2 * nodes;
-    band->to = at, at += arcs;
-    band->origin = at, at += units;
-    band->ends = (unsigned char *)at;
-    band->mark = band->ends + nodes;
-    return true;
-}
-
-/* The arcs of band node i from number e on, those that lead upwards first, the farthest before others: a search then goes
-   ahead first, and leaves nodes free for other paths. Returns where they end. */
-GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t from[2], int32_t i, int32_t e) {
-    gproji_band *band = &nd->band;
-    const int32_t *position = nd->best_position, v = band->id[i], *list = nd->here.adjacent + nd->here.from[v];
-    const int32_t *end = list + nd->here.inner[v];
-    int32_t back = e + nd->here.inner[v], stop = back, k;
-    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
-    band->start[i] = e;
-    band->ends[i] = 0;
-    for (; list < end; ++list) {
-        int32_t u = nd->number[*list];
-        if (u < 0) {
-            band->ends[i] |= position[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
-        } else if (position[*list] > position[v]) {
-            for (k = e++; few && k > band->start[i] && position[band->id[band->to[k - 1]]] < position[*list]; --k)
-                band->to[k] = band->to[k - 1];
-            band->to[k] = u;
-        } else {
-            band->to[--back] = u;
-        }
-    }
-    band->ahead[i] = e;
-    while (back < stop) band->to[e++] = band->to[back++];
-    return e;
-}
-
-/* The capacity of a weight: in units of a common divisor of all weights, or, where these are many, of a part of the
-   largest one. */
-GPROJI_INTERNAL int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
-    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
-    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
-}
-
-/* Finds the nodes of the band, in nd->queue, and their capacities, in nd->position. Returns how many nodes; adds up their
-   arcs and capacities. */
-GPROJI_INTERNAL int32_t gproji_nd_find_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                            int64_t *arcs, int64_t *units) {
-    int32_t i, nodes = 0, divisor = 0, largest = 0, *capacity = nd->position;
-    for (i = 0; i < nd->nodes; ++i) {
-        int32_t a = nd->here.weight[i], b = divisor, rest;
-        nd->number[i] = -1;
-        if (!gproji_nd_in_band(nd, cut, from, i)) continue;
-        nd->number[i] = nodes;
-        nd->queue[nodes++] = i;
-        *arcs += nd->here.inner[i];
-        largest = gproji_max(largest, a);
-        if (a == b) continue;
-        for (; b > 0; a = b, b = rest) rest = a % b;
-        divisor = a;
-    }
-    for (i = 0; i < nodes; ++i)
-        *units += capacity[i] = gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
-    return nodes;
-}
-
-/* Builds the network. False where there is no memory, or there are more arcs than numbers for them. */
-GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
-    gproji_band *band = &nd->band;
-    int32_t i, e = 0, u = 0, nodes;
-    int64_t arcs = 0, units = 0;
-    nodes = gproji_nd_find_band(nd, cut, from, &arcs, &units);
-    if (arcs > INT32_MAX || units > INT32_MAX) return false;
-    if (!gproji_band_take(nd->heap, band, nodes, arcs, units)) {
-        nd->failed = true;
-        return false;
-    }
-    band->nodes = nodes;
-    memcpy(band->id, nd->queue, (size_t)nodes * sizeof(int32_t));
-    for (i = 0; i < nodes; ++i) {
-        band->load[i] = 0;
-        band->unit[i] = u;
-        u += nd->position[i];
-        e = gproji_nd_band_arcs(nd, from, i, e);
-    }
-    band->start[nodes] = e;
-    band->unit[nodes] = u;
-    return true;
-}
+/* -- the flow through a band -- */
 
 GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* Looks for a path from a node to the sink, upwards all the way and through nodes with room. Returns its last index in
-   the queue, which has its nodes, or -1. level: -1 where there is none. */
-GPROJI_INTERNAL int32_t gproji_band_find_ascent(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, depth = 0;
-    path[0] = source;
-    while (depth >= 0) {
-        int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
-        if (band->ends[v] & GPROJI_BAND_SINK) return depth;
-        while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
-        band->turn[v] = c;
-        if (c < end)
-            path[++depth] = band->to[c];
-        else
-            band->level[path[depth--]] = -1;
-    }
-    return -1;
-}
-
-/* A first flow, along ascents: in most bands there is not much more. level, turn: here by node. */
+/* Finds a first flow by depth-first search upwards only: in most bands little is missing then. level, turn: here by
+   node; level -1: a dead end. */
 GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
-    const int32_t *path = band->queue;
-    int32_t i, k, depth;
+    int32_t *path = band->queue, i, k, depth;
     for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        while (gproji_band_has_room(band, i) && (depth = gproji_band_find_ascent(band, i)) >= 0)
-            for (k = 0; k <= depth; ++k) {
-                int32_t v = path[k];
-                band->origin[band->unit[v] + band->load[v]++] = k > 0 ? path[k - 1] : -1;
+        for (path[0] = i, depth = 0; depth >= 0 && gproji_band_has_room(band, i);) {
+            int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
+            if (band->ends[v] & GPROJI_BAND_SINK) { /* send a unit, and begin again */
+                for (k = 0; k <= depth; ++k)
+                    band->origin[band->unit[path[k]] + band->load[path[k]]++] = k > 0 ? path[k - 1] : -1;
+                depth = 0;
+                continue;
             }
+            while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
+            band->turn[v] = c;
+            if (c < end)
+                path[++depth] = band->to[c];
+            else
+                band->level[path[depth--]] = -1;
+        }
     }
 }
 
-/* The next state, one step nearer to the sink, to which more can flow from state s, or -1: from an exit along an arc, then
-   back to the entry if anything passes; from an entry to the exit if there is room, then back along an arc with flow.
+/* Does a unit come to band node v from u? */
+GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
+    int32_t c;
+    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
+        if (band->origin[c] == u) return true;
+    return false;
+}
+
+/* Appends a state without a level to a queue with `tail` entries; returns the new number. */
+GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
+    if (band->level[s] >= 0) return tail;
+    band->level[s] = level;
+    band->queue[tail] = s;
+    return tail + 1;
+}
+
+/* Finds all levels by breadth-first search from the sink, against the residual arcs. Is the source reached? */
+GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
+    int32_t head = 0, tail = 0, i, c;
+    bool found = false;
+    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
+        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
+            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
+            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
+            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
+        }
+    }
+    return found;
+}
+
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
+   or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
 GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     const int32_t *level = band->level;
@@ -4889,99 +4519,46 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
     return next;
 }
 
-/* Looks for a path from a state to the sink that comes nearer with each step. Returns its last index in the queue, or
-   -1. */
-GPROJI_INTERNAL int32_t gproji_band_find_path(gproji_band *band, int32_t source) {
-    int32_t *path = band->queue, depth = 0;
-    path[0] = source;
-    while (depth >= 0) {
-        int32_t s = path[depth], next;
-        if (band->level[s] == 0) return depth;
-        next = gproji_band_next(band, s);
-        if (next >= 0)
-            path[++depth] = next;
-        else
-            band->level[path[depth--]] = -1;
-    }
-    return -1;
-}
-
-/* Sends a unit along the path. */
-GPROJI_INTERNAL void gproji_band_push(gproji_band *band, int32_t depth) {
-    const int32_t *path = band->queue;
-    int32_t k, from = -1; /* the exit that was passed last */
-    for (k = 0; k < depth; ++k) {
-        int32_t s = path[k], v = s >> 1;
-        bool turns = (path[k + 1] ^ s) == 1;
-        if (s & 1)
-            from = v;
-        else if (turns) /* another unit passes; */
-            band->origin[band->unit[v] + band->load[v]++] = from;
-        else if (k > 0 && path[k - 1] == (s ^ 1)) /* one less; */
-            band->origin[band->turn[s]] = band->origin[band->unit[v] + --band->load[v]];
-        else /* one comes from elsewhere */
-            band->origin[band->turn[s]] = from;
-    }
-}
-
-/* Does a unit come to band node v from u? */
-GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
-    int32_t c;
-    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-        if (band->origin[c] == u) return true;
-    return false;
-}
-
-/* Adds a state without a level to a queue of `tail`; returns how many there are then. */
-GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
-    if (band->level[s] >= 0) return tail;
-    band->level[s] = level;
-    band->queue[tail] = s;
-    return tail + 1;
-}
-
-/* The levels of all states, by a breadth-first search from the sink. Is the source among them? */
-GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
-    int32_t head = 0, tail = 0, i, c;
-    bool found = false;
-    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
-    for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) {
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
-        } else {
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    return found;
-}
-
-/* A round: paths from all sources, as short as they can be now. False when there was none; then the states with a level
-   are those that reach the sink. */
-GPROJI_INTERNAL bool gproji_band_round(gproji_band *band) {
-    int32_t i, depth;
+/* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
+   the states with a level are those that reach the sink. */
+GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
+    int32_t *path = band->queue, i, k, depth;
     if (!gproji_band_find_levels(band)) return false;
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
     }
     for (i = 0; i < band->nodes; ++i) {
-        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        while (band->level[2 * i] >= 0 && (depth = gproji_band_find_path(band, 2 * i)) >= 0)
-            gproji_band_push(band, depth);
+        if (!(band->ends[i] & GPROJI_BAND_SOURCE) || band->level[2 * i] < 0) continue;
+        for (path[0] = 2 * i, depth = 0; depth >= 0;) {
+            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s, from = -1;
+            if (next >= 0 && next != s) { /* one step further */
+                path[++depth] = next;
+                continue;
+            }
+            if (next < 0) { /* a dead end */
+                band->level[path[depth--]] = -1;
+                continue;
+            }
+            /* At the sink: send a unit along the path, and begin again. from: the exit that was passed last */
+            for (k = 0; k < depth; ++k) {
+                int32_t v = path[k] >> 1;
+                if (path[k] & 1)
+                    from = v;
+                else if ((path[k + 1] ^ path[k]) == 1) /* entry to exit: one unit more */
+                    band->origin[band->unit[v] + band->load[v]++] = from;
+                else if (k > 0 && (path[k - 1] ^ path[k]) == 1) /* exit to entry: one less */
+                    band->origin[band->turn[path[k]]] = band->origin[band->unit[v] + --band->load[v]];
+                else /* entry to a neighbour's exit: this unit now comes from elsewhere */
+                    band->origin[band->turn[path[k]]] = from;
+            }
+            depth = 0;
+        }
     }
     return true;
 }
 
-/* Adds a state to a queue of `tail` unless it is marked; returns how many there are then. */
+/* Appends a state that is not marked to a queue with `tail` entries; returns the new number. */
 GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
     if (band->mark[s] & mark) return tail;
     band->mark[s] |= mark;
@@ -4989,7 +4566,7 @@ GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned c
     return tail + 1;
 }
 
-/* Marks what the states in the queue reach. */
+/* Marks all states reachable from the `tail` ones in the queue. */
 GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
     int32_t head = 0, c;
     while (head < tail) {
@@ -5006,101 +4583,207 @@ GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigne
     }
 }
 
-/* Marks for the cuts next to the source, to the sink and to the threshold. Returns how many cuts there are: 1 when all are
-   one. */
-GPROJI_INTERNAL int32_t gproji_nd_mark_cuts(gproji_nd *nd, const gproji_nd_cut *cut) {
+/* -- the smallest separator in a band -- */
+
+/* Lists band node i's arcs from number e on. Those to higher coordinates come first, the highest before others: a
+   search then goes ahead first, and leaves nodes free for other paths. Returns the end of the arcs. */
+GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordinate, int32_t low, int32_t i,
+                                            int32_t e) {
     gproji_band *band = &nd->band;
-    int32_t i, tail = 0, states = 2 * band->nodes, open = 0;
-    for (i = 0; i < states; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+    const int32_t v = band->id[i], *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
+    int32_t back = e + nd->here.inner[v], stop = back, k;
+    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
+    band->start[i] = e;
+    band->ends[i] = 0;
+    for (; list < end; ++list) {
+        int32_t u = nd->number[*list];
+        if (u < 0) {
+            band->ends[i] |= coordinate[*list] < low ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
+        } else if (coordinate[*list] > coordinate[v]) {
+            for (k = e++; few && k > band->start[i] && coordinate[band->id[band->to[k - 1]]] < coordinate[*list]; --k)
+                band->to[k] = band->to[k - 1];
+            band->to[k] = u;
+        } else {
+            band->to[--back] = u; /* backward arcs fill the node's room from the end */
+        }
+    }
+    band->ahead[i] = e;
+    while (back < stop) band->to[e++] = band->to[back++];
+    return e;
+}
+
+/* Converts a weight to a capacity: in units of the weights' common divisor or, if these are many, in fractions of the
+   largest weight. */
+GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
+/* Builds the network for the band of coordinates from[0]..from[1]-1. False when there is no memory, or when arcs are
+   more than their type can count. */
+GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
+    gproji_band *band = &nd->band;
+    int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
+    int64_t arcs = 0, units = 0, n;
+    /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below the band belong to it if they
+       are next to nodes above it. */
+    for (i = 0; i < nd->nodes; ++i) {
+        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
+        int32_t p = cut->coordinate[i], a = nd->here.weight[i], b = divisor, rest;
+        bool inside = p >= from[0] && p < from[1];
+        nd->number[i] = -1;
+        if (p < from[0] && p >= from[0] - cut->jump)
+            for (; list < end && !inside; ++list) inside = cut->coordinate[*list] >= from[1];
+        if (!inside) continue;
+        nd->number[i] = count;
+        nd->queue[count++] = i;
+        arcs += nd->here.inner[i];
+        largest = gproji_max(largest, a);
+        if (a == b) continue;
+        for (; b > 0; a = b, b = rest) rest = a % b;
+        divisor = a;
+    }
+    for (i = 0; i < count; ++i) units += gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
+    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    /* 2. Lay the arrays out in one block, which serves all bands. */
+    n = count;
+    if (!gproji_reserve(nd->heap, &band->block, &band->block_size,
+                        (size_t)(11 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
+        nd->failed = true;
+        return false;
+    }
+    at = (int32_t *)band->block;
+    band->id = at, at += n;
+    band->start = at, at += n + 1;
+    band->unit = at, at += n + 1;
+    band->ahead = at, at += n;
+    band->load = at, at += n;
+    band->level = at, at += 2 * n;
+    band->turn = at, at += 2 * n;
+    band->queue = at, at += 2 * n;
+    band->to = at, at += arcs;
+    band->origin = at, at += units;
+    band->ends = (unsigned char *)at;
+    band->mark = band->ends + n;
+    /* 3. Fill in nodes, capacities and arcs. */
+    band->nodes = count;
+    memcpy(band->id, nd->queue, (size_t)count * sizeof(int32_t));
+    for (i = 0; i < count; ++i) {
+        band->load[i] = 0;
+        band->unit[i] = u;
+        u += gproji_band_capacity(nd->here.weight[band->id[i]], divisor, largest);
+        e = gproji_nd_band_arcs(nd, cut->coordinate, from[0], i, e);
+    }
+    band->start[count] = e;
+    band->unit[count] = u;
+    return true;
+}
+
+/* Returns a node's side by a minimum cut. In the band: 1 unless the cut's lower side reaches the node's entry, else
+   separator unless it reaches the exit. */
+GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t high, int32_t i,
+                                       unsigned char mark) {
+    const int32_t k = nd->number[i];
+    bool in, out;
+    if (k < 0) return cut->coordinate[i] >= high;
+    in = (nd->band.mark[2 * k] & mark) != 0, out = (nd->band.mark[2 * k + 1] & mark) != 0;
+    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
+    return out ? 0 : in ? 2 : 1;
+}
+
+/* Estimates the part's cost if one of the minimum cuts divides it. */
+GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
+                                         unsigned char mark) {
+    double weight[3] = {0, 0, 0}, beside[2] = {0, 0};
+    const gproji_nd_halo *halo = &nd->halo;
+    int32_t i, k;
+    for (i = 0; i < from[0]; ++i) weight[0] += cut->sum[i];
+    for (i = from[1]; i < cut->range; ++i) weight[1] += cut->sum[i];
+    for (i = 0; i < nd->band.nodes; ++i) {
+        int32_t v = nd->band.id[i], w = nd->here.weight[v];
+        weight[gproji_nd_side(nd, cut, from[1], v, mark)] += w;
+        if (cut->coordinate[v] < from[0]) weight[0] -= w; /* counted among those below */
+    }
+    for (k = 0; k < halo->count; ++k) halo->least[k] = 0;
+    for (k = 0; k < halo->boundaries; ++k) {
+        int32_t v = halo->boundary[k], side = gproji_nd_side(nd, cut, from[1], v, mark);
+        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
+        if (side == 2) continue;
+        for (; list < end; ++list) halo->least[*list] |= 1 << side;
+    }
+    for (k = 0; k < halo->count; ++k) {
+        if (halo->least[k] & 1) beside[0] += nd->graph->weight[halo->name[k]];
+        if (halo->least[k] & 2) beside[1] += nd->graph->weight[halo->name[k]];
+    }
+    return gproji_nd_cost(nd, weight[0], weight[1], weight[2], beside);
+}
+
+/* Finds a cut's separator and writes `side`. Returns the cost; HUGE_VAL if there is no separator, or no memory. */
+GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut, unsigned char *side) {
+    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
+    gproji_band *band = &nd->band;
+    int32_t from[2], i, tail = 0, open = 0, rounds = 0, use = 0;
+    double most = gproji_fmin(12.0 * cut->separator, 0.3 * nd->weight), inside = 0, below = 0, above, best;
+    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part; about a
+       quarter stays outside on each side. */
+    from[0] = cut->at > 1 ? cut->at - 1 : cut->at, from[1] = cut->at < cut->range - 1 ? cut->at + 1 : cut->at;
+    for (i = 0; i < from[0]; ++i) below += cut->sum[i];
+    for (; i < from[1]; ++i) inside += cut->sum[i];
+    above = nd->weight - below - inside;
+    for (;;) {
+        bool down = below > above;
+        int32_t more;
+        if (down ? from[0] <= 1 : from[1] >= cut->range - 1) break;
+        more = cut->sum[down ? from[0] - 1 : from[1]];
+        if (inside + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
+        inside += more;
+        if (down)
+            below -= more, --from[0];
+        else
+            above -= more, ++from[1];
+    }
+    /* 2. Maximum flow. */
+    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
+    gproji_band_ascend(band);
+    while (gproji_band_augment(band))
+        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
+    /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is
+       reached from the source or reaches the sink. */
+    for (i = 0; i < 2 * band->nodes; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
     for (i = 0; i < band->nodes; ++i)
         if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
     gproji_band_spread(band, tail, GPROJI_BAND_SOURCE);
-    for (i = tail = 0; i < states; ++i) {
-        bool below = nd->best_position[band->id[i >> 1]] < cut->at;
+    for (i = tail = 0; i < 2 * band->nodes; ++i) {
+        bool lower = cut->coordinate[band->id[i >> 1]] < cut->at;
         if (!band->mark[i]) ++open;
-        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (below && !band->mark[i])) {
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i])) {
             band->mark[i] |= GPROJI_BAND_MIDDLE;
             band->queue[tail++] = i;
         }
     }
     if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
-    return open > 0 ? 3 : 1;
-}
-
-/* The side of a band node by one of the cuts: above when the lower side does not reach its entry, separator when it does
-   not reach its exit. */
-GPROJI_INTERNAL int32_t gproji_band_side(const gproji_band *band, int32_t i, unsigned char mark) {
-    bool in = (band->mark[2 * i] & mark) != 0, out = (band->mark[2 * i + 1] & mark) != 0;
-    if (mark == GPROJI_BAND_SINK) in = !in, out = !out;
-    return out ? 0 : in ? 2 : 1;
-}
-
-/* The side of any node of the part. */
-GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const int32_t from[2], int32_t i, unsigned char mark) {
-    if (nd->number[i] >= 0) return gproji_band_side(&nd->band, nd->number[i], mark);
-    return nd->best_position[i] >= from[1];
-}
-
-/* What the part costs when cut there. */
-GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
-                                         unsigned char mark) {
-    double weight[3] = {0, 0, 0}, halo[2] = {0, 0};
-    const gproji_band *band = &nd->band;
-    int32_t i, k;
-    for (i = 0; i < from[0]; ++i) weight[0] += nd->best_sum[i];
-    for (i = from[1]; i < cut->range; ++i) weight[1] += nd->best_sum[i];
-    for (i = 0; i < band->nodes; ++i) {
-        int32_t w = nd->here.weight[band->id[i]];
-        weight[gproji_band_side(band, i, mark)] += w;
-        if (nd->best_position[band->id[i]] < from[0]) weight[0] -= w; /* counted among those below */
-    }
-    for (k = 0; k < nd->halos; ++k) nd->halo_least[k] = 0;
-    for (k = 0; k < nd->rims; ++k) {
-        int32_t v = nd->rim[k], side = gproji_nd_side(nd, from, v, mark);
-        const int32_t *list = nd->here.adjacent + nd->here.from[v] + nd->here.inner[v], *end = list + nd->here.outer[v];
-        if (side == 2) continue;
-        for (; list < end; ++list) nd->halo_least[*list] |= 1 << side;
-    }
-    for (k = 0; k < nd->halos; ++k) {
-        if (nd->halo_least[k] & 1) halo[0] += nd->graph->weight[nd->halo[k]];
-        if (nd->halo_least[k] & 2) halo[1] += nd->graph->weight[nd->halo[k]];
-    }
-    return gproji_nd_cost(nd, weight, halo);
-}
-
-/* Finds the separator of a cut: `side`. Returns what the part then costs; HUGE_VAL where there is none, or no memory. */
-GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cut) {
-    static const unsigned char marks[3] = {GPROJI_BAND_MIDDLE, GPROJI_BAND_SOURCE, GPROJI_BAND_SINK};
-    int32_t from[2], i, cuts, rounds = 0, use = 0;
-    double best;
-    gproji_nd_band_limits(nd, cut, from);
-    if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
-    gproji_band_ascend(&nd->band);
-    while (gproji_band_round(&nd->band))
-        if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
-    cuts = gproji_nd_mark_cuts(nd, cut);
+    /* 4. Take the cheapest. */
     best = gproji_nd_measure(nd, cut, from, marks[0]);
-    for (i = 1; i < cuts; ++i) {
+    for (i = 1; i < (open > 0 ? 3 : 1); ++i) {
         double cost = gproji_nd_measure(nd, cut, from, marks[i]);
         if (cost < best) best = cost, use = i;
     }
-    for (i = 0; i < nd->nodes; ++i) nd->side[i] = (unsigned char)gproji_nd_side(nd, from, i, marks[use]);
+    for (i = 0; i < nd->nodes; ++i) side[i] = (unsigned char)gproji_nd_side(nd, cut, from[1], i, marks[use]);
     return best;
 }
 
 /* -- parts that are not cut any more -- */
 
-/* A small part: sets of neighbours as bits; first those of its own nodes, then of its halo's. `plane` p has the nodes
-   whose weights contain unit[p]. */
+/* A small part: sets of neighbours as bits; in the first word nodes in the part, then in the halo. A plane has the
+   nodes whose weights contain a power of two, so that counting bits weighs a set. */
 typedef struct gproji_nd_leaf {
     int32_t words, planes;
     uint64_t set[GPROJI_ND_LEAF][GPROJI_ND_WORDS];
     uint64_t plane[32][GPROJI_ND_WORDS];
-    int32_t unit[32];
-    int64_t key[GPROJI_ND_LEAF]; /* of each node: its degree, and behind it its number */
+    int32_t unit[32]; /* planes: the power of two, or a sum if several have equal planes */
 } gproji_nd_leaf;
 
-/* How many bits are set. */
+/* Counts the bits that are set. */
 GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     x -= (x >> 1) & 0x5555555555555555u;
     x = (x & 0x3333333333333333u) + ((x >> 2) & 0x3333333333333333u);
@@ -5108,9 +4791,7 @@ GPROJI_INLINE int32_t gproji_bits(uint64_t x) {
     return (int32_t)((x * 0x0101010101010101u) >> 56);
 }
 
-/* The number of the lowest bit of x > 0. */
-GPROJI_INLINE int32_t gproji_lowest_bit(uint64_t x) { return gproji_bits((x & (~x + 1)) - 1); }
-
+/* Node i's key: the degree and, behind it, the index, so that the least key belongs to the pivot. */
 GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i) {
     const uint64_t *set = leaf->set[i];
     int32_t degree = 0, p, k;
@@ -5122,184 +4803,209 @@ GPROJI_INTERNAL int64_t gproji_nd_leaf_key(const gproji_nd_leaf *leaf, int32_t i
     return (int64_t)degree * GPROJI_ND_LEAF + i;
 }
 
-/* The planes of the weights; equal ones are one. */
-GPROJI_INTERNAL void gproji_nd_leaf_weigh(const gproji_nd *nd, gproji_nd_leaf *leaf, int32_t halos) {
-    int32_t bit, i, all = 0, p = 0;
-    for (i = 0; i < nd->nodes; ++i) all |= nd->here.weight[i];
-    for (i = 0; i < halos; ++i) all |= nd->graph->weight[nd->halo[i]];
-    for (bit = 0; bit < 31; ++bit) {
-        uint64_t *plane = leaf->plane[p];
-        if (!(all >> bit & 1)) continue;
-        memset(plane, 0, sizeof leaf->plane[0]);
-        for (i = 0; i < nd->nodes; ++i) plane[0] |= (uint64_t)(nd->here.weight[i] >> bit & 1) << i;
-        for (i = 0; i < halos; ++i)
-            plane[1 + i / 64] |= (uint64_t)(nd->graph->weight[nd->halo[i]] >> bit & 1) << i % 64;
-        if (p > 0 && memcmp(plane, leaf->plane[p - 1], sizeof leaf->plane[0]) == 0)
-            leaf->unit[p - 1] += (int32_t)1 << bit;
-        else
-            leaf->unit[p++] = (int32_t)1 << bit;
-    }
-    leaf->planes = p;
-}
-
-GPROJI_INTERNAL void gproji_nd_leaf_start(const gproji_nd *nd, gproji_nd_leaf *leaf) {
-    int32_t i, halos = gproji_min(nd->halos, GPROJI_ND_HALO);
-    leaf->words = 1 + (halos + 63) / 64;
-    gproji_nd_leaf_weigh(nd, leaf, halos);
-    memset(leaf->set, 0, (size_t)nd->nodes * sizeof leaf->set[0]);
-    for (i = 0; i < nd->nodes; ++i) {
-        const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
-        uint64_t *set = leaf->set[i];
-        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
-        for (end += nd->here.outer[i]; list < end; ++list)
-            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
-        leaf->key[i] = gproji_nd_leaf_key(leaf, i);
-    }
-}
-
 /* Orders a small part by minimum degree. */
-GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t place) {
+GPROJI_INTERNAL void gproji_nd_order_leaf(gproji_nd *nd, int32_t position) {
+    const gproji_nd_nodes *here = &nd->here;
+    const int32_t *weight = nd->graph->weight, *halo = nd->halo.name;
+    int32_t nodes = nd->nodes, halos = gproji_min(nd->halo.count, GPROJI_ND_HALO), bit, i, k, all = 0, p = 0;
+    uint64_t alive = ~(uint64_t)0 >> (64 - nodes), todo;
+    int64_t key[GPROJI_ND_LEAF];
     gproji_nd_leaf leaf;
-    uint64_t alive = ~(uint64_t)0 >> (64 - nd->nodes), todo;
-    int32_t nodes = nd->nodes, i, k;
-    gproji_nd_leaf_start(nd, &leaf);
+    /* 1. Planes for the weights. */
+    for (i = 0; i < nodes; ++i) all |= here->weight[i];
+    for (i = 0; i < halos; ++i) all |= weight[halo[i]];
+    for (bit = 0; bit < 31; ++bit) {
+        uint64_t *plane = leaf.plane[p];
+        if (!(all >> bit & 1)) continue;
+        memset(plane, 0, sizeof leaf.plane[0]);
+        for (i = 0; i < nodes; ++i) plane[0] |= (uint64_t)(here->weight[i] >> bit & 1) << i;
+        for (i = 0; i < halos; ++i) plane[1 + i / 64] |= (uint64_t)(weight[halo[i]] >> bit & 1) << i % 64;
+        if (p > 0 && memcmp(plane, leaf.plane[p - 1], sizeof leaf.plane[0]) == 0)
+            leaf.unit[p - 1] += (int32_t)1 << bit; /* the planes of weights 0 and 3, say, are one */
+        else
+            leaf.unit[p++] = (int32_t)1 << bit;
+    }
+    leaf.planes = p;
+    /* 2. Sets of neighbours. */
+    leaf.words = 1 + (halos + 63) / 64;
+    memset(leaf.set, 0, (size_t)nodes * sizeof leaf.set[0]);
+    for (i = 0; i < nodes; ++i) {
+        const int32_t *list = here->adjacent + here->from[i], *end = list + here->inner[i];
+        uint64_t *set = leaf.set[i];
+        for (; list < end; ++list) set[0] |= (uint64_t)1 << *list;
+        for (end += here->outer[i]; list < end; ++list)
+            if (*list < halos) set[1 + *list / 64] |= (uint64_t)1 << *list % 64;
+        key[i] = gproji_nd_leaf_key(&leaf, i);
+    }
+    /* 3. Eliminate the node with the least key: the neighbours become adjacent to each other. */
     while (alive) {
         int64_t least = INT64_MAX;
         int32_t pivot;
-        for (i = 0; i < nodes; ++i) least = leaf.key[i] < least ? leaf.key[i] : least;
+        for (i = 0; i < nodes; ++i) least = key[i] < least ? key[i] : least;
         pivot = (int32_t)(least % GPROJI_ND_LEAF);
-        nd->order[place++] = nd->here.name[pivot];
-        leaf.key[pivot] = INT64_MAX;
+        nd->order[position++] = here->name[pivot];
+        key[pivot] = INT64_MAX;
         alive &= ~((uint64_t)1 << pivot);
         for (todo = leaf.set[pivot][0] & alive; todo; todo &= todo - 1) {
-            uint64_t *set;
-            i = gproji_lowest_bit(todo);
-            set = leaf.set[i];
-            for (k = 0; k < leaf.words; ++k) set[k] |= leaf.set[pivot][k];
-            set[0] &= alive & ~((uint64_t)1 << i);
-            leaf.key[i] = gproji_nd_leaf_key(&leaf, i);
+            i = gproji_bits((todo & (~todo + 1)) - 1); /* the lowest bit's index */
+            for (k = 0; k < leaf.words; ++k) leaf.set[i][k] |= leaf.set[pivot][k];
+            leaf.set[i][0] &= alive & ~((uint64_t)1 << i);
+            key[i] = gproji_nd_leaf_key(&leaf, i);
         }
     }
 }
 
 /* Orders a part without a good separator by approximate minimum degree. */
-GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t place) {
+GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t position) {
     const gproji_nd_nodes *here = &nd->here;
-    int64_t *start, to = 0;
+    int64_t *start, arcs = 0;
     int32_t *adjacent, *order, i, k;
     gproji_graph graph;
     gproji_pool pool;
     gproji_pool_start(&pool, nd->heap);
-    for (i = 0; i < nd->nodes; ++i) to += here->inner[i];
+    for (i = 0; i < nd->nodes; ++i) arcs += here->inner[i];
     start = (int64_t *)gproji_pool_take(&pool, (int64_t)nd->nodes + 1, sizeof(int64_t));
-    adjacent = (int32_t *)gproji_pool_take(&pool, to, sizeof(int32_t));
+    adjacent = (int32_t *)gproji_pool_take(&pool, arcs, sizeof(int32_t));
     order = (int32_t *)gproji_pool_take(&pool, nd->nodes, sizeof(int32_t));
-    if (start && adjacent && order) {
-        for (i = 0, to = 0; i < nd->nodes; ++i) {
-            start[i] = to;
-            for (k = 0; k < here->inner[i]; ++k) adjacent[to++] = here->adjacent[here->from[i] + k];
+    nd->failed = nd->failed || !start || !adjacent || !order;
+    if (!nd->failed) {
+        for (i = 0, arcs = 0; i < nd->nodes; ++i) {
+            start[i] = arcs;
+            for (k = 0; k < here->inner[i]; ++k) adjacent[arcs++] = here->adjacent[here->from[i] + k];
         }
-        start[nd->nodes] = to;
+        start[nd->nodes] = arcs;
         graph.nodes = nd->nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = here->weight;
-        if (!gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL)) nd->failed = true;
-        for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[place + i] = here->name[order[i]];
-    } else {
-        nd->failed = true;
+        nd->failed = !gproji_amd_order(nd->heap, &graph, (int32_t)nd->weight, order, NULL);
     }
+    for (i = 0; i < nd->nodes && !nd->failed; ++i) nd->order[position + i] = here->name[order[i]];
     gproji_pool_give_all(&pool);
 }
 
-/* Tries all directions; a cut that beats `best` takes its place. */
-GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t axis;
-    gproji_nd_sample(nd);
-    for (axis = 0; axis < 4; ++axis) gproji_nd_try(nd, axis, best);
-}
+/* -- dissection -- */
 
-/* Finds the best cut of the part at work by coordinates of its own. Where that of the largest part, on which most depends,
-   is far from the middle, other coordinates are tried if it is closed: then some nodes are better starts than others.
-   Returns how many nodes are connected; when these are not all, there is no cut. */
+/* Finds new coordinates for the part at work and the best cut by them. Returns the number of nodes connected to the
+   first one; unless all are, there is no cut. */
 GPROJI_INTERNAL int32_t gproji_nd_find_cut(gproji_nd *nd, gproji_nd_cut *best) {
-    int32_t starts = nd->nodes > nd->kept / 2 && nd->openness <= 1 ? GPROJI_ND_STARTS : 1, k, reached = 0;
-    memset(best, 0, sizeof *best);
-    best->cost = HUGE_VAL;
+    int32_t *const *d = nd->distance, *value = nd->number, starts = 1, k, i, root, reached = 0;
+    /* A closed mesh has no corners, and some nodes are better starts than others. Most depends on the largest part. */
+    if (nd->nodes > nd->kept / 2 && nd->openness <= 1) starts = GPROJI_ND_STARTS;
     for (k = 0; k < starts; ++k) {
-        reached = gproji_nd_coordinates(nd, (int32_t)((int64_t)nd->nodes * k / starts));
+        /* 1. a, on the boundary after a first search (later starts are taken as they are), and b; then c: of nodes as
+           far from both, one in the middle; then d. */
+        root = (int32_t)((int64_t)nd->nodes * k / starts);
+        reached = gproji_nd_search(nd, root, d[0], 0);
         if (reached < nd->nodes) break;
+        if (root == 0) gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[0], 0);
+        gproji_nd_search(nd, gproji_nd_last(nd, d[0]), d[1], 0);
+        for (i = 0; i < nd->nodes; ++i)
+            value[i] = 2 * (d[0][i] + d[1][i]) - gproji_max(d[0][i] - d[1][i], d[1][i] - d[0][i]) / 2;
+        gproji_nd_search(nd, gproji_nd_most(nd, value), d[2], 0);
+        for (i = 0; i < nd->nodes; ++i) value[i] = d[0][i] + d[1][i] + 2 * d[2][i];
+        gproji_nd_search(nd, gproji_nd_most(nd, value), d[3], 0);
+        for (i = 0; i < nd->nodes; ++i) d[0][i] -= d[1][i], d[1][i] = d[2][i] - d[3][i];
+        nd->here.x = d[0], nd->here.y = d[1];
+        /* 2. Cuts; good enough near the middle. */
         gproji_nd_try_all(nd, best);
         if (best->below > 0.37 * nd->weight && best->below < 0.63 * nd->weight) break;
     }
     return reached;
 }
 
-/* The par of a part's sides. own, inherited: what it costs when cut by its own coordinates, and by those that it had, if
-   any. 0: they need coordinates of their own, as do the first parts of meshes that are closed, or may be, and those of
-   solids, whose separators are large: there two coordinates do not tell all nodes apart. -1: so does all that comes of
-   them, as its own coordinates were better. */
-GPROJI_INTERNAL double gproji_nd_next_par(const gproji_nd *nd, double par, double own, double inherited) {
-    double ratio = gproji_coarsely(gproji_fmin(own, inherited) / gproji_nd_rest(nd, nd->weight, nd->halo_weight));
-    if (par < 0 || (par > 0 && own < inherited)) return -1;
-    if (nd->openness < 12 && nd->nodes >= nd->kept / 8) return 0;
-    return ratio < 2 ? ratio : 0;
-}
-
-/* Finds a cut of the part at work by the coordinates that it has: `side`. Returns what it costs. */
-GPROJI_INTERNAL double gproji_nd_cut_again(gproji_nd *nd) {
-    gproji_nd_cut cut;
-    memset(&cut, 0, sizeof cut);
-    cut.cost = HUGE_VAL;
-    gproji_nd_try_all(nd, &cut);
-    return cut.cost < HUGE_VAL ? gproji_nd_separate(nd, &cut) : HUGE_VAL;
-}
-
-GPROJI_INTERNAL void gproji_nd_swap_sides(gproji_nd *nd) {
-    unsigned char *side = nd->side;
-    nd->side = nd->other_side, nd->other_side = side;
-}
-
-/* Cuts the part at work, or orders it where it has no good cut. */
+/* Cuts the part at work, or orders it if it has no good cut. */
 GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *part) {
-    int32_t *x = nd->here.x, *y = nd->here.y, reached;
-    double own = HUGE_VAL, inherited = HUGE_VAL, par = part->par;
-    gproji_nd_cut cut;
-    if (par > 0) {
-        inherited = gproji_nd_cut_again(nd);
-        if (inherited < gproji_coarsely(1.1 * par * gproji_nd_rest(nd, nd->weight, nd->halo_weight))) {
-            gproji_nd_divide(nd, part, par);
+    const gproji_nd_cut none = {HUGE_VAL, 0, 0, 0, 0, 0, NULL, NULL};
+    gproji_nd_cut cut = none;
+    int32_t *x = nd->here.x, *y = nd->here.y, reached, root = 0, before, k;
+    double rest = gproji_nd_rest(nd, nd->weight, nd->halo.weight), own = HUGE_VAL, inherited = HUGE_VAL, ratio;
+    double expected = part->expected;
+    unsigned char *side = nd->side[1];
+    /* 1. By inherited coordinates, unless new ones are due: good enough if not much dearer than expected. */
+    if (expected > 0) {
+        gproji_nd_try_all(nd, &cut);
+        if (cut.cost < HUGE_VAL) inherited = gproji_nd_separate(nd, &cut, nd->side[0]);
+        if (inherited < gproji_coarsely(1.1 * expected * rest)) {
+            gproji_nd_divide(nd, part, nd->side[0], expected);
             return;
         }
-        gproji_nd_swap_sides(nd);
+        cut = none;
     }
     reached = gproji_nd_find_cut(nd, &cut);
+    /* 2. Not connected: some components against the others, up to half of the nodes, but at least one on each side. */
     if (reached < nd->nodes) {
-        gproji_nd_split_components(nd, reached);
-        gproji_nd_divide(nd, part, gproji_fmin(par, 0));
+        for (before = reached; reached < nd->nodes - reached;) {
+            while (nd->distance[0][root] >= 0) ++root;
+            before = reached;
+            reached = gproji_nd_search(nd, root, nd->distance[0], reached);
+        }
+        if (reached == nd->nodes) reached = before;
+        memset(side, 1, (size_t)nd->nodes);
+        for (k = 0; k < reached; ++k) side[nd->queue[k]] = 0;
+        gproji_nd_divide(nd, part, side, gproji_fmin(expected, 0));
         return;
     }
-    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut);
-    if (inherited <= own && inherited < HUGE_VAL) {
-        gproji_nd_swap_sides(nd);
-        nd->here.x = x, nd->here.y = y;
+    /* 3. The better cut of the two, if any. */
+    if (cut.cost < HUGE_VAL) own = gproji_nd_separate(nd, &cut, side);
+    if (inherited >= HUGE_VAL && own >= HUGE_VAL) {
+        gproji_nd_order_whole(nd, part->position);
+        return;
     }
-    if (own < HUGE_VAL || inherited < HUGE_VAL)
-        gproji_nd_divide(nd, part, gproji_nd_next_par(nd, par, own, inherited));
+    if (inherited <= own) side = nd->side[0], nd->here.x = x, nd->here.y = y;
+    /* 4. How the sides are cut. New coordinates that were better stay better: -1, also for all parts within. New ones
+       are due, 0, in the first parts of meshes that are closed, or may be, and in solids, whose separators are large:
+       two coordinates do not tell all nodes apart. */
+    ratio = gproji_coarsely(gproji_fmin(own, inherited) / rest);
+    if (expected < 0 || (expected > 0 && own < inherited))
+        expected = -1;
+    else if (nd->openness < 12 && nd->nodes >= nd->kept / 8)
+        expected = 0;
     else
-        gproji_nd_order_whole(nd, part->place);
+        expected = ratio < 2 ? ratio : 0;
+    gproji_nd_divide(nd, part, side, expected);
 }
 
-/* Orders the part on top of the stack or cuts it. */
+/* Orders the part on top of the stack, or cuts it. */
 GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
-    gproji_nd_part part = nd->stack[--nd->parts];
-    gproji_nd_enter(nd, &part);
+    const gproji_nd_part part = nd->stack[--nd->parts];
+    const gproji_nd_nodes *c = &nd->copy[part.copy];
+    gproji_nd_nodes *here = &nd->here;
+    gproji_nd_halo *halo = &nd->halo;
+    double weight = 0;
+    int32_t i, k;
+    here->name = c->name + part.first, here->weight = c->weight + part.first, here->from = c->from + part.first;
+    here->inner = c->inner + part.first, here->outer = c->outer + part.first;
+    here->x = c->x + part.first, here->y = c->y + part.first;
+    here->adjacent = c->adjacent;
+    nd->nodes = part.nodes;
+    /* The halo: names give way to indices. */
+    halo->boundaries = halo->count = 0;
+    halo->weight = 0;
+    for (i = 0; i < part.nodes; ++i) {
+        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
+        weight += here->weight[i];
+        if (here->outer[i] == 0) continue;
+        halo->boundary[halo->boundaries++] = i;
+        for (k = 0; k < here->outer[i]; ++k) {
+            int32_t name = list[k], at = halo->index[name];
+            if (at >= halo->count || halo->name[at] != name) {
+                at = halo->index[name] = halo->count++;
+                halo->name[at] = name;
+                halo->weight += nd->graph->weight[name];
+            }
+            list[k] = at;
+        }
+    }
+    nd->weight = weight;
     if (part.nodes <= GPROJI_ND_LEAF)
-        gproji_nd_order_leaf(nd, part.place);
+        gproji_nd_order_leaf(nd, part.position);
     else
         gproji_nd_cut_part(nd, &part);
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). `total` is the weight of all nodes, which are fewer
-   than 2^29. False when there is no memory. */
+/* Finds the order (nodes entries: the node that is eliminated k-th). total: the weight of all nodes, fewer than
+   2^29. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
+    int32_t a, b, k, count = 0;
+    int64_t e;
     gproji_pool pool;
     gproji_nd nd;
     gproji_pool_start(&pool, heap);
@@ -5307,12 +5013,25 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
     nd.heap = heap;
     nd.graph = graph;
     nd.failed = !gproji_nd_take(&nd, &pool);
-    if (!nd.failed) {
-        gproji_nd_sort_out(&nd, total);
-        gproji_nd_begin(&nd);
-    }
+    if (!nd.failed) gproji_nd_begin(&nd, total);
     while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
-    if (!nd.failed) gproji_nd_put_back(&nd, order);
+    if (!nd.failed) {
+        /* Dominated nodes go right before the first node that dominates them, dense ones last. */
+        for (b = 0; b < graph->nodes; ++b) nd.number[b] = -1;
+        for (k = 0; k < nd.kept; ++k) {
+            b = nd.order[k];
+            for (e = graph->start[b]; nd.dominated > 0 && e < graph->start[b + 1]; ++e) {
+                a = graph->adjacent[e];
+                if (nd.kind[a] != GPROJI_ND_DOMINATED || !gproji_nd_dominates(graph, nd.number, b, a)) continue;
+                nd.kind[a] = GPROJI_ND_PLACED;
+                order[count++] = a;
+            }
+            order[count++] = b;
+        }
+        for (b = 0; b < graph->nodes; ++b)
+            if (nd.kind[b] == GPROJI_ND_DENSE) order[count++] = b;
+        GPROJ_ASSERT(count == graph->nodes);
+    }
     gproji_give(heap, nd.band.block, nd.band.block_size, 1);
     gproji_pool_give_all(&pool);
     return !nd.failed;

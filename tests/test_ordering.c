@@ -426,8 +426,7 @@ GPROJT_TEST(dissection_separates) {
         nd.heap = &heap, nd.graph = &g.view;
         gproji_pool_start(&pool, &heap);
         GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
-        gproji_nd_sort_out(&nd, g.total);
-        gproji_nd_begin(&nd);
+        gproji_nd_begin(&nd, g.total);
         while (nd.parts > 0) {
             int32_t before = nd.parts;
             check_parts(&nd, part_of);
