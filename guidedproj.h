@@ -18190,68 +18190,66 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
 }
 
 /* ============================================================================================================
-   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, cholesky, mesh,
+   >>fill   Closed curves filled with quads. Uses platform, memory, error, vector, cholesky, mesh,
    hierarchy.
 
-   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
-   patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
-   theirs is a table, our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and
-   one at each node between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path
-   may be thickened to w rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the
-   numbers of sides i - 1 and i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of
-   strips:
-       l_i = (edges of the core from corner i to corner i + 1) + k_(i-1) + k_(i+1).
-   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex of valence 3, 4, 5, and a node between of valence 5.
-   For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a solution for
-   nearly all l; where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole
-   boundary, and the strip of quads in such a ring fills any even number of edges.
+   A patch has 2 to 6 sides with given edge numbers l_i and is built from inside to outside by patterns, after Takayama,
+   Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Their table becomes one family: the core is a
+   path with n nodes, 1 to 3 patch corners at each end and one at each node between, on either side. Path edge j stands
+   for e_j >= 1 quad edges, and the path may be thickened to w rows; a point with all corners is a path, too. A strip
+   along side i adds 1 to sides i - 1 and i + 1, so edge numbers are linear in e_j, w and the strip numbers k_i >= 0:
+       l_i = (core edges from corner i to corner i + 1) + k_(i-1) + k_(i+1).
+   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex with valence 3, 4, 5, and a node between one with
+   valence 5. For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a
+   solution for nearly all l; if a strip is missing or an end is bare, the patch is put into a ring of quads around its
+   whole boundary, and the strip of quads in such a ring fills any even number of edges.
 
-   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of
-   all quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais,
-   Ray, Sokolov 2021), by Newton steps with the convex part of the Hessian. */
+   Positions: patches are filled harmonically, then all inner vertices minimise the corners' shape distortion with a
+   regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov 2021),
+   by Newton steps with the convex part of the Hessian. */
 enum {
     GPROJI_PATCH_SIDES = 6,
     GPROJI_PATH_EDGES = 5,
-    GPROJI_CANDIDATES = 40,    /* more than there are kinds of patterns */
-    GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
-    GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
+    GPROJI_CANDIDATES = 40,    /* more than there are kinds */
+    GPROJI_TRIED_PAIRS = 120,  /* largest e_j tried on paths with two edges */
+    GPROJI_TRIED_TRIPLES = 24, /* and with three */
     GPROJI_UNTANGLE_STEPS = 300,
     GPROJI_FILL_TRIES = 8,
     GPROJI_FILL_RINGS = 1 << 10,
-    GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
+    GPROJI_FILL_EDGES = 1 << 14, /* along the boundary, at most */
     GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
 };
 
 #define GPROJI_REFLEX (195 * GPROJI_PI / 180) /* corners beyond are cut */
 #define GPROJI_FLAT (165 * GPROJI_PI / 180)   /* corners beyond get two faces */
-#define GPROJI_OBTUSE (135 * GPROJI_PI / 180) /* at the ends of a cut, corners below */
+#define GPROJI_OBTUSE (135 * GPROJI_PI / 180) /* cut ends below are corners */
 #define GPROJI_RIGHT (GPROJI_PI / 2)
 
 typedef struct gproji_pattern {
     int32_t sides;
-    int32_t first;                     /* the pattern's corner 0 is the patch's corner `first` */
-    int32_t end[2];                    /* corners at the ends of the path; a point: all at end 0 */
+    int32_t first;                     /* the patch corner at which the pattern's corner 0 is */
+    int32_t end[2];                    /* corners at the path's ends; a point has all at end 0 */
     int32_t edges;                     /* of the path; 0: a point. Nodes between are edges - 1 */
-    int32_t below;                     /* bit j: the corner of node j + 1 is on the right of the path */
+    int32_t below;                     /* bit j: the corner at node j + 1 is on the path's right */
     int32_t edge[GPROJI_PATH_EDGES];   /* e_j */
-    int32_t rows;                      /* w; > 0 only where no corner is on the right of the path */
+    int32_t rows;                      /* w; > 0 only without corners on the path's right */
     int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
-    int32_t flat;                      /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    int32_t flat;                      /* bit i: pattern corner i gets two faces, see gproji_inner_lengths */
     bool ring;                         /* all corners get two faces: a ring of quads around the patch */
-    bool bare;                         /* one strip of quads in a ring, whatever the sides are */
+    bool bare;                         /* one strip of quads in a ring, for any sides */
     double cost;
 } gproji_pattern;
 
-/* A patch under construction. Vertices and quads have local numbers. */
+/* A patch under construction, with local numbers for vertices and quads. */
 typedef struct gproji_patch {
     gproji_heap *heap;
     int32_t sides;
     int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
-    int32_t *side[GPROJI_PATCH_SIDES]; /* length + 1 vertices: of the sides as they are now, both ends included */
-    int32_t *block;                    /* memory of all sides */
+    int32_t *side[GPROJI_PATCH_SIDES]; /* vertices along each side as it is now, both ends included */
+    int32_t *block;                    /* holds all sides */
     size_t block_size;
     gproji_ints quad; /* 4 vertices each */
-    gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
+    gproji_ints loop; /* the finished boundary from the pattern's corner 0 */
     gproji_ints uses; /* faces at each vertex */
     int32_t vertices;
 } gproji_patch;
@@ -18261,24 +18259,24 @@ typedef struct gproji_filling {
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
-    int32_t count; /* of the points */
+    int32_t count; /* points */
     const double *points;
     double *seen; /* 2 * count: the points in the plane */
     double normal[3], across[3], up[3];
     double edge_length; /* wanted */
     int32_t sides;
     gproji_ints corner;  /* points; sides of them */
-    gproji_ints start;   /* sides + 1: the first vertex of each side */
-    int32_t boundary;    /* vertices of the boundary */
+    gproji_ints start;   /* sides + 1: the first vertex on each side */
+    int32_t boundary;    /* boundary vertices */
     double *border;      /* 3 * boundary: their positions */
-    gproji_ints polygon; /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
-    gproji_ints patch;   /* ends of the patches in `polygon` */
+    gproji_ints polygon; /* patch outlines, one after the other: 2 * vertex + (is it a patch corner) */
+    gproji_ints patch;   /* outline ends in `polygon`; negative: the patch has been cut */
     gproji_ints quad;    /* 4 vertices each */
     double *flat;        /* 2 * vertices, in the plane */
     size_t flat_capacity;
     int32_t vertices;
-    int32_t curve_vertices; /* those of the boundary, and of rings along it, come first */
-    int32_t cut_vertices;   /* then those of cuts */
+    int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
+    int32_t cut_vertices;   /* then those on cuts */
     int32_t leaves;         /* patches that were filled */
 } gproji_filling;
 
@@ -18290,39 +18288,30 @@ GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int3
 
 /* -- patterns: their equations -- */
 
-/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows,
-   along the right of the path, up the rows, and back along its left. */
-GPROJI_INTERNAL int32_t gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES]) {
+/* Finds the core's corners as places on the closed walk around it, and after them the walk's length. */
+GPROJI_INTERNAL void gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES + 1]) {
     int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
     column[0] = 0;
     for (i = 0; i < p->edges; ++i) column[i + 1] = column[i] + p->edge[i];
     all = column[nodes - 1];
+    /* From the first end down the rows and along the path's right, up the rows, and back along its left. */
     for (i = 0; i < p->end[0]; ++i) at[n++] = 0;
     for (i = 1; i + 1 < nodes; ++i)
         if (p->below >> (i - 1) & 1) at[n++] = p->rows + column[i];
     for (i = 0; i < p->end[1]; ++i) at[n++] = 2 * p->rows + all;
     for (i = nodes - 2; i > 0; --i)
         if (!(p->below >> (i - 1) & 1)) at[n++] = 2 * p->rows + 2 * all - column[i];
-    return 2 * p->rows + 2 * all;
+    at[n] = 2 * p->rows + 2 * all;
 }
 
-/* The core's vertex at a place of the walk. Vertices are numbered by rows, from below. */
-GPROJI_INTERNAL int32_t gproji_core_vertex(int32_t rows, int32_t all, int32_t place) {
-    int32_t around = 2 * (rows + all);
-    if (around == 0) return 0;
-    place %= around;
-    if (place < rows) return (rows - place) * (all + 1);
-    if (place <= rows + all) return place - rows;
-    if (place <= 2 * rows + all) return (place - rows - all) * (all + 1) + all;
-    return rows * (all + 1) + around - place;
-}
-
-/* The strips k with rest_i = k_(i-1) + k_(i+1): over the cycles of sides i, i + 2, .. False where there are none. */
+/* Solves rest_i = k_(i-1) + k_(i+1) for the strips k, which decouples into cycles of sides i, i + 2, .. False without a
+   solution. */
 GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
     int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
     for (first = 0; first < cycles; ++first) {
+        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: none, or a
+           family, from which the middle is taken). */
         for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
-        /* once around, k_first becomes value - k_first (odd) or value + k_first (even) */
         if (length % 2 ? value % 2 != 0 : value != 0) return false;
         start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
         for (n = 0, i = first; n < length; ++n, i = (i + 2) % sides) {
@@ -18334,34 +18323,32 @@ GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int3
     return true;
 }
 
-/* Irregular vertices count most, then the distances between them and from them to the boundary. */
-GPROJI_INTERNAL double gproji_pattern_cost(const gproji_pattern *p) {
+/* Candidates for a patch by ascending cost, at most one for each kind and rotation. */
+typedef struct gproji_candidates {
+    const int32_t *length; /* edges along the patch's sides */
+    int32_t count;
+    gproji_pattern pattern[GPROJI_CANDIDATES];
+} gproji_candidates;
+
+/* Keeps a pattern unless a cheaper one has the same kind and rotation. */
+GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, gproji_pattern *p) {
     double cost = 0;
     int32_t i;
+    /* Irregular vertices cost most, then short distances between them and to the boundary. */
     if (p->edges == 0)
         cost += 4 * (p->sides > 4 ? p->sides - 4 : 4 - p->sides) + (p->sides == 6 ? 8 : 0);
     else
         cost += 4 * ((p->end[0] != 2) + (p->end[1] != 2) + p->edges - 1);
     for (i = 0; i < p->sides; ++i) cost += p->strip[i] > 0 ? 1.0 / p->strip[i] : 3;
     for (i = 0; i < p->edges; ++i) cost += 1.0 / p->edge[i];
-    return cost + (p->rows > 0 ? 1 : 0);
-}
-
-/* Candidates, at most one of each kind and rotation, in the order of their costs. */
-typedef struct gproji_candidates {
-    const int32_t *length; /* of the patch's sides */
-    int32_t count;
-    gproji_pattern pattern[GPROJI_CANDIDATES];
-} gproji_candidates;
-
-GPROJI_INTERNAL bool gproji_same_kind(const gproji_pattern *a, const gproji_pattern *b) {
-    return a->first == b->first && a->end[0] == b->end[0] && a->edges == b->edges && a->below == b->below &&
-           (a->rows > 0) == (b->rows > 0);
-}
-
-GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p) {
-    int32_t i;
-    for (i = 0; i < c->count && !gproji_same_kind(&c->pattern[i], p); ++i) continue;
+    cost += p->rows > 0 ? 1 : 0;
+    p->cost = p->edges == 1 && p->end[0] == 2 ? -1 : cost; /* a grid beats all */
+    for (i = 0; i < c->count; ++i) {
+        const gproji_pattern *q = &c->pattern[i];
+        if (q->first == p->first && q->end[0] == p->end[0] && q->edges == p->edges && q->below == p->below &&
+            (q->rows > 0) == (p->rows > 0))
+            break;
+    }
     if (i < c->count && c->pattern[i].cost <= p->cost) return;
     GPROJ_ASSERT(i < GPROJI_CANDIDATES);
     c->count += i == c->count;
@@ -18369,33 +18356,24 @@ GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p)
     c->pattern[i] = *p;
 }
 
-/* What the core leaves of the sides for the strips. False where it needs more than there is. */
-GPROJI_INTERNAL bool gproji_rest(const gproji_candidates *c, const gproji_pattern *p, int32_t *rest) {
-    int32_t at[GPROJI_PATCH_SIDES], around = gproji_core_corners(p, at), i;
-    for (i = 0; i < p->sides; ++i) {
-        int32_t to = i + 1 < p->sides ? at[i + 1] : at[0] + around;
-        rest[i] = c->length[(i + p->first) % p->sides] - (to - at[i]);
-        if (rest[i] < 0) return false;
-    }
-    return true;
-}
-
-/* All e_j of one kind of path without rows. */
+/* Tries all e_j up to `most` for one kind of path without rows. */
 GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, int32_t most) {
-    int32_t rest[GPROJI_PATCH_SIDES], i = 0;
+    int32_t at[GPROJI_PATCH_SIDES + 1], rest[GPROJI_PATCH_SIDES], n = p->sides, i;
     for (i = 0; i < p->edges; ++i) p->edge[i] = 1;
     do {
-        if (gproji_rest(c, p, rest) && gproji_find_strips(p->sides, rest, p->strip)) {
-            p->cost = gproji_pattern_cost(p);
-            gproji_offer(c, p);
+        gproji_core_corners(p, at);
+        for (i = 0; i < n; ++i) {
+            rest[i] = c->length[(i + p->first) % n] - (at[i + 1] - at[i]);
+            if (rest[i] < 0) break; /* the core alone is too long */
         }
-        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1;
+        if (i == n && gproji_find_strips(n, rest, p->strip)) gproji_offer(c, p);
+        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1; /* the next e, like an odometer */
     } while (i < p->edges);
 }
 
-/* The path with a corner at each node and rows: sides 1, 2, .. have one e_j each, side 0 their sum and 2 w. So
-   e_j = l - k - k, and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum of the k_i but for i = 1 and n - 1 (with two sides:
-   + k_0 - k_1). These strips grow evenly until w >= 0. */
+/* Tries the path with a corner at each node and rows. Sides 1, 2, .. have one e_j each and side 0 has their sum and
+   2 w, so e_j = l - k - k and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (with two sides:
+   + k_0 - k_1). All strips begin at `least`. */
 GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
     int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
     p->end[0] = p->end[1] = 1;
@@ -18410,7 +18388,7 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
         rest[i] = c->length[(i + p->first) % n] - 2 * least;
         if (i > 0 && rest[i] < 1) return false;
     }
-    while (p->rows < 0) {
+    while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
             int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
             if (i == 1 || i == n - 1) continue;
@@ -18422,12 +18400,11 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
         --rest[(best + n - 1) % n], --rest[(best + 1) % n];
     }
     for (side = 1; side < n; ++side) p->edge[n - 1 - side] = rest[side];
-    p->cost = gproji_pattern_cost(p);
     gproji_offer(c, p);
     return true;
 }
 
-/* A path with equal ends, seen from its other end, is a path of the same kind: is that one tried instead? */
+/* Is this path, seen from its other end, tried as another pattern? Only paths with equal ends can be. */
 GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
     int32_t below = 0, first = p->first + p->end[0], j, nodes = p->edges - 1;
     for (j = 0; j < nodes; ++j) {
@@ -18439,7 +18416,7 @@ GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
     return p->end[0] == p->end[1] && (below < p->below || (below == p->below && first < p->first));
 }
 
-/* All kinds of patterns for a patch. */
+/* Lists all kinds of patterns for a patch. */
 GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, const int32_t *length) {
     static const int32_t tried[4] = {0, INT32_MAX, GPROJI_TRIED_PAIRS, GPROJI_TRIED_TRIPLES};
     int32_t most = length[0], a, b, below, i;
@@ -18448,16 +18425,17 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
     c->length = length;
     c->count = 0;
     for (i = 1; i < sides; ++i) most = gproji_max(most, length[i]);
+    /* 1. A point, and the grid: a path along one side. */
     p.sides = sides;
     p.end[0] = sides;
     gproji_try_edges(c, &p, 0);
-    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) { /* a grid: a path along one side */
+    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) {
         p.end[0] = p.end[1] = 2, p.edges = 1, p.edge[0] = length[1], p.strip[1] = length[0];
         p.strip[0] = p.strip[2] = p.strip[3] = 0;
-        p.cost = -1;
         gproji_offer(c, &p);
     }
     for (p.first = 0; p.first < sides; ++p.first) {
+        /* 2. Paths with 1 or 3 corners at the ends (2 would be regular), all distributions of the others. */
         for (a = 1; a <= 3; a += 2)
             for (b = a; b <= 3; b += 2) {
                 p.edges = sides - a - b + 1;
@@ -18469,27 +18447,13 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
                     gproji_try_edges(c, &p, gproji_min(most, tried[p.edges]));
                 }
             }
-        if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
+        /* 3. Rows; strips that are missing cost a ring, so they come second. */
+        if (sides == 2 && length[p.first] < most) continue; /* the same kind, seen from the other side */
         if (!gproji_try_rows(c, &p, 1)) gproji_try_rows(c, &p, 0);
     }
 }
 
 /* -- patterns: their quads -- */
-
-GPROJI_INTERNAL bool gproji_patch_take(gproji_patch *patch, gproji_heap *heap, int32_t sides, const int32_t *length) {
-    size_t at = 0;
-    int32_t i;
-    memset(patch, 0, sizeof *patch);
-    patch->heap = heap;
-    patch->sides = sides;
-    for (i = 0; i < sides; ++i) patch->block_size += (size_t)length[i] + 1;
-    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
-    for (i = 0; patch->block && i < sides; ++i) {
-        patch->side[i] = patch->block + at;
-        at += (size_t)length[i] + 1;
-    }
-    return patch->block != NULL;
-}
 
 GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
     gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
@@ -18498,30 +18462,9 @@ GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
     gproji_ints_give(patch->heap, &patch->uses);
 }
 
-/* The core and its sides. */
-GPROJI_INTERNAL bool gproji_build_core(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
-    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, i, j, rows = p->rows;
-    for (i = 0; i < p->edges; ++i) all += p->edge[i];
-    if (p->bare)
-        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
-    else
-        at[p->sides] = gproji_core_corners(p, at) + at[0];
-    for (i = 0; i < p->sides; ++i) {
-        patch->edges[i] = at[i + 1] - at[i];
-        for (j = 0; j <= patch->edges[i]; ++j) patch->side[i][j] = gproji_core_vertex(rows, all, at[i] + j);
-    }
-    patch->vertices = (rows + 1) * (all + 1);
-    for (i = 0; i < rows; ++i)
-        for (j = 0; j < all; ++j) {
-            int32_t v = i * (all + 1) + j;
-            if (!gproji_ints_add4(patch->heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
-        }
-    return true;
-}
-
 GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
 
-/* Does a strip run from corner i to the next corner that is not flat, over flat ones between? Sets that corner. */
+/* Does a strip run from corner i over flat corners to another, *to, that is not flat? */
 GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t i, int32_t *to) {
     *to = i + 1;
     if (gproji_is_flat(flat, sides, i) || !gproji_is_flat(flat, sides, i + 1)) return false;
@@ -18529,8 +18472,8 @@ GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t 
     return true;
 }
 
-/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not
-   flat to the next. False where there are not two such corners, or a side is too short. */
+/* Counts the edges inside the outermost strips, which cover the flat corners: each from one corner that is not flat to
+   the next. False with fewer than two such corners, or a side that is too short. */
 GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
     int32_t i, to, sharp = 0;
     for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
@@ -18542,8 +18485,7 @@ GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int
     return true;
 }
 
-/* A strip of quads along sides i to to - 1 (numbers may go on beyond the last): new sides outside of them, and one edge
-   more for both neighbours. */
+/* Adds a strip of quads along sides i to to - 1 (counted on beyond the last). */
 GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
     int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
     int32_t outer = patch->vertices;
@@ -18553,6 +18495,7 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
             if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
         outer += n;
     }
+    /* One edge more on the side before and on the side after; then the new sides outside. */
     patch->side[before][++patch->edges[before]] = patch->vertices;
     memmove(patch->side[after] + 1, patch->side[after], (size_t)(++patch->edges[after]) * sizeof(int32_t));
     patch->side[after][0] = outer;
@@ -18565,33 +18508,69 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
     return true;
 }
 
-/* The boundary as a loop, in a ring of quads if so wanted. */
-GPROJI_INTERNAL bool gproji_close_patch(gproji_patch *patch, bool ring) {
-    int32_t i, j, n;
-    for (i = 0; i < patch->sides; ++i)
-        for (j = 0; j < patch->edges[i]; ++j)
-            if (!gproji_ints_add(patch->heap, &patch->loop, patch->side[i][j])) return false;
-    n = (int32_t)patch->loop.count;
-    for (i = 0; ring && i < n; ++i) {
-        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        if (!gproji_ints_add4(patch->heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
-    }
-    for (i = 0; ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
-    int32_t i, k;
+/* Builds a patch whose sides have these lengths. False without memory; give the patch back in any case. */
+GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, const gproji_pattern *p,
+                                        const int32_t *length) {
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n = 0;
     size_t q;
-    if (!gproji_build_core(patch, p, length)) return false;
+    /* 1. Room for sides as long as they become. */
+    memset(patch, 0, sizeof *patch);
+    patch->heap = heap;
+    patch->sides = p->sides;
+    for (i = 0; i < p->sides; ++i) patch->block_size += (size_t)length[i] + 1;
+    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
+    if (!patch->block) return false;
+    for (i = 0; i < p->sides; ++i) {
+        patch->side[i] = patch->block + n;
+        n += length[(i + p->first) % p->sides] + 1;
+    }
+    /* 2. The core, numbered by rows from below, and its sides along the walk around it. */
+    for (i = 0; i < p->edges; ++i) all += p->edge[i];
+    around = 2 * (rows + all);
+    if (p->bare)
+        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
+    else
+        gproji_core_corners(p, at);
+    for (i = 0; i < p->sides; ++i) {
+        patch->edges[i] = at[i + 1] - at[i];
+        for (j = 0; j <= patch->edges[i]; ++j) {
+            int32_t place = around ? (at[i] + j) % around : 0, v;
+            if (place < rows)
+                v = (rows - place) * (all + 1);
+            else if (place <= rows + all)
+                v = place - rows;
+            else if (place <= 2 * rows + all)
+                v = (place - rows - all) * (all + 1) + all;
+            else
+                v = rows * (all + 1) + around - place;
+            patch->side[i][j] = v;
+        }
+    }
+    patch->vertices = (rows + 1) * (all + 1);
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < all; ++j) {
+            int32_t v = i * (all + 1) + j;
+            if (!gproji_ints_add4(heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+        }
+    /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
         for (k = 0; k < p->strip[i]; ++k)
             if (!gproji_add_strip(patch, i, i + 1)) return false;
     for (i = 0; i < p->sides && p->flat; ++i)
         if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
-    if (!gproji_close_patch(patch, p->ring)) return false;
+    /* 4. The boundary as a loop, in a ring if one is wanted. */
+    for (i = 0; i < p->sides; ++i)
+        for (j = 0; j < patch->edges[i]; ++j)
+            if (!gproji_ints_add(heap, &patch->loop, patch->side[i][j])) return false;
+    n = (int32_t)patch->loop.count;
+    for (i = 0; p->ring && i < n; ++i) {
+        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
+        if (!gproji_ints_add4(heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+    }
+    for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
+    /* 5. Faces at each vertex. */
     for (i = 0; i < patch->vertices; ++i)
-        if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
+        if (!gproji_ints_add(heap, &patch->uses, 0)) return false;
     for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
     return true;
 }
@@ -18616,10 +18595,10 @@ GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b
     return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) || (cda < 0 && cdb < 0));
 }
 
-/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet where they should not? Neighbours: do they fold back? */
+/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet, other than neighbours at their common point? */
 GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32_t i, int32_t j) {
     int32_t b = (i + 1) % count, d = (j + 1) % count;
-    if (b == j || d == i) {
+    if (b == j || d == i) { /* neighbours meet if they fold back */
         int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
         const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
         double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
@@ -18641,39 +18620,33 @@ GPROJI_INTERNAL void gproji_ring_box(const void *user, int32_t item, double low[
     gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
 }
 
-/* The lowest side after side i that meets it; the number of sides where there is none. */
-GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_ring2 *ring, const gproji_hierarchy *tree, int32_t i) {
-    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = ring->count, k;
-    double low[3], high[3];
-    gproji_ring_box(ring, i, low, high);
-    stack[0] = 0;
-    while (depth > 0) {
-        int32_t at = stack[--depth];
-        const gproji_node *node = &tree->node[at];
-        if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
-            continue;
-        if (node->right >= 0) {
-            stack[depth++] = node->right;
-            stack[depth++] = at + 1;
-            continue;
-        }
-        for (k = node->begin; k < node->end; ++k) {
-            int32_t j = tree->item[k];
-            if (j > i && j < found && gproji_polygon_meets(ring->xy, ring->count, i, j)) found = j;
-        }
-    }
-    return found;
-}
-
-/* The first two sides of a closed polygon that meet; first = count where it is simple. False: no memory. */
+/* Finds the first two sides of a closed polygon that meet; first = count if it is simple. False without memory. */
 GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
                                           int32_t *second) {
     gproji_hierarchy tree;
     gproji_ring2 ring;
     ring.xy = xy, ring.count = count;
     if (!gproji_hierarchy_build(heap, &tree, count, gproji_ring_box, &ring)) return false;
-    for (*first = 0; *first < count; ++*first) {
-        *second = gproji_find_meeting(&ring, &tree, *first);
+    for (*first = 0, *second = count; *first < count; ++*first) {
+        int32_t stack[GPROJI_TREE_DEPTH], depth = 1, k;
+        double low[3], high[3];
+        gproji_ring_box(&ring, *first, low, high);
+        stack[0] = 0;
+        while (depth > 0) {
+            int32_t at = stack[--depth];
+            const gproji_node *node = &tree.node[at];
+            if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
+                continue;
+            if (node->right >= 0) {
+                stack[depth++] = node->right;
+                stack[depth++] = at + 1;
+                continue;
+            }
+            for (k = node->begin; k < node->end; ++k) {
+                int32_t j = tree.item[k];
+                if (j > *first && j < *second && gproji_polygon_meets(xy, count, *first, j)) *second = j;
+            }
+        }
         if (*second < count) break;
     }
     gproji_hierarchy_give(heap, &tree);
@@ -18691,11 +18664,31 @@ GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q
 
 /* -- the curve -- */
 
-/* The plane of the vectorial area, with which the curve runs counter-clockwise. Writes the points as seen there. */
-GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
+/* Checks the curve and the options that stand alone, and projects the points into the curve's plane. */
+GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     static const double none[3] = {0, 0, 0};
+    const gproj_fill_options *o = &f->options;
     double a[3], b[3], cross[3], extent = 0;
-    int32_t i;
+    int32_t i, j;
+    gproj_code code;
+    /* 1. Points are finite, and no two neighbours coincide. */
+    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           f->points ? "a closed curve of %d points; it needs at least 3"
+                                     : "the points of the curve are NULL",
+                           f->count);
+    code = gproji_check_positions(f->count, f->points, "point", f->error);
+    if (code) return code;
+    for (i = 0; i < f->count; ++i) {
+        j = i + 1 < f->count ? i + 1 : 0;
+        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
+            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                               "points %d and %d of the curve are the same; leave one out%s", i, j,
+                               j == 0 ? " (the curve is closed without it)" : "");
+    }
+    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    if (!f->seen) return gproji_fail_memory(f->error);
+    /* 2. The plane orthogonal to the vectorial area: the curve runs counter-clockwise in it. */
     gproji_set3(0, 0, 0, f->normal);
     for (i = 1; i < f->count; ++i) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
@@ -18713,45 +18706,27 @@ GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
         f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
     }
+    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (i < f->count)
+        return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                           "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
+                           "simple curves can be filled",
+                           i, j);
+    /* 3. Options. */
+    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
+                           (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
+                           o->variant);
+    if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
+        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
+                           o->edge_length);
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
-    gproj_code code;
-    int32_t i, j;
-    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           f->points ? "a closed curve of %d points; it needs at least 3"
-                                     : "the points of the curve are NULL",
-                           f->count);
-    code = gproji_check_positions(f->count, f->points, "point", f->error);
-    if (code) return code;
-    for (i = 0; i < f->count; ++i) {
-        j = i + 1 < f->count ? i + 1 : 0;
-        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
-            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                               "points %d and %d of the curve are the same; leave one out%s", i, j,
-                               j == 0 ? " (the curve is closed without it)" : "");
-    }
-    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
-    if (!f->seen) return gproji_fail_memory(f->error);
-    code = gproji_see_curve(f);
-    if (code) return code;
-    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
-    if (i == f->count) return GPROJ_OK;
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                       "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
-                       "simple curves can be filled",
-                       i, j);
-}
-
-/* Is a point of the curve a corner, as gproj_form_is_corner says of vertices? */
-GPROJI_INTERNAL bool gproji_is_curve_corner(const gproji_filling *f, int32_t i) {
-    int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
-    return gproji_turns(f->points + 3 * (size_t)before, f->points + 3 * (size_t)i, f->points + 3 * (size_t)after);
-}
-
-/* The length of the curve from point i to point j > i (modulo the number of points). */
+/* The curve's length from point i to point j > i (modulo the number of points). */
 GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i, int32_t j) {
     double sum = 0;
     for (; i < j; ++i)
@@ -18759,37 +18734,16 @@ GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i,
     return sum;
 }
 
-/* Four corners at about equal distances, the first one where the only corner is, or the first point. */
-GPROJI_INTERNAL bool gproji_make_corners(gproji_filling *f) {
-    int32_t from = f->corner.count ? f->corner.data[0] : 0, n = 1, i;
-    double all = gproji_length_between(f, from, from + f->count), at = 0;
-    f->corner.count = 0;
-    if (!gproji_ints_add(f->heap, &f->corner, from)) return false;
-    for (i = from; i + 1 < from + f->count && n < 4; ++i) {
-        double step = gproji_length_between(f, i, i + 1);
-        at += step;
-        if (at + step / 2 >= all * n / 4 || from + f->count - 2 - i < 4 - n) {
-            if (!gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count)) return false;
-            ++n;
-        }
-    }
-    return true;
-}
-
-/* The options, but for what depends on the corners and sides that are found. */
-GPROJI_INTERNAL gproj_code gproji_check_fill_options(const gproji_filling *f) {
+/* Chooses corners: the caller's, else detected, else four evenly spaced. Each begins a side. */
+GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     const gproj_fill_options *o = &f->options;
-    int32_t i;
+    const double *p = f->points;
+    int32_t i, n;
+    bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                            o->corner_count > 1 ? " in an array that is NULL" : "");
-    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
-                           (int32_t)GPROJI_FILL_RINGS);
-    if (o->variant < 0)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
-                           o->variant);
     for (i = 0; i < o->corner_count; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -18799,23 +18753,26 @@ GPROJI_INTERNAL gproj_code gproji_check_fill_options(const gproji_filling *f) {
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
                                "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
                                c, before);
+        taken = taken && gproji_ints_add(f->heap, &f->corner, c);
     }
-    if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
-        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
-                           o->edge_length);
-    return GPROJ_OK;
-}
-
-/* The corners given, or found, or made; as many are the sides. */
-GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
-    const gproj_fill_options *o = &f->options;
-    int32_t i;
-    bool taken = true;
-    for (i = 0; i < o->corner_count && taken; ++i) taken = gproji_ints_add(f->heap, &f->corner, o->corners[i]);
-    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
-        if (gproji_is_curve_corner(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
-    if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
+    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i) { /* as gproj_form_is_corner does with vertices */
+        int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
+        if (gproji_turns(p + 3 * (size_t)before, p + 3 * (size_t)i, p + 3 * (size_t)after))
+            taken = gproji_ints_add(f->heap, &f->corner, i);
+    }
+    if (taken && f->corner.count < 2) { /* from the only corner, or the first point */
+        int32_t from = f->corner.count ? f->corner.data[0] : 0;
+        double all = gproji_length_between(f, from, from + f->count), at = 0;
+        f->corner.count = 0;
+        taken = gproji_ints_add(f->heap, &f->corner, from);
+        for (n = 1, i = from; taken && i + 1 < from + f->count && n < 4; ++i) {
+            double step = gproji_length_between(f, i, i + 1);
+            at += step;
+            if (at + step / 2 < all * n / 4 && from + f->count - 2 - i >= 4 - n) continue;
+            taken = gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count);
+            ++n;
+        }
+    }
     f->sides = (int32_t)f->corner.count;
     if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -18824,7 +18781,7 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     return taken ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
-/* The points of side j: from the first to the last, counted on beyond the end of the array. */
+/* The points along a side, from the first to the last, counted on beyond the array's end. */
 GPROJI_INTERNAL void gproji_side_points(const gproji_filling *f, int32_t side, int32_t *from, int32_t *to) {
     *from = f->corner.data[side];
     *to = side + 1 < f->sides ? f->corner.data[side + 1] : f->corner.data[0];
@@ -18837,7 +18794,7 @@ GPROJI_INTERNAL double gproji_side_length(const gproji_filling *f, int32_t side)
     return gproji_length_between(f, from, to);
 }
 
-/* Which side bears one edge more (+1) or less (-1) best, by its edge length? */
+/* Finds the side that bears one edge more (+1) or less (-1) best, by the edge length it then has. */
 GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_t *edges, int32_t *change) {
     int32_t side, best = 0;
     double least = HUGE_VAL;
@@ -18850,29 +18807,24 @@ GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_
     return best;
 }
 
-/* The edges that strips over nearly flat corners take from the sides: see gproji_inner_lengths. */
-GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken) {
-    int32_t side, flat = 0, many[GPROJI_PATCH_SIDES];
-    for (side = 0; side < f->sides; ++side) {
-        int32_t c = f->corner.data[side];
-        bool is_flat = gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT;
-        if (is_flat) flat |= 1 << side;
-        many[side] = 3; /* more than are taken */
-    }
-    if (!gproji_inner_lengths(f->sides, flat, many, taken)) memcpy(taken, many, sizeof many);
-    for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
-}
-
-/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about
-   the same length. */
+/* Chooses edge numbers by the wanted edge length, with an even sum of at least 4. */
 GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
-    int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
-    if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
+    int32_t side, sum = 0, change = 0, longest = 0, flat = 0, many[GPROJI_PATCH_SIDES], taken[GPROJI_PATCH_SIDES] = {0};
+    if (f->sides == 4 && f->options.rings == 0) { /* edges that strips over flat corners take from the sides */
+        for (side = 0; side < 4; ++side) {
+            int32_t c = f->corner.data[side];
+            if (gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT)
+                flat |= 1 << side;
+            many[side] = 3; /* more than are taken */
+        }
+        if (!gproji_inner_lengths(4, flat, many, taken)) memcpy(taken, many, sizeof many);
+        for (side = 0; side < 4; ++side) taken[side] = many[side] - taken[side];
+    }
     for (side = 0; side < f->sides; ++side) {
         double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
         int32_t opposite = (side + 2) % 4;
         edges[side] = gproji_max(1, (int32_t)(length + 0.5));
-        if (f->sides == 4) {
+        if (f->sides == 4) { /* a grid fits inside opposite sides with equal numbers: if they are about equally long */
             other = gproji_fmin(gproji_side_length(f, opposite) / f->edge_length, GPROJI_FILL_EDGES);
             if (length < 1.7 * other && other < 1.7 * length)
                 edges[side] = gproji_max(1, (int32_t)(0.5 * (length + other - (taken[side] + taken[opposite])) + 0.5)) +
@@ -18889,36 +18841,9 @@ GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges
     if (sum < 4) edges[longest] += 4 - sum;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *edges) {
-    int32_t side, sum = 0, change = 0;
-    for (side = 0; side < f->sides; ++side) {
-        if (edges[side] < 1)
-            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
-        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
-            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
-                               "the sides up to side %d have more than %d edges; use longer edges", side,
-                               (int32_t)GPROJI_FILL_EDGES);
-    }
-    if (sum % 2) {
-        side = gproji_best_change(f, edges, &change);
-        return gproji_fail(
-            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
-            "of %d%s",
-            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
-    }
-    if (sum < 4)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
-                           "the sides have %d edges together; quads need at least 4", sum);
-    f->boundary = sum;
-    return GPROJ_OK;
-}
-
-/* The number of edges of each side, checked, into `start`, summed up. */
+/* Finds each side's number of edges, checks them, and sums them up into `start`. */
 GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
-    int32_t side, from, to, *edges;
-    gproj_code code;
+    int32_t side, from, to, *edges, sum = 0, change = 0;
     f->edge_length = f->options.edge_length;
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
     if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
@@ -18930,33 +18855,29 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     }
     edges = f->start.data + 1;
     if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
-    code = gproji_check_edges(f, edges);
-    for (side = 0; side < f->sides && !code; ++side) f->start.data[side + 1] += f->start.data[side];
-    return code;
-}
-
-/* The vertices of a side but its last: `edges` equal pieces of its length, or its points. */
-GPROJI_INTERNAL void gproji_divide_side(const gproji_filling *f, int32_t side, double *out) {
-    int32_t edges = f->start.data[side + 1] - f->start.data[side], from, to, i, j;
-    double all, before = 0, step;
-    gproji_side_points(f, side, &from, &to);
-    all = gproji_length_between(f, from, to);
-    step = gproji_length_between(f, from, from + 1);
-    for (i = from, j = 0; j < edges; ++j, out += 3) {
-        const double *p, *q;
-        double at = all * j / edges, t, d[3];
-        while (i + 1 < to && at >= before + step) {
-            before += step, ++i;
-            step = gproji_length_between(f, i, i + 1);
-        }
-        if (f->options.keep_points) i = from + j, at = before;
-        p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
-        t = (at - before) / step;
-        gproji_copy3(t > 1 - 1e-9 ? q : p, out);
-        if (t <= 1e-9 || t > 1 - 1e-9) continue; /* a point of the curve */
-        gproji_sub3(q, p, d);
-        gproji_add_scaled3(t, d, out);
+    for (side = 0; side < f->sides; ++side) {
+        if (edges[side] < 1)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
+        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
+            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "the sides up to side %d have more than %d edges; use longer edges", side,
+                               (int32_t)GPROJI_FILL_EDGES);
     }
+    if (sum % 2) { /* names the side that would bear it best */
+        side = gproji_best_change(f, edges, &change);
+        return gproji_fail(
+            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
+            "of %d%s",
+            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+    }
+    if (sum < 4)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
+                           "the sides have %d edges together; quads need at least 4", sum);
+    f->boundary = sum;
+    for (side = 0; side < f->sides; ++side) edges[side] += f->start.data[side];
+    return GPROJ_OK;
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
@@ -18969,23 +18890,40 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
     return true;
 }
 
-/* The side of the edge that begins at a vertex of the boundary. */
+/* The side with the edge that begins at a boundary vertex. */
 GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
     int32_t side = 0;
     while (f->start.data[side + 1] <= vertex) ++side;
     return side;
 }
 
-/* The vertices of the boundary, and the first patch: all of it. */
+/* Places the boundary's vertices and makes the first outline, which follows it all. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
-    gproj_code code = gproji_check_fill_options(f);
-    int32_t side, i, j;
-    if (!code) code = gproji_find_corners(f);
-    if (!code) code = gproji_divide_sides(f);
-    if (code) return code;
+    int32_t side, from, to, i, j;
     f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
     if (!f->border) return gproji_fail_memory(f->error);
-    for (side = 0; side < f->sides; ++side) gproji_divide_side(f, side, f->border + 3 * (size_t)f->start.data[side]);
+    for (side = 0; side < f->sides; ++side) {
+        int32_t edges = f->start.data[side + 1] - f->start.data[side];
+        double *out = f->border + 3 * (size_t)f->start.data[side], all, before = 0, step, d[3];
+        gproji_side_points(f, side, &from, &to);
+        all = gproji_length_between(f, from, to);
+        step = gproji_length_between(f, from, from + 1);
+        for (i = from, j = 0; j < edges; ++j, out += 3) {
+            const double *p, *q;
+            double at = all * j / edges, t; /* equal lengths along the side */
+            while (i + 1 < to && at >= before + step) {
+                before += step, ++i;
+                step = gproji_length_between(f, i, i + 1);
+            }
+            if (f->options.keep_points) i = from + j, at = before;
+            p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
+            t = (at - before) / step;
+            gproji_copy3(t > 1 - 1e-9 ? q : p, out);
+            if (t <= 1e-9 || t > 1 - 1e-9) continue; /* exactly a point */
+            gproji_sub3(q, p, d);
+            gproji_add_scaled3(t, d, out);
+        }
+    }
     for (side = 0, i = 0; i < f->boundary; ++i) {
         double d[3];
         bool corner = i == f->start.data[side];
@@ -18996,6 +18934,7 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
             return gproji_fail_memory(f->error);
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    /* A simple curve may have chords that cross. */
     if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     i = gproji_side_of(f, i), j = gproji_side_of(f, j);
@@ -19005,19 +18944,19 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
 
 /* -- cuts -- */
 
-/* A cut through a polygon of the filling: from its place i to its place j. */
+/* A cut through a patch outline, from its place i to its place j. */
 typedef struct gproji_cut_line {
     int32_t i, j;
     int32_t edges;
     double cost;
 } gproji_cut_line;
 
-/* A patch: `count` entries of f->polygon. */
+/* A patch's outline: `count` entries in f->polygon. */
 typedef struct gproji_outline {
     const gproji_filling *f;
     int32_t *entry;
     int32_t count;
-    double edge; /* mean edge length */
+    double edge; /* mean edge length, for cuts */
 } gproji_outline;
 
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
@@ -19033,89 +18972,75 @@ GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t 
     return n;
 }
 
-/* How far the angle is from 1, 2 or 3 right angles, as a part of it, squared. */
-GPROJI_INTERNAL double gproji_angle_cost(double angle) {
-    int32_t n = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
-    double off = angle / n / GPROJI_RIGHT - 1;
-    return off * off;
+/* Predicts how good the part from place i to place j becomes when closed by a cut, whose ends are corners (`first`,
+   `last`) or not. */
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
+                                        bool last) {
+    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
+    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    int32_t strip[GPROJI_PATCH_SIDES], least, off, reflex = 0;
+    if (j - i + edges < 4) return HUGE_VAL;
+    /* 1. A part that is cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
+    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
+    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
+    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
+    /* 2. A patch, by the lengths it gets; side 0 is before the first corner and after the last. */
+    for (k = i; n >= 2 && k < j; ++k) {
+        side += k == i ? first : o->entry[k % o->count] & 1;
+        ++length[side % n];
+    }
+    if (n >= 2) length[(side + last) % n] += edges;
+    least = length[0];
+    for (k = 1; k < n; ++k) least = gproji_min(least, length[k]);
+    if (n == 4) { /* a grid costs nothing */
+        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
+        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
+    }
+    if (n % 2 && n > 1 && gproji_find_strips(n, length, strip)) { /* one irregular vertex */
+        for (k = 0; k < n && strip[k] > 0; ++k) continue;
+        if (k == n) return 0.2;
+    }
+    return cost[n] + (least < 3 ? 0.6 : 0); /* short sides leave no room for irregular vertices */
 }
 
-/* Is the cut inside, and how near does it pass other vertices? Its cost for that, or infinity. */
-GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i, int32_t j) {
+/* Tries cuts from place i to place j, over edge numbers with the right parity; a cheaper one replaces `best`. */
+GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
     const double *xy = o->f->flat;
-    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), k;
-    double length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end, k;
+    double at[2][2], length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge, cost = 0;
+    bool corner[2][2];
+    /* 1. Angles at both ends, in the part from i to j and in the other, best at multiples of a right angle. */
+    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b);
+    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
+    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
+    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
+    for (end = 0; end < 4; ++end) {
+        double angle = at[end / 2][end % 2], off;
+        if (!(angle > 0.1)) return;
+        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
+        k = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
+        off = angle / k / GPROJI_RIGHT - 1;
+        cost += off * off;
+    }
+    cost += 0.02 * length / o->edge;
+    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
+    if (cost >= best->cost) return;
+    /* 2. The cut stays inside, and clear of other vertices. */
     for (k = 0; k < o->count; ++k) {
         int32_t p = gproji_outline_vertex(o, k), q = gproji_outline_vertex(o, k + 1);
         double along, off;
         if (p == a || p == b) continue;
-        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return HUGE_VAL;
+        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return;
         along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
                  (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
                 length;
         off = fabs(gproji_turn2(xy, a, b, p)) / length;
         if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
     }
-    return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
-}
-
-/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short
-   sides leave no room for others. */
-GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
-    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
-    int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
-    for (i = 1; i < sides; ++i) least = gproji_min(least, length[i]);
-    if (sides == 4) {
-        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
-        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
-    }
-    if (sides % 2 && sides > 1 && gproji_find_strips(sides, length, strip)) {
-        for (i = 0; i < sides && strip[i] > 0; ++i) continue;
-        if (i == sides) return 0.2;
-    }
-    return cost[sides] + (least < 3 ? 0.6 : 0);
-}
-
-/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts
-   that are to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
-GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
-                                        bool last) {
-    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
-    int32_t reflex = 0;
-    if (j - i + edges < 4) return HUGE_VAL;
-    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
-    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
-    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
-    if (n < 2) return gproji_sides_cost(n, length);
-    for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
-        side += k == i ? first : o->entry[k % o->count] & 1;
-        ++length[side % n];
-    }
-    length[(side + last) % n] += edges;
-    return gproji_sides_cost(n, length);
-}
-
-/* Costs of cuts from place i to place j, with numbers of edges of the right parity. */
-GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
-    const double *xy = o->f->flat;
-    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end;
-    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0;
-    bool corner[2][2];
-    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b); /* in the part from i to j */
-    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
-    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
-    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
-    for (end = 0; end < 4; ++end) {
-        double angle = at[end / 2][end % 2];
-        if (!(angle > 0.1)) return;
-        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
-        cost += gproji_angle_cost(angle);
-    }
-    cost += 0.02 * length / o->edge;
-    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
-    if (cost >= best->cost) return;
-    cost += gproji_clearance_cost(o, i, j);
+    if (!(nearest > 1e-6 * o->edge)) return;
+    cost += 1 - nearest / (0.7 * o->edge);
     if (!(cost < best->cost)) return;
+    /* 3. Edge numbers: each part needs an even boundary. */
     wanted = (int32_t)(length / o->edge + 0.5);
     for (edges = gproji_max(1, wanted - 3); edges <= wanted + 3; ++edges) {
         double off = log(edges * o->edge / length), all;
@@ -19126,14 +19051,14 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
     }
 }
 
-/* The best cut from a corner that is reflex, or from any where there are more than 6; cost infinite: none. */
+/* Finds the best cut from a reflex corner, or from any if there are more than 6; cost infinite: none. */
 GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     gproji_cut_line best = {0, 0, 0, HUGE_VAL};
     bool many = gproji_outline_corners(o, 0, o->count) > GPROJI_PATCH_SIDES, reflex = false;
     int32_t i, j, pass;
     for (i = 0; i < o->count; ++i) reflex |= (o->entry[i] & 1) && gproji_outline_angle(o, i) > GPROJI_REFLEX;
     if (!reflex && !many) return best;
-    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass)
+    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* other corners only if no reflex one has a cut */
         for (i = 0; i < o->count; ++i) {
             if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
             for (j = 0; j < o->count; ++j) {
@@ -19144,7 +19069,7 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     return best;
 }
 
-/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., forward or backward. */
+/* Appends the outline on one side of a cut: places i to j, then the cut's inner vertices, forward or backward. */
 GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
@@ -19154,7 +19079,7 @@ GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t c
     for (k = 0; k < inner; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
     if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
-    for (end = 0; end < 2; ++end) { /* corners of the part by their angles */
+    for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
         int32_t at = end ? to : from;
         gproji_outline o;
         o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
@@ -19164,25 +19089,94 @@ GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t c
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t count, const gproji_cut_line *cut) {
-    int32_t a = f->polygon.data[start + cut->i] >> 1, b = f->polygon.data[start + cut->j] >> 1, first = f->vertices, k;
-    for (k = 1; k < cut->edges; ++k) { /* from j to i */
-        double t = (double)k / cut->edges;
-        if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
-                             (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. False without memory. */
+GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
+    size_t at;
+    int32_t start, k;
+    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+        gproji_outline o;
+        gproji_cut_line cut;
+        int32_t a, b, first = f->vertices;
+        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+        for (k = 0; k < o.count; ++k)
+            o.edge +=
+                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+        cut = gproji_find_cut(&o);
+        if (!(cut.cost < HUGE_VAL)) continue;
+        a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
+        for (k = 1; k < cut.edges; ++k) { /* from j to i */
+            double t = (double)k / cut.edges;
+            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+                return false;
+        }
+        if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
+            !gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false))
             return false;
+        f->patch.data[at] = -f->patch.data[at];
     }
-    return gproji_add_part(f, start, count, cut->i, cut->j, first, cut->edges - 1, true) &&
-           gproji_add_part(f, start, count, cut->j, cut->i + count, first, cut->edges - 1, false);
+    f->cut_vertices = f->vertices;
+    return true;
 }
 
 /* -- patches -- */
 
-/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are
-   left out; where there are fewer than 2, places in between are taken. `flat`: the bits of those that are flat. */
-GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
-    int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
-    for (; n > GPROJI_PATCH_SIDES; --n) {
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other boundary vertices,
+   or 3 on the curve or a ring along it? `at`: the outline place at the pattern's first corner. Destroys `uses`. */
+GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
+    int32_t i, side, from = at, *uses = patch->uses.data;
+    for (side = 0; side < patch->sides; ++side)
+        for (i = 0; i < patch->edges[side]; ++i, ++at) {
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
+            uses[v] = -1; /* a second visit to the vertex fails */
+        }
+    for (i = 0; i < patch->vertices; ++i)
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
+    return true;
+}
+
+/* Chooses the `variant`-th good pattern, with flat corners under long strips, or else in a ring; at last a ring around
+   one strip. False without memory. */
+GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
+                                           int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
+                                           gproji_pattern *chosen) {
+    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
+    memset(chosen, 0, sizeof *chosen);
+    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
+        gproji_find_patterns(c, sides, ring ? length : inner);
+        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c->pattern[i];
+            gproji_patch patch;
+            bool done;
+            p->ring = ring != 0;
+            for (k = 0; k < sides && !ring; ++k)
+                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
+            done = gproji_build_patch(&patch, f->heap, p, length);
+            if (done && gproji_patch_is_good(&patch, o, place[p->first])) *chosen = *p, ++good;
+            gproji_patch_give(&patch);
+            if (!done) return false;
+        }
+    }
+    if (good > 0) return true; /* the last good one if there are fewer than wanted */
+    for (i = 0; i < sides; ++i) sum += length[i];
+    chosen->sides = sides;
+    chosen->edges = chosen->rows = 1;
+    chosen->edge[0] = sum / 2 - 1;
+    chosen->bare = chosen->ring = true;
+    return true;
+}
+
+/* Fills an outline that is not cut. False without memory. */
+GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
+    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat = 0, sides, i, k, n, *number;
+    gproji_pattern p;
+    gproji_patch patch;
+    double x = 0, y = 0;
+    size_t q;
+    bool done;
+    /* 1. At most 6 corners, without those that turn least; at least 2, with places between. */
+    for (n = gproji_outline_corners(o, 0, o->count); n > GPROJI_PATCH_SIDES; --n) {
         int32_t flattest = -1;
         for (i = 0; i < o->count; ++i)
             if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
@@ -19192,148 +19186,33 @@ GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GP
     for (i = 0; n < 2 && i < o->count; ++i)
         if (o->entry[i] & 1) break;
     for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
-    for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
+    for (sides = 0, i = 0; i < o->count; ++i) {
         if (!(o->entry[i] & 1)) continue;
-        if (o->f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
-        place[k++] = i;
+        if (f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) flat |= 1 << sides;
+        place[sides++] = i;
     }
-    return k;
-}
-
-/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
-   boundary, or 3 where these are on the curve or a ring along it? `at`: the place of the pattern's first corner.
-   Destroys `uses`. */
-GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
-    int32_t i, side, from = at, *uses = patch->uses.data;
-    for (side = 0; side < patch->sides; ++side)
-        for (i = 0; i < patch->edges[side]; ++i, ++at) {
-            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
-            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
-            uses[v] = -1; /* twice on the boundary is not good */
-        }
-    for (i = 0; i < patch->vertices; ++i)
-        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
-    return true;
-}
-
-/* Copies a finished patch into the filling. */
-GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *o, int32_t from, gproji_patch *patch) {
-    int32_t *number = patch->uses.data, i, n = (int32_t)patch->loop.count;
-    size_t q;
-    double x = 0, y = 0;
-    for (i = 0; i < patch->vertices; ++i) number[i] = -1;
-    for (i = 0; i < n; ++i) {
-        int32_t v = gproji_outline_vertex(o, from + i);
-        number[patch->loop.data[i]] = v;
+    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
+    /* 2. The pattern. */
+    if (!gproji_choose_pattern(f, c, o, sides, place, length, flat, &p)) return false;
+    done = gproji_build_patch(&patch, f->heap, &p, length);
+    /* 3. Global numbers: from the outline along the boundary, new ones inside, at the boundary's mean as yet. */
+    number = patch.uses.data, n = (int32_t)patch.loop.count;
+    for (i = 0; done && i < patch.vertices; ++i) number[i] = -1;
+    for (i = 0; done && i < n; ++i) {
+        int32_t v = gproji_outline_vertex(o, place[p.first] + i);
+        number[patch.loop.data[i]] = v;
         x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
     }
-    for (i = 0; i < patch->vertices; ++i) {
+    for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
         number[i] = f->vertices;
-        if (!gproji_add_flat(f, x, y)) return false;
+        done = gproji_add_flat(f, x, y);
     }
-    for (q = 0; q < patch->quad.count; ++q)
-        if (!gproji_ints_add(f->heap, &f->quad, number[patch->quad.data[q]])) return false;
-    return true;
-}
-
-/* Tries a pattern. 1: the patch is built and good; 0: it is not; -1: no memory. Give the patch back in any case. */
-GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_outline *o,
-                                           const int32_t *place, const gproji_pattern *p, const int32_t *length) {
-    int32_t turned[GPROJI_PATCH_SIDES], i;
-    for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
-    if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
-    return gproji_patch_is_good(patch, o, place[p->first]);
-}
-
-/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a
-   ring; at last a ring around one strip. -1: no memory. */
-GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
-                                              int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
-                                              gproji_pattern *chosen) {
-    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
-    memset(chosen, 0, sizeof *chosen);
-    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
-        gproji_find_patterns(c, sides, ring ? length : inner);
-        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
-            gproji_pattern *p = &c->pattern[i];
-            gproji_patch patch;
-            int32_t outcome;
-            p->ring = ring != 0;
-            for (k = 0; k < sides && !ring; ++k)
-                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
-            outcome = gproji_try_pattern(f, &patch, o, place, p, length);
-            gproji_patch_give(&patch);
-            if (outcome < 0) return -1;
-            if (outcome > 0) *chosen = *p, ++good;
-        }
-    }
-    if (good > 0) return 1;
-    for (i = 0; i < sides; ++i) sum += length[i];
-    chosen->sides = sides;
-    chosen->edges = chosen->rows = 1;
-    chosen->edge[0] = sum / 2 - 1;
-    chosen->bare = chosen->ring = true;
-    return 1;
-}
-
-GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
-    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat, i;
-    int32_t sides = gproji_patch_corners(o, place, &flat);
-    gproji_pattern p;
-    gproji_patch patch;
-    bool done;
-    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
-    if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
-    done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
+    for (q = 0; done && q < patch.quad.count; ++q)
+        done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
     gproji_patch_give(&patch);
     ++f->leaves;
     return done;
-}
-
-/* The rings wanted, and what they leave as the first patch. Its outline is near the boundary as yet. */
-GPROJI_INTERNAL bool gproji_add_rings(gproji_filling *f) {
-    int32_t n = f->boundary, ring, i;
-    for (ring = 1; ring <= f->options.rings; ++ring)
-        for (i = 0; i < n; ++i) {
-            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
-            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
-            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
-            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
-            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
-                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
-                return false;
-        }
-    f->curve_vertices = f->vertices;
-    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
-    return true;
-}
-
-/* Cuts the outline into patches, then fills them: vertices of cuts come before those inside of patches. */
-GPROJI_INTERNAL gproj_code gproji_fill_patches(gproji_filling *f, gproji_candidates *c) {
-    size_t at;
-    int32_t stage, start, k;
-    for (stage = 0; stage < 2; ++stage) {
-        for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-            gproji_outline o;
-            gproji_cut_line cut;
-            if (stage == 1 && f->patch.data[at] < 0) continue; /* it has been cut */
-            o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
-            for (k = 0; k < o.count; ++k)
-                o.edge +=
-                    gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
-            if (stage == 1) {
-                if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
-                continue;
-            }
-            cut = gproji_find_cut(&o);
-            if (!(cut.cost < HUGE_VAL)) continue;
-            if (!gproji_make_cut(f, start, o.count, &cut)) return gproji_fail_memory(f->error);
-            f->patch.data[at] = -f->patch.data[at];
-        }
-        if (stage == 0) f->cut_vertices = f->vertices;
-    }
-    return GPROJ_OK;
 }
 
 /* -- positions -- */
@@ -19344,10 +19223,10 @@ typedef struct gproji_pairs {
     gproj_cholesky *cholesky;
     int32_t unknowns;
     int64_t count;
-    int32_t *pair;  /* 2 * count: unknowns, negative: there is none */
-    int64_t *start; /* unknowns + 1 */
+    int32_t *pair;  /* 2 * count: unknowns, negative if fixed */
+    int64_t *start; /* unknowns + 2: where columns begin */
     int32_t *row;
-    int64_t *place; /* count: of each pair in `row` and `value`; -1: nowhere */
+    int64_t *place; /* count: each pair's entry in `row` and `value`, or -1 */
     double *value;
 } gproji_pairs;
 
@@ -19392,39 +19271,35 @@ GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
 GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
 GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
 
-/* The Laplace equation: each vertex from `fixed` on is the mean of its neighbours. `field` has `fields` numbers a
-   vertex; `side` first the right-hand sides, then the solutions, one after the other. */
-GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pairs *m, int32_t fixed, int32_t fields,
-                                            const double *field, double *side) {
-    int32_t n = (int32_t)f->quad.count, i, k, end;
-    for (i = 0; i < n; ++i) {
-        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m->pair + 6 * (size_t)i;
+/* Solves Laplace's equation: each vertex from `fixed` on gets its neighbours' mean. `field`: `fields` numbers a
+   vertex. */
+GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
+    int32_t unknowns = f->vertices - fixed, n = (int32_t)f->quad.count, i, k, end;
+    gproji_pairs m;
+    double *side = NULL;
+    bool done;
+    if (unknowns == 0) return GPROJ_OK;
+    /* 1. An edge counts once from each quad: 1 on the diagonal, -1 beside, fixed ends on the right-hand side. */
+    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)n);
+    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
+    done = side != NULL;
+    for (i = 0; done && i < n; ++i) {
+        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m.pair + 6 * (size_t)i;
         pair[0] = pair[1] = pair[4] = a - fixed;
         pair[2] = pair[3] = pair[5] = b - fixed;
         for (end = 0; end < 2; ++end)
             for (k = 0; k < fields; ++k) {
                 int32_t inner = end ? a : b, outer = end ? b : a;
                 if (inner >= fixed && outer < fixed)
-                    side[(size_t)k * (size_t)m->unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
+                    side[(size_t)k * (size_t)unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
             }
     }
-    if (!gproji_pairs_analyse(m)) return false;
-    for (i = 0; i < 3 * n; ++i)
-        if (m->place[i] >= 0) m->value[m->place[i]] = i % 3 == 2 ? -1 : 1;
-    return gproj_cholesky_factor(m->cholesky, m->value) == GPROJ_FACTORED &&
-           gproj_cholesky_solve(m->cholesky, fields, side, side) == GPROJ_OK;
-}
-
-/* Sets the fields of the vertices from `fixed` on. */
-GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
-    int32_t unknowns = f->vertices - fixed, i, k;
-    gproji_pairs m;
-    double *side = NULL;
-    bool done;
-    if (unknowns == 0) return GPROJ_OK;
-    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)f->quad.count);
-    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
-    done = side && gproji_harmonic_system(f, &m, fixed, fields, field, side);
+    done = done && gproji_pairs_analyse(&m);
+    for (i = 0; done && i < 3 * n; ++i)
+        if (m.place[i] >= 0) m.value[m.place[i]] = i % 3 == 2 ? -1 : 1;
+    /* 2. One solve for all fields. */
+    done = done && gproj_cholesky_factor(m.cholesky, m.value) == GPROJ_FACTORED &&
+           gproj_cholesky_solve(m.cholesky, fields, side, side) == GPROJ_OK;
     for (i = 0; done && i < unknowns; ++i)
         for (k = 0; k < fields; ++k)
             field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];
@@ -19432,26 +19307,26 @@ GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t f
     return done ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
-/* The distortion of the mesh in the plane. For a corner at p with neighbours q and r of a quad of wanted edge s, with
+/* Shape distortion in the plane. For a corner at p with neighbours q and r in a quad with wanted edge s, with
    a = (q - p) / s, b = (r - p) / s and D = det(a, b):
        (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X),  X = (D + sqrt(D^2 + epsilon^2)) / 2,
-   least for a square of edge s and, where epsilon = 0, infinite at D = 0. */
+   least for a square with edge s and, for epsilon = 0, infinite at D = 0. */
 typedef struct gproji_untangling {
     gproji_filling *f;
     gproji_pairs m;
-    double *edge;     /* of each quad: s */
-    double *gradient; /* 2 a vertex that moves */
+    double *edge;     /* each quad's s */
+    double *gradient; /* 2 for each vertex that moves */
     double *step;
     double *start; /* flat positions before a step */
     double epsilon;
-    double least; /* D of the worst corner, at the last evaluation */
+    double least; /* the worst corner's D, at the last evaluation */
     bool failed;  /* no memory to factor */
 } gproji_untangling;
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
-/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X)
-   with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
+/* Computes a corner's distortion at z = (a, b), its gradient and the convex part of its Hessian; no derivatives if
+   `gradient` is NULL. */
 GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
                                                 double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
@@ -19463,8 +19338,9 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
     if (!gradient) return value;
     bend = 1 / root; /* X' / X */
     slope = weight * d / x - value * bend;
-    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0];
+    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0]; /* dD/dz */
     for (i = 0; i < 4; ++i) gradient[i] = z[i] / x + slope * turn[i];
+    /* The Hessian of y'y / (2 X) with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)), is positive definite. */
     for (i = 0; i < 4; ++i)
         for (j = 0; j < 4; ++j) {
             double across = square * bend * bend + weight * ((1 - bend * d) * (1 - bend * d) + bend * bend);
@@ -19482,7 +19358,7 @@ GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t cor
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
 }
 
-/* The sum over all corners, and the worst D. */
+/* Sums the distortion over all corners, and finds the worst D. */
 GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
     int32_t n = (int32_t)u->f->quad.count, c;
     double sum = 0, z[4];
@@ -19495,11 +19371,12 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
     return sum;
 }
 
-/* Adds one quad's gradient and Hessian: 8 numbers, x and y of its vertices. */
+/* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
 GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
-    for (corner = 0; corner < 4; ++corner) { /* z = (q, r - p, p) / s: each of them in two places */
+    for (corner = 0; corner < 4;
+         ++corner) { /* z = (q, r) / s - (p, p) / s: each entry adds to q or r and takes from p */
         int32_t p = corner, ends[2], a, b;
         ends[0] = (corner + 1) % 4, ends[1] = (corner + 3) % 4;
         gproji_corner_edges(u, 4 * quad + corner, z);
@@ -19525,7 +19402,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     }
 }
 
-/* A step of Newton's method, shortened until the distortion is less. False where it gains less than this part of it. */
+/* Takes a Newton step, halved until it gains enough. False if it gains less than `part` of the distortion. */
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
@@ -19541,107 +19418,67 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     before = gproji_distortion(u);
     slope = gproji_dot(u->gradient, u->step, n);
     memcpy(u->start, moving, n * sizeof *moving);
-    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
+    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) { /* Armijo's rule */
         for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
         if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
     }
     memcpy(moving, u->start, n * sizeof *moving);
-    gproji_distortion(u);
+    gproji_distortion(u); /* for `least` */
     return false;
 }
 
-/* The wanted edge of each quad: that of the boundary, harmonic inside. */
-GPROJI_INTERNAL gproj_code gproji_find_sizes(gproji_untangling *u) {
-    gproji_filling *f = u->f;
-    int32_t i, quads = (int32_t)f->quad.count / 4;
-    double *size = u->start; /* has room for it */
-    gproj_code code;
-    for (i = 0; i < f->boundary; ++i)
-        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
-                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
-    code = gproji_fill_harmonically(f, f->boundary, 1, size);
-    for (i = 0; i < quads && !code; ++i) {
-        const int32_t *v = f->quad.data + 4 * (size_t)i;
-        u->edge[i] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
-    }
-    return code;
-}
-
-GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling *u) {
-    int32_t quads = (int32_t)f->quad.count / 4, q, i, j, n;
-    gproj_code code = gproji_find_sizes(u);
-    if (code) return code;
-    for (q = 0, n = 0; q < quads; ++q)
-        for (i = 0; i < 8; ++i)
-            for (j = 0; j <= i; ++j, ++n) {
-                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
-                u->m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
-                u->m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
-            }
-    if (!gproji_pairs_analyse(&u->m)) return gproji_fail_memory(f->error);
-    u->epsilon = 1;
-    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
-        if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
-        if (u->failed) return gproji_fail_memory(f->error);
-        if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
-        u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
-    }
-    return GPROJ_OK;
-}
-
-/* Do all corners of all quads turn left? */
-GPROJI_INTERNAL bool gproji_is_untangled(const gproji_filling *f) {
-    int32_t n = (int32_t)f->quad.count, i;
-    for (i = 0; i < n; ++i)
-        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
-                           f->quad.data[gproji_quad_previous(i)]) > 0))
-            return false;
-    return true;
-}
-
+/* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
 GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
-    int32_t unknowns = 2 * (f->vertices - f->boundary);
+    int32_t unknowns = 2 * (f->vertices - f->boundary), quads = (int32_t)f->quad.count / 4, q, i, j, n;
     gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
     gproji_untangling u;
+    double *size;
+    if (code || unknowns == 0) return code;
     memset(&u, 0, sizeof u);
     u.f = f;
-    if (code || unknowns == 0) return code;
-    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)(f->quad.count / 4))) {
-        u.edge = (double *)gproji_pool_take(&u.m.pool, (int64_t)f->quad.count / 4, sizeof *u.edge);
+    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)quads)) {
+        u.edge = (double *)gproji_pool_take(&u.m.pool, quads, sizeof *u.edge);
         u.gradient = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.gradient);
         u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
         u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
     }
-    code = u.edge && u.gradient && u.step && u.start ? gproji_untangle(f, &u) : gproji_fail_memory(f->error);
+    if (!(u.edge && u.gradient && u.step && u.start)) code = gproji_fail_memory(f->error);
+    /* 1. Wanted edges: the boundary's own, harmonic inside. */
+    size = u.start; /* still free, and large enough */
+    for (i = 0; !code && i < f->boundary; ++i)
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
+    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, size);
+    for (q = 0; !code && q < quads; ++q) {
+        const int32_t *v = f->quad.data + 4 * (size_t)q;
+        u.edge[q] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
+    }
+    /* 2. The Hessian's pattern. */
+    for (q = 0, n = 0; !code && q < quads; ++q)
+        for (i = 0; i < 8; ++i)
+            for (j = 0; j <= i; ++j, ++n) {
+                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
+                u.m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
+                u.m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
+            }
+    if (!code && !gproji_pairs_analyse(&u.m)) code = gproji_fail_memory(f->error);
+    /* 3. Along the minima for ever smaller epsilon, to 0 as soon as no corner is near turning over. */
+    u.epsilon = 1;
+    for (i = 0; !code && i < GPROJI_UNTANGLE_STEPS; ++i) {
+        if (gproji_untangle_step(&u, u.epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u.failed) code = gproji_fail_memory(f->error);
+        if (u.epsilon == 0 || (u.least <= 0 && u.epsilon < 1e-6)) break;
+        u.epsilon = u.least > 10 * u.epsilon ? 0 : 0.3 * u.epsilon;
+    }
     gproji_pairs_give(&u.m);
     return code;
 }
 
 /* -- the mesh -- */
 
-/* Positions in space: the curve at the boundary; inside those of the plane, with harmonic heights. */
-GPROJI_INTERNAL gproj_code gproji_lift_vertices(gproji_filling *f, double *height, double *position) {
-    int32_t v;
-    gproj_code code;
-    for (v = 0; v < f->boundary; ++v) {
-        double d[3];
-        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
-        height[v] = gproji_dot3(d, f->normal);
-    }
-    code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
-    for (v = f->boundary; v < f->vertices && !code; ++v) {
-        double *out = position + 3 * (size_t)v;
-        gproji_copy3(f->points, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
-        gproji_add_scaled3(height[v], f->normal, out);
-    }
-    return code;
-}
-
+/* Makes the mesh: positions in space, faces, and the sides as polylines. */
 GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
-    int32_t faces = (int32_t)f->quad.count / 4, side, i;
+    int32_t faces = (int32_t)f->quad.count / 4, side, i, v;
     gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
     gproji_soup soup;
     gproji_pool pool;
@@ -19659,7 +19496,22 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
             taken = gproji_ints_add(f->heap, &line, i % f->boundary);
         taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
     }
-    code = taken ? gproji_lift_vertices(f, height, position) : gproji_fail_memory(f->error);
+    code = taken ? GPROJ_OK : gproji_fail_memory(f->error);
+    /* Heights over the plane: the curve's, harmonic inside. */
+    for (v = 0; !code && v < f->boundary; ++v) {
+        double d[3];
+        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
+        height[v] = gproji_dot3(d, f->normal);
+    }
+    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
+    if (!code) memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    for (v = f->boundary; !code && v < f->vertices; ++v) {
+        double *out = position + 3 * (size_t)v;
+        gproji_copy3(f->points, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(height[v], f->normal, out);
+    }
     if (!code) {
         gproji_fill(degree, faces, 4);
         soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
@@ -19693,21 +19545,11 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
 }
 
-/* The largest valence inside. */
-GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
-    int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
-    size_t i;
-    if (!count) return gproji_fail_memory(f->error);
-    for (*most = 0, i = 0; i < f->quad.count; ++i)
-        if (f->quad.data[i] >= f->boundary) *most = gproji_max(*most, ++count[f->quad.data[i]]);
-    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
-    return GPROJ_OK;
-}
-
-/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the
-   right way up. Sets whether it is good. */
+/* Fills the outline in the options' variant. Sets whether it is good: inner valences up to `valence`, and no quad turned
+   over. */
 GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
-    int32_t most = 0;
+    int32_t n = f->boundary, ring, start, i, most = 0, *count;
+    size_t at;
     gproj_code code;
     f->polygon.count = (size_t)f->boundary;
     f->patch.count = 1;
@@ -19716,40 +19558,61 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidat
     f->vertices = f->boundary;
     f->leaves = 0;
     *good = false;
-    code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
-    if (!code) code = gproji_find_valence(f, &most);
-    if (code || most > valence) return code;
+    /* 1. Rings, near the boundary as yet, and the outline inside them. */
+    for (ring = 1; ring <= f->options.rings; ++ring)
+        for (i = 0; i < n; ++i) {
+            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
+                return gproji_fail_memory(f->error);
+        }
+    f->curve_vertices = f->vertices;
+    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
+    /* 2. All cuts before the first patch: vertices on cuts are numbered before those inside. */
+    if (!gproji_cut_outlines(f)) return gproji_fail_memory(f->error);
+    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+        gproji_outline o;
+        if (f->patch.data[at] < 0) continue;
+        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+        if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
+    }
+    /* 3. Valences inside, before the work on positions. */
+    count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    if (!count) return gproji_fail_memory(f->error);
+    for (at = 0; at < f->quad.count; ++at)
+        if (f->quad.data[at] >= f->boundary) most = gproji_max(most, ++count[f->quad.data[at]]);
+    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    if (most > valence) return GPROJ_OK;
+    /* 4. Positions: good if all corners turn left. */
     code = gproji_place_vertices(f);
-    *good = gproji_is_untangled(f);
+    n = (int32_t)f->quad.count;
+    for (i = 0; i < n; ++i)
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                           f->quad.data[gproji_quad_previous(i)]) > 0))
+            break;
+    *good = i == n;
     return code;
 }
 
-GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candidates *c) {
+/* Tries variants from the wanted one on, with valences up to 5, then 6, then any. */
+GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
     static const int32_t valence[3] = {5, 6, INT32_MAX};
+    gproji_candidates *c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
     int32_t variant = f->options.variant, pass, tries;
+    bool good = false;
+    gproj_code code = c ? GPROJ_OK : gproji_fail_memory(f->error);
     for (pass = 0; pass < 3; ++pass)
-        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries; ++tries) {
-            bool good;
-            gproj_code code;
+        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries && !code && !good; ++tries) {
             f->options.variant = variant + tries;
             code = gproji_try_filling(f, c, valence[pass], &good);
-            if (code || good) return code;
         }
+    gproji_give(f->heap, c, 1, sizeof *c);
+    if (code || good) return code;
     return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                        "no filling without a quad turned over was found; divide the sides finer or mark other corners");
-}
-
-GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
-    gproji_candidates *c;
-    gproj_code code = gproji_check_curve(f);
-    if (!code) code = gproji_divide_curve(f);
-    if (code) return code;
-    c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
-    code = c ? gproji_fill_outline(f, c) : gproji_fail_memory(f->error);
-    gproji_give(f->heap, c, 1, sizeof *c);
-    if (!code) code = gproji_build_filling(f, object);
-    if (!code) gproji_describe_filling(f, &object->mesh, info);
-    return code;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
@@ -19764,7 +19627,13 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
-    code = gproji_fill_curve(&f, object, &found);
+    code = gproji_check_curve(&f);
+    if (!code) code = gproji_find_corners(&f);
+    if (!code) code = gproji_divide_sides(&f);
+    if (!code) code = gproji_divide_curve(&f);
+    if (!code) code = gproji_fill_outline(&f);
+    if (!code) code = gproji_build_filling(&f, object);
+    if (!code) gproji_describe_filling(&f, &object->mesh, &found);
     gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
     gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
     gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
