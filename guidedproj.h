@@ -15738,13 +15738,13 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 }
 
 /* ============================================================================================================
-   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh,
+   >>edit   Changes to a mesh's combinatorics. Uses platform, memory, error, vector, mesh,
    surface (polygons).
 
    Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them
-   Euler operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and
-   triangulations are sequences of them; those that may be refused midway work with a copy to go back to.
-   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into
+   Euler operators. Checks come first, then room is made, then comes a part that cannot fail. Strips and triangulations
+   are sequences; those that may be refused midway work with a copy to go back to.
+   Invariants: those in >>mesh for the elements that are left, except the order of edges. vertex_into and edge_into
    lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
@@ -15754,35 +15754,35 @@ typedef enum gproji_edit_kind {
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
 
-/* How many integers an element has: each is an array below. */
+/* Integers in each element: every one is an array below. */
 static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
 
-/* The state of an edit: what a copy to go back to must have. */
+/* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
     int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
-    double *position;                  /* 3 * room of vertices */
+    double *position;                  /* 3 * room for vertices */
     int32_t polyline_count;
     int32_t polyline_room;
     int32_t *polyline_start;  /* polyline_count + 1 */
-    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for what they were merged into */
+    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for those they were merged into */
 
     int32_t *vertex_halfedge;
-    int32_t *vertex_into; /* itself, or what it was merged into */
+    int32_t *vertex_into; /* itself, or the vertex it was merged into */
     int32_t *vertex_mark; /* the last stamp that met it */
-    int32_t *on_polyline; /* is it a vertex of a polyline? */
+    int32_t *on_polyline; /* does a polyline contain it? */
     int32_t *next, *prev, *origin, *face;
-    int32_t *edge_into; /* itself, what it was merged into, or -1: collapsed */
+    int32_t *edge_into; /* itself, the edge it was merged into, or -1: collapsed */
     int32_t *face_halfedge, *face_degree, *face_parent;
     int32_t *face_mark;
 } gproji_edit_store;
 
-/* The owner of a gproj_edit. */
+/* The object around a gproj_edit. */
 typedef struct gproji_edit_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_edit edit;
-    gproj_mesh view; /* the same arrays for the functions of >>mesh that go round a vertex or a face */
+    gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
     int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
     int32_t number_count[GPROJI_EDIT_KINDS];
@@ -15791,8 +15791,11 @@ typedef struct gproji_edit_object {
 
 /* -- memory -- */
 
-/* The arrays within the blocks. */
-GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
+/* Finds the arrays within their blocks, and shows them in the public struct and in the view. */
+GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
+    gproji_edit_store *s = &object->now;
+    gproj_edit *edit = &object->edit;
+    gproj_mesh *view = &object->view;
     size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
            faces = (size_t)s->room[GPROJI_EDIT_FACE];
     s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX];
@@ -15808,14 +15811,6 @@ GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
     s->face_degree = s->face_halfedge + faces;
     s->face_parent = s->face_degree + faces;
     s->face_mark = s->face_parent + faces;
-}
-
-/* Shows the arrays in the public struct and in the view. */
-GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
-    gproji_edit_store *s = &object->now;
-    gproj_edit *edit = &object->edit;
-    gproj_mesh *view = &object->view;
-    gproji_edit_point(s);
     edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
     edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
     edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
@@ -15842,7 +15837,7 @@ GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
     gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
 }
 
-/* Takes the arrays for the counts and rooms of a store; after a failure what there is can be given back. */
+/* Takes the blocks for a store's counts and rooms; after a failure those that were taken can be given back. */
 GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     bool complete = true;
     int32_t kind;
@@ -15854,12 +15849,10 @@ GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
     s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
     s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
-    if (!complete || !s->position || !s->polyline_start || !s->polyline_vertex) return false;
-    gproji_edit_point(s);
-    return true;
+    return complete && s->position && s->polyline_start && s->polyline_vertex;
 }
 
-/* A copy to go back to; false when there is no memory. */
+/* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
     const gproji_edit_store *s = &object->now;
     int32_t kind;
@@ -15877,7 +15870,7 @@ GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_st
     return true;
 }
 
-/* The end of what began with gproji_edit_save: back to the copy after an error. Returns the error. */
+/* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
 GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
     gproji_edit_give(&object->heap, code ? &object->now : copy);
     if (code) object->now = *copy;
@@ -15885,63 +15878,46 @@ GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji
     return code;
 }
 
-/* Makes room for `more` elements of a kind, at least doubling it. */
-GPROJI_INTERNAL bool gproji_edit_grow(gproji_edit_object *object, int32_t kind, int32_t more) {
-    gproji_edit_store *s = &object->now;
-    int32_t rows = gproji_edit_rows[kind], old_room = s->room[kind], room, r, *block;
-    int32_t needed = s->count[kind] + more;
-    double *position = NULL;
-    if (needed <= old_room) return true;
-    room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old_room) : needed;
-    block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, (size_t)rows * sizeof(int32_t));
-    if (!block) return false;
-    if (kind == GPROJI_EDIT_VERTEX) {
-        position =
-            (double *)gproji_retake(&object->heap, s->position, (size_t)old_room, (size_t)room, 3 * sizeof(double));
-        if (!position) {
-            gproji_give(&object->heap, block, (size_t)room, (size_t)rows * sizeof(int32_t));
-            return false;
-        }
-        s->position = position;
-    }
-    for (r = 0; r < rows; ++r)
-        memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old_room,
-               (size_t)s->count[kind] * sizeof(int32_t));
-    gproji_give(&object->heap, s->block[kind], (size_t)old_room, (size_t)rows * sizeof(int32_t));
-    s->block[kind] = block;
-    s->room[kind] = room;
-    gproji_edit_publish(object);
-    return true;
-}
-
-/* Makes room for new elements, so that those who add them cannot fail. */
+/* Makes room for new elements, so that the operators cannot fail. */
 GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
                                                int64_t faces, gproj_error *error) {
-    const int32_t *count = object->now.count;
-    if (count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
-        count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2) {
+    gproji_edit_store *s = &object->now;
+    int64_t more[GPROJI_EDIT_KINDS];
+    int32_t kind, r;
+    if (s->count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
+        s->count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    }
-    if (!gproji_edit_grow(object, GPROJI_EDIT_VERTEX, (int32_t)vertices) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_HALFEDGE, (int32_t)(2 * edges)) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_EDGE, (int32_t)edges) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_FACE, (int32_t)faces)) {
-        return gproji_fail_memory(error);
+    more[GPROJI_EDIT_VERTEX] = vertices, more[GPROJI_EDIT_HALFEDGE] = 2 * edges;
+    more[GPROJI_EDIT_EDGE] = edges, more[GPROJI_EDIT_FACE] = faces;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room, *block;
+        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        if (needed <= old) continue;
+        room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old) : needed; /* doubles: n additions cost O(n) */
+        block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, size);
+        if (block && kind == GPROJI_EDIT_VERTEX) {
+            double *position =
+                (double *)gproji_retake(&object->heap, s->position, (size_t)old, (size_t)room, 3 * sizeof(double));
+            if (position) s->position = position;
+            if (!position) gproji_give(&object->heap, block, (size_t)room, size), block = NULL;
+        }
+        if (!block) return gproji_fail_memory(error);
+        for (r = 0; r < gproji_edit_rows[kind]; ++r)
+            memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old,
+                   (size_t)s->count[kind] * sizeof(int32_t));
+        gproji_give(&object->heap, s->block[kind], (size_t)old, size);
+        s->block[kind] = block;
+        s->room[kind] = room;
+        gproji_edit_publish(object);
     }
     return GPROJ_OK;
 }
 
 /* -- elements -- */
 
-GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
-    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
-    s->vertex_into[v] = v;
-    return v;
-}
-
-/* Its half-edges are 2e and 2e + 1. */
+/* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     int32_t e = s->count[GPROJI_EDIT_EDGE]++;
     s->count[GPROJI_EDIT_HALFEDGE] += 2;
@@ -15949,14 +15925,7 @@ GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     return e;
 }
 
-/* A part of face `whole`. */
-GPROJI_INTERNAL int32_t gproji_edit_add_face(gproji_edit_store *s, int32_t whole) {
-    int32_t f = s->count[GPROJI_EDIT_FACE]++;
-    s->face_parent[f] = s->face_parent[whole];
-    return f;
-}
-
-/* What a number stands for, by the chain of merges, which is shortened on the way; -1: nothing. */
+/* Follows the chain of merges from a number, and shortens it on the way; -1: removed. */
 GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
     while (number >= 0 && into[number] != number) {
         if (into[number] >= 0) into[number] = into[into[number]];
@@ -15970,7 +15939,7 @@ GPROJI_INLINE void gproji_edit_link(gproji_edit_store *s, int32_t h, int32_t fol
     s->prev[following] = h;
 }
 
-/* Chooses vertex_halfedge, given an outgoing half-edge. */
+/* Chooses vertex_halfedge, given an outgoing half-edge: at the boundary the one without a face. */
 GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
     gproji_edit_store *s = &object->now;
     int32_t h = outgoing;
@@ -15981,7 +15950,7 @@ GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outg
     s->vertex_halfedge[s->origin[h]] = h;
 }
 
-/* The half-edge of a face that starts at a vertex; -1: it is no corner. */
+/* The half-edge in a face that starts at a vertex; -1: no corner is there. */
 GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t face, int32_t vertex) {
     int32_t start = s->face_halfedge[face], h = start;
     do {
@@ -15991,18 +15960,7 @@ GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t f
     return -1;
 }
 
-/* A new stamp for marks, greater than all that are in use. */
-GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
-    gproji_edit_store *s = &object->now;
-    if (object->stamp == INT32_MAX) {
-        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
-        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
-        object->stamp = 0;
-    }
-    return ++object->stamp;
-}
-
-/* out = (1 - t) v_a + t v_b, bit for bit one of them at t = 0 and 1. `out` may be one of them. */
+/* out = (1 - t) v_a + t v_b, bit for bit one end at t = 0 and 1. `out` may be a or b. */
 GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, int32_t b, double t, int32_t out) {
     const double *p = s->position + 3 * (size_t)a, *q = s->position + 3 * (size_t)b;
     double *x = s->position + 3 * (size_t)out;
@@ -16014,7 +15972,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
     for (k = 0; k < 3; ++k) x[k] = p[k] + t * (q[k] - p[k]);
 }
 
-/* -- what calls give -- */
+/* -- checks on arguments -- */
 
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
     gproji_error_clear(error);
@@ -16025,7 +15983,7 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
-/* Is a number in the range of its kind? */
+/* Is a number in the range for this kind? */
 GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
                                      gproj_place place, int32_t number, gproj_error *error) {
     int32_t count = object->now.count[kind];
@@ -16035,7 +15993,7 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
     return false;
 }
 
-/* Half-edge 2e of the edge e that a number stands for; -1 and an error where there is none. */
+/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
     int32_t root;
     if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
@@ -16059,7 +16017,7 @@ GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, in
     return false;
 }
 
-/* The half-edge of a face at the corner that a vertex number stands for; -1 and an error where there is none. */
+/* The half-edge in a face at the corner that a vertex number stands for; -1 and an error without one. */
 GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
                                                  gproj_error *error) {
     int32_t h;
@@ -16073,13 +16031,13 @@ GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int
 
 /* -- polylines -- */
 
-/* Do vertices at `i` and `i + 1` of the polylines run along the edge between a and b? */
+/* Does a polyline run along the edge between a and b, from place i to place i + 1? */
 GPROJI_INLINE bool gproji_polyline_runs(const gproji_edit_store *s, int32_t i, int32_t a, int32_t b) {
     int32_t u = s->polyline_vertex[i], v = s->polyline_vertex[i + 1];
     return (u == a && v == b) || (u == b && v == a);
 }
 
-/* How often polylines run along a half-edge's edge. */
+/* Counts how often polylines run along a half-edge's edge. */
 GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, int32_t h) {
     int32_t a = s->origin[h], b = s->origin[h ^ 1], p, i, count = 0;
     if (!s->on_polyline[a] || !s->on_polyline[b]) return 0;
@@ -16088,16 +16046,15 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
     return count;
 }
 
-/* Makes room for `more` vertices of polylines. */
+/* Makes room for `more` polyline vertices. */
 GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
     gproji_edit_store *s = &object->now;
     int64_t needed = s->polyline_start[s->polyline_count] + more;
     int32_t *moved, room;
     if (needed <= s->polyline_room) return GPROJ_OK;
-    if (needed > INT32_MAX / 2) {
+    if (needed > INT32_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
-    }
     room = 2 * (int32_t)needed;
     moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
                                      sizeof(int32_t));
@@ -16107,39 +16064,15 @@ GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, i
     return GPROJ_OK;
 }
 
-/* Puts vertex x, new between a and b, into polylines that run along their edge. There is room. */
-GPROJI_INTERNAL void gproji_polyline_split(gproji_edit_store *s, int32_t a, int32_t b, int32_t x) {
-    int32_t p, q, i;
-    if (!s->on_polyline[a] || !s->on_polyline[b]) return;
-    for (p = 0; p < s->polyline_count; ++p) {
-        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
-            int32_t *place = s->polyline_vertex + i + 1;
-            if (!gproji_polyline_runs(s, i, a, b)) continue;
-            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
-            *place = x;
-            s->on_polyline[x] = 1;
-            for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
-            ++i;
-        }
-    }
-}
-
-GPROJI_INTERNAL void gproji_polyline_merge(gproji_edit_store *s, int32_t gone, int32_t kept) {
-    int32_t i;
-    if (!s->on_polyline[gone]) return;
-    s->on_polyline[kept] = 1;
-    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
-        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
-}
-
 /* -- the three operators; there is room -- */
 
-/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on,
-   of the new edge, is returned. */
+/* Splits half-edge h's edge at parameter t from its origin. h ends at the new vertex; returns the half-edge on the new
+   edge from there on. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
-    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
+    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
+    s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
     s->origin[onward] = s->origin[g] = x;
     s->origin[back] = b;
@@ -16151,21 +16084,32 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
     gproji_edit_link(s, back, g);
     if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
     if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
+    /* g and back trade places as the half-edges that begin at x and b. */
     if (s->face[g] >= 0 && s->face_halfedge[s->face[g]] == g) s->face_halfedge[s->face[g]] = back;
     if (s->vertex_halfedge[b] == g) s->vertex_halfedge[b] = back;
     s->vertex_halfedge[x] = s->face[g] < 0 ? g : onward;
-    gproji_polyline_split(s, a, b, x);
+    for (p = 0; s->on_polyline[a] && s->on_polyline[b] && p < s->polyline_count; ++p)
+        for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
+            int32_t *place = s->polyline_vertex + i + 1;
+            if (!gproji_polyline_runs(s, i, a, b)) continue;
+            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
+            *place = x;
+            s->on_polyline[x] = 1;
+            for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
+            ++i; /* past x */
+        }
     gproji_edit_publish(object);
     return onward;
 }
 
-/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin:
-   it is in the part with `to`, its twin in the part with `from`. */
+/* Cuts a face between the origins at two half-edges. Returns the half-edge from the first to the second origin: it is
+   in the part with `to`, the twin in the part with `from`. */
 GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
     gproji_edit_store *s = &object->now;
-    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = gproji_edit_add_face(s, whole);
+    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
     int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
-    bool first = false; /* is the first corner of the whole in the part with `from`? */
+    bool first = false; /* is the whole's first corner in the part with `from`? */
+    s->face_parent[part] = s->face_parent[whole];
     s->origin[d] = s->origin[from];
     s->origin[o] = s->origin[to];
     gproji_edit_link(s, before_from, d);
@@ -16174,7 +16118,7 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     gproji_edit_link(s, o, from);
     for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
     s->face[d] = s->face[o] = whole;
-    start = h = first ? d : o;
+    start = h = first ? d : o; /* the part without the first corner becomes the new face */
     do {
         s->face[h] = part;
         ++count;
@@ -16187,7 +16131,7 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     return d;
 }
 
-/* Half-edge h takes the place of half-edge `other`, which has the same ends, and their edges become one, that of h. */
+/* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
 GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
     int32_t f = s->face[other];
     gproji_edit_link(s, s->prev[other], h);
@@ -16198,9 +16142,8 @@ GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_
     s->edge_into[other / 2] = h / 2;
 }
 
-/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are
-   left, whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of
-   the triangle, or -1. */
+/* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at the
+   vertex, and at *apex one at the third vertex of a triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
     int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
     *apex = -1;
@@ -16208,7 +16151,7 @@ GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int3
     if (f < 0) return x;
     if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
     if (--s->face_degree[f] > 2) return x;
-    s->face_halfedge[f] = -1;
+    s->face_halfedge[f] = -1; /* a triangle: the two edges that are left merge into the lower number */
     if (x < y) {
         gproji_edit_replace(s, x, y ^ 1);
         *apex = x ^ 1;
@@ -16219,7 +16162,7 @@ GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int3
     return y ^ 1;
 }
 
-/* Collapses the edge of half-edge h to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
+/* Collapses half-edge h's edge to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
 GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
@@ -16238,7 +16181,10 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     gproji_edit_anchor(object, outgoing);
     for (i = 0; i < 2; ++i)
         if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
-    gproji_polyline_merge(s, gone, kept);
+    if (!s->on_polyline[gone]) return kept;
+    s->on_polyline[kept] = 1;
+    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
     return kept;
 }
 
@@ -16248,7 +16194,7 @@ GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
 }
 
-/* A triangle at half-edge h would become an edge without a face. */
+/* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
 GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
     int32_t x, y;
     if (!gproji_is_triangle(s, h)) return GPROJ_OK;
@@ -16259,80 +16205,51 @@ GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, in
                        h / 2, s->face[h]);
 }
 
-/* Marks the neighbours of the origin of h, and its faces. */
-GPROJI_INTERNAL int32_t gproji_edit_mark_star(gproji_edit_object *object, int32_t h) {
-    gproji_edit_store *s = &object->now;
-    int32_t stamp = gproji_edit_stamp(object), i = h;
-    do {
-        s->vertex_mark[s->origin[i ^ 1]] = stamp;
-        if (s->face[i] >= 0) s->face_mark[s->face[i]] = stamp;
-        i = gproji_rotate(&object->view, i);
-    } while (i != h);
-    return stamp;
-}
-
-/* The ends of h have no neighbour in common but the third vertices of triangles at h, and no face but those at h. */
-GPROJI_INTERNAL gproj_code gproji_check_link(gproji_edit_object *object, int32_t h, gproj_error *error) {
-    const gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, stamp = gproji_edit_mark_star(object, h), i;
-    int32_t left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
-    int32_t right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
-    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
-        int32_t v = s->origin[i ^ 1], f = s->face[i];
-        if (s->vertex_mark[v] == stamp && v != left && v != right) {
-            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
-                               "triangle is between",
-                               h / 2, s->origin[h], s->origin[g], v);
-        }
-        if (f >= 0 && s->face_mark[f] == stamp && f != s->face[h] && f != s->face[g]) {
-            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2,
-                               s->origin[h], s->origin[g], f);
-        }
-    }
-    return GPROJ_OK;
-}
-
 GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
-    const gproji_edit_store *s = &object->now;
-    int32_t a = s->origin[h], b = s->origin[h ^ 1];
+    gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], left, right, i;
     gproj_code code = gproji_check_vanishing(s, h, error);
-    if (!code) code = gproji_check_vanishing(s, h ^ 1, error);
+    if (!code) code = gproji_check_vanishing(s, g, error);
     if (code) return code;
-    if (s->face[h] >= 0 && s->face[h ^ 1] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
-        gproj_mesh_is_boundary_vertex(&object->view, b)) {
+    if (s->face[h] >= 0 && s->face[g] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
+        gproj_mesh_is_boundary_vertex(&object->view, b))
         return gproji_fail(
             error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
             "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
             "and the mesh would be pinched there",
             h / 2, a, b);
+    /* The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
+       only be those at triangles on the edge and at its faces. */
+    if (object->stamp == INT32_MAX) {
+        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
+        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
+        object->stamp = 0;
     }
-    return gproji_check_link(object, h, error);
+    ++object->stamp;
+    i = h;
+    do {
+        s->vertex_mark[s->origin[i ^ 1]] = object->stamp;
+        if (s->face[i] >= 0) s->face_mark[s->face[i]] = object->stamp;
+        i = gproji_rotate(&object->view, i);
+    } while (i != h);
+    left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
+    right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
+        int32_t v = s->origin[i ^ 1], f = s->face[i];
+        if (s->vertex_mark[v] == object->stamp && v != left && v != right)
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
+                               "triangle is between",
+                               h / 2, a, b, v);
+        if (f >= 0 && s->face_mark[f] == object->stamp && f != s->face[h] && f != s->face[g])
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2, a,
+                               b, f);
+    }
+    return GPROJ_OK;
 }
 
 /* -- life -- */
-
-GPROJI_INTERNAL void gproji_edit_load(gproji_edit_object *object, const gproj_mesh *mesh) {
-    gproji_edit_store *s = &object->now;
-    size_t vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count,
-           faces = (size_t)mesh->face_count;
-    int32_t i;
-    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
-    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
-    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
-    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
-    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
-    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
-    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
-    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
-    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
-    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
-    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
-    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
-}
 
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
@@ -16347,7 +16264,8 @@ GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
 GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object;
     gproji_edit_store *s;
-    int32_t kind;
+    size_t vertices, halfedges, faces;
+    int32_t kind, i;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
@@ -16369,8 +16287,22 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
         gproj_edit_destroy(&object->edit);
         return NULL;
     }
-    gproji_edit_load(object, mesh);
     gproji_edit_publish(object);
+    vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count, faces = (size_t)mesh->face_count;
+    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
+    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
+    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
+    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
+    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
+    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
+    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
+    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
+    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
+    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
+    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
+    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
     return &object->edit;
 }
 
@@ -16380,123 +16312,99 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* What gproj_edit_mesh works with: all arrays as large as they can become. */
+/* The polygons and polylines for gproj_edit_mesh. */
 typedef struct gproji_edit_out {
-    int32_t *number[GPROJI_EDIT_KINDS];
+    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
     gproji_soup soup;
-    double *position;
-    int32_t *degree, *corner;
     int32_t polyline_count, *start, *vertex;
 } gproji_edit_out;
 
-/* False when there is no memory. The numbers stay with the edit if all goes well: see gproji_edit_keep_numbers. */
-GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
+/* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
+GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
     const gproji_edit_store *s = &object->now;
+    gproji_soup *soup = &out->soup;
+    double *position;
+    int32_t *degree, *corner, *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
     bool complete = true;
-    int32_t kind;
     memset(out, 0, sizeof *out);
+    /* 1. Room, as large as can be needed. */
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
         if (kind == GPROJI_EDIT_HALFEDGE) continue;
         out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
         complete = complete && out->number[kind];
     }
-    out->position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    out->degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    out->corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
     out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
     out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
-    return complete && out->position && out->degree && out->corner && out->start && out->vertex;
-}
-
-/* Numbers the vertices and faces that are left, and writes them down as polygons. */
-GPROJI_INTERNAL void gproji_edit_write_soup(const gproji_edit_store *s, gproji_edit_out *out) {
-    gproji_soup *soup = &out->soup;
-    int32_t *vertex = out->number[GPROJI_EDIT_VERTEX], *face = out->number[GPROJI_EDIT_FACE];
-    int32_t v, f, h, k, corners = 0;
+    if (!(complete && position && degree && corner && out->start && out->vertex)) return false;
+    /* 2. Vertices; a merged one has its lower root's number already. */
+    vertex = out->number[GPROJI_EDIT_VERTEX], face = out->number[GPROJI_EDIT_FACE];
     for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
         if (s->vertex_into[v] != v) continue;
-        memcpy(out->position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+        memcpy(position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
     }
+    /* 3. Faces. */
     for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         h = s->face_halfedge[f];
         face[f] = h < 0 ? -1 : soup->face_count;
         if (h < 0) continue;
-        out->degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) out->corner[corners++] = vertex[s->origin[h]];
+        degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) corner[corners++] = vertex[s->origin[h]];
     }
-    soup->position = out->position;
-    soup->face_degree = out->degree;
-    soup->face_vertex = out->corner;
-}
-
-/* Writes down the polylines in new numbers, without repeated vertices, and those with at least two. */
-GPROJI_INTERNAL void gproji_edit_write_polylines(const gproji_edit_store *s, gproji_edit_out *out) {
-    int32_t p, i, begin, end = 0;
+    soup->position = position, soup->face_degree = degree, soup->face_vertex = corner;
+    /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
     out->start[0] = 0;
     for (p = 0; p < s->polyline_count; ++p) {
         begin = end;
         for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
-            int32_t v = out->number[GPROJI_EDIT_VERTEX][s->polyline_vertex[i]];
+            v = vertex[s->polyline_vertex[i]];
             if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
         }
-        if (end < begin + 2) {
+        if (end < begin + 2)
             end = begin;
-            continue;
-        }
-        out->start[++out->polyline_count] = end;
+        else
+            out->start[++out->polyline_count] = end;
     }
-}
-
-/* Edges have the numbers that the mesh gave them. */
-GPROJI_INTERNAL void gproji_edit_number_edges(const gproji_edit_store *s, const gproj_mesh *mesh,
-                                              gproji_edit_out *out) {
-    int32_t *edge = out->number[GPROJI_EDIT_EDGE], f, e, h, k, i;
-    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
-        if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = mesh->face_halfedge[out->number[GPROJI_EDIT_FACE][f]];
-        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = mesh->next[k]) edge[h / 2] = k / 2;
-    }
-    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
-        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-}
-
-/* The new maps of numbers for the old ones. */
-GPROJI_INTERNAL void gproji_edit_keep_numbers(gproji_edit_object *object, gproji_edit_out *out) {
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
-        object->number[kind] = out->number[kind];
-        object->number_count[kind] = object->now.count[kind];
-        out->number[kind] = NULL;
-    }
-    gproji_edit_publish(object);
+    return true;
 }
 
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
+    const gproji_edit_store *s = object ? &object->now : NULL;
     gproji_mesh_object *made;
     gproji_edit_out out;
     gproji_pool pool;
     gproj_code code;
-    int32_t kind;
+    int32_t kind, f, e, h, k, i, *edge;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_out_take(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
-    if (!code) {
-        gproji_edit_write_soup(&object->now, &out);
-        gproji_edit_write_polylines(&object->now, &out);
-        code = gproji_mesh_build(made, &out.soup, error);
-    }
+    code = gproji_edit_write(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
+    if (!code) code = gproji_mesh_build(made, &out.soup, error);
     if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
-    if (!code) {
-        gproji_edit_number_edges(&object->now, &made->mesh, &out);
-        gproji_edit_keep_numbers(object, &out);
+    /* The mesh has numbered the edges: both are walked side by side. */
+    edge = out.number[GPROJI_EDIT_EDGE];
+    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        if (s->face_halfedge[f] < 0) continue;
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[out.number[GPROJI_EDIT_FACE][f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(&object->heap, out.number[kind], (size_t)object->now.count[kind], sizeof(int32_t));
+    for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
+        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
+        int32_t *old = object->number[kind], count = object->number_count[kind];
+        if (!code) {
+            object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
+            gproji_give(&object->heap, old, (size_t)count, sizeof(int32_t));
+        } else {
+            gproji_give(&object->heap, out.number[kind], (size_t)s->count[kind], sizeof(int32_t));
+        }
+    }
+    gproji_edit_publish(object);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
@@ -16520,9 +16428,8 @@ GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
     if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
-        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error)) {
+        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error))
         return -1;
-    }
     return object->now.origin[gproji_edit_split(object, h, t)];
 }
 
@@ -16556,45 +16463,28 @@ GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, doubl
 /* -- triangles -- */
 
 enum {
-    GPROJI_KLINCSEK_MAX = 128 /* corners of a polygon for which all triangulations are compared: O(n^3) */
+    GPROJI_KLINCSEK_MAX = 128 /* corners for which all triangulations are compared: O(n^3) */
 };
 
-/* The work of cutting faces into triangles. */
+/* Work arrays for cutting faces into triangles. */
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
-    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part of the face that is left */
-    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order of cutting */
+    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part that is left */
+    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order they are cut */
     int32_t ear_count;
-    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners that are left for the comparison */
+    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
-    double *least; /* ring_count^2: the least sum for the part of the ring from i to j */
-    int32_t *apex; /* ring_count^2: the third corner of the triangle at i and j for which it is least */
+    double *least; /* ring_count^2: the least sum for the ring from i to j */
+    int32_t *apex; /* ring_count^2: the third corner with which the triangle at i and j attains it */
 } gproji_triangulation;
-
-/* For faces of at most `degree` corners. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_triangulation_take(gproji_pool *pool, gproji_triangulation *work, int32_t degree) {
-    int64_t side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    memset(work, 0, sizeof *work);
-    work->polygon.capacity = degree;
-    work->polygon.xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
-    work->polygon.vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->polygon.next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->polygon.prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->halfedge = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->ear = (int32_t *)gproji_pool_take(pool, degree, 2 * sizeof(int32_t));
-    work->least = (double *)gproji_pool_take(pool, side * side, sizeof(double));
-    work->apex = (int32_t *)gproji_pool_take(pool, side * side, sizeof(int32_t));
-    return work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
-           work->ear && work->least && work->apex;
-}
 
 GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
                                          int32_t b) {
     return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
 }
 
-/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any
-   more, any whose neighbours have no edge yet is taken; false where there is none. */
+/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Without ears, takes any corner whose
+   neighbours have no edge yet; false without such a corner. */
 GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
     gproji_polygon *polygon = &work->polygon;
     int64_t budget = 512 * (int64_t)polygon->count;
@@ -16622,8 +16512,8 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
     return true;
 }
 
-/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for
-   x near 0 and for triangles that are turned over, the tangent of that at 1e-6. */
+/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), x = sqrt(1/12) for equal sides; for x near 0 and triangles turned
+   over, its tangent at 1e-6. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     const double least = 1e-6;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
@@ -16634,8 +16524,8 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
 
-/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where
-   each needs a diagonal that is an edge already. */
+/* Finds the ring's triangulation with the least sum by dynamic programming (Klincsek 1980). False if each needs a
+   diagonal that is an edge already. */
 GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
@@ -16659,25 +16549,22 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
     return work->apex[n - 1] >= 0;
 }
 
-/* Decides on the diagonals of a face. Nothing is changed. */
-GPROJI_INTERNAL gproj_code gproji_plan_triangles(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
-                                                 gproj_error *error) {
-    int32_t h = object->now.face_halfedge[face], i;
+/* Cuts one face into triangles; there is room. Nothing is changed after an error. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                   gproj_error *error) {
+    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i, h, n;
     gproji_polygon_set(&work->polygon, &object->view, face);
-    for (i = 0; i < work->polygon.count; ++i, h = object->now.next[h]) work->halfedge[i] = h;
-    if (gproji_plan_ears(object, work) && gproji_plan_ring(object, work)) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                       "face %d cannot be cut into triangles: its diagonals are edges already", face);
-}
-
-/* Cuts a face as planned; there is room. */
-GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_triangulation *work) {
-    int32_t *halfedge = work->halfedge, n = work->ring_count, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i;
+    for (i = 0, h = object->now.face_halfedge[face]; i < work->polygon.count; ++i, h = object->now.next[h])
+        halfedge[i] = h;
+    if (!gproji_plan_ears(object, work) || !gproji_plan_ring(object, work))
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut into triangles: its diagonals are edges already", face);
     for (i = 0; i < work->ear_count; ++i) {
         int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
         halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
     }
-    stack[depth++] = 0, stack[depth++] = n - 1; /* parts of the ring, from a corner to a corner, one face each */
+    n = work->ring_count;
+    stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
         int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]],
@@ -16691,36 +16578,18 @@ GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_tri
             stack[depth++] = apex, stack[depth++] = last;
         }
     }
-}
-
-/* Cuts one face. */
-GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
-                                                   gproj_error *error) {
-    gproj_code code = gproji_plan_triangles(object, work, face, error);
-    if (!code) gproji_cut_triangles(object, work);
-    return code;
-}
-
-/* Cuts all faces, or none where one cannot be cut. */
-GPROJI_INTERNAL gproj_code gproji_triangulate_all(gproji_edit_object *object, gproji_triangulation *work,
-                                                  gproj_error *error) {
-    gproji_edit_store copy;
-    gproj_code code = GPROJ_OK;
-    int32_t f, count = object->now.count[GPROJI_EDIT_FACE];
-    if (!gproji_edit_save(object, &copy)) return gproji_fail_memory(error);
-    for (f = 0; f < count && !code; ++f)
-        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
-            code = gproji_triangulate_face(object, work, f, error);
-    return gproji_edit_settle(object, &copy, code);
+    return GPROJ_OK;
 }
 
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     gproji_triangulation work;
+    gproji_edit_store copy;
     gproji_pool pool;
     gproj_code code;
-    int64_t cuts = 0;
+    int64_t cuts = 0, side;
     int32_t f, first = face, last = face, degree = 3;
+    bool saved = false;
     if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
     if (face == -1) first = 0, last = edit->face_count - 1;
     for (f = first; f <= last; ++f) {
@@ -16731,59 +16600,70 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     if (!cuts) return 0;
     gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, error);
-    if (!code && !gproji_triangulation_take(&pool, &work, degree)) code = gproji_fail_memory(error);
-    if (!code)
-        code = face == -1 ? gproji_triangulate_all(object, &work, error)
-                          : gproji_triangulate_face(object, &work, face, error);
+    side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
+    memset(&work, 0, sizeof work);
+    work.polygon.capacity = degree;
+    work.polygon.xy = (double *)gproji_pool_take(&pool, degree, 2 * sizeof(double));
+    work.polygon.vertex = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.polygon.next = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.polygon.prev = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.ear = (int32_t *)gproji_pool_take(&pool, degree, 2 * sizeof(int32_t));
+    work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
+    work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
+    if (!code && !(work.polygon.xy && work.polygon.vertex && work.polygon.next && work.polygon.prev && work.halfedge &&
+                   work.ear && work.least && work.apex))
+        code = gproji_fail_memory(error);
+    if (!code && face == -1) { /* all faces or none: a later one may be refused */
+        saved = gproji_edit_save(object, &copy);
+        if (!saved) code = gproji_fail_memory(error);
+    }
+    for (f = first; f <= last && !code; ++f)
+        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
+            code = gproji_triangulate_face(object, &work, f, error);
+    if (saved) code = gproji_edit_settle(object, &copy, code);
     gproji_pool_give_all(&pool);
     return code ? -1 : (int32_t)cuts;
 }
 
 /* -- strips -- */
 
-/* The rungs of a strip, as half-edges of one direction, in order. */
+/* A strip's rungs, as half-edges in one direction, in order. */
 typedef struct gproji_strip {
     int32_t count;
-    int32_t given; /* the place of the half-edge that the walk began with */
+    int32_t given; /* the rung that the walk began with */
     bool closed;   /* is there a quad between the last and the first? */
     int32_t *rung; /* count */
-    int32_t *side; /* count: the origins of the rungs */
+    int32_t *side; /* count: the rungs' origins */
 } gproji_strip;
 
 GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
 }
 
-/* The rung after h, across the quad at its left; -1 where there is none. */
+/* The rung after h, across the quad at its left; -1 after the last. */
 GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
     return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
 }
 
-/* The first rung of the strip of half-edge h: h itself where the strip is closed. */
-GPROJI_INTERNAL int32_t gproji_strip_first(const gproji_edit_store *s, int32_t h) {
-    int32_t g = h;
-    while (gproji_is_quad(s, g ^ 1)) {
-        g = s->next[s->next[g ^ 1]];
-        if (g == h) break;
-    }
-    return g;
-}
-
-/* Walks along the strip of half-edge h. */
+/* Walks along half-edge h's strip. */
 GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
                                              gproji_strip *strip, gproj_error *error) {
-    int32_t first = gproji_strip_first(s, h), g, i;
+    int32_t first = h, g, i;
     memset(strip, 0, sizeof *strip);
+    while (gproji_is_quad(s, first ^ 1)) { /* back to the first rung: h itself if the strip is closed */
+        first = s->next[s->next[first ^ 1]];
+        if (first == h) break;
+    }
     g = first;
     do {
         ++strip->count;
         g = gproji_strip_next(s, g);
     } while (g >= 0 && g != first);
     strip->closed = g == first;
-    if (strip->count == 1) {
+    if (strip->count == 1)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
                            h / 2);
-    }
     strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
@@ -16795,31 +16675,13 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     return GPROJ_OK;
 }
 
-/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has
-   one more vertex, edge, and cut. */
-GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
-                                                gproj_error *error) {
-    int64_t count = strip->count, runs = 0;
-    int32_t i, e = strip->rung[0] / 2;
-    gproj_code code;
-    if (strip->closed && count == 2) {
-        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, e,
-                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
-                           "would be two edges between the new vertices",
-                           e, strip->rung[1] / 2);
-    }
-    code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
-    for (i = 0; i < strip->count; ++i) runs += gproji_polyline_count_runs(&object->now, strip->rung[i]);
-    return code ? code : gproji_polyline_reserve(object, runs, error);
-}
-
-/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the
-   strip already, from side to side, that cut is split at t and met there. */
+/* Cuts a quad from the origin x of half-edge `from` to vertex y on the opposite rung. If the strip has cut it already,
+   from side to side, that cut is split at t and met there. */
 GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
     gproji_edit_store *s = &object->now;
     int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
     if (to < 0) {
-        cut = s->next[s->next[from]]; /* from x: to the end of the rung, to the cut, along it */
+        cut = s->next[s->next[from]]; /* from x: to the rung's end, to the cut, along it */
         gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
         from = cut ^ 1;
         to = gproji_edit_corner(s, s->face[from], y);
@@ -16827,61 +16689,52 @@ GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from
     gproji_edit_cut(object, from, to);
 }
 
-/* Where a strip ends at a triangle, which has got a fourth corner at the origin of half-edge h, it is cut into two: as a
-   quad it would lead on. */
+/* Cuts the triangle at which a strip ends, and which has got a fourth corner at half-edge h's origin: as a quad it would
+   lead on. */
 GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
     const gproji_edit_store *s = &object->now;
     if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
 }
 
-/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from new vertices on. */
-GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
-    const gproji_edit_store *s = &object->now;
-    int32_t i, last = strip->count - 1;
-    for (i = 0; i <= last; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
-    if (!strip->closed) {
-        gproji_strip_end(object, s->next[strip->rung[0] ^ 1]);
-        gproji_strip_end(object, strip->rung[last]);
-    }
-    for (i = 0; i < last; ++i) gproji_strip_cross(object, strip->rung[i], s->origin[strip->rung[i + 1]], t);
-    if (strip->closed) gproji_strip_cross(object, strip->rung[last], s->origin[strip->rung[0]], t);
-}
-
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    const gproji_edit_store *s = object ? &object->now : NULL;
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, i, last;
+    int64_t count, runs = 0;
     gproji_strip strip;
     gproji_pool pool;
     gproj_code code;
     if (h < 0) return -1;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
-    if (!code) code = gproji_strip_reserve(object, &strip, error);
+    code = gproji_strip_take(s, &pool, h, &strip, error);
+    count = strip.count, last = strip.count - 1;
+    if (!code && strip.closed && count == 2)
+        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, strip.rung[0] / 2,
+                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
+                           "would be two edges between the new vertices",
+                           strip.rung[0] / 2, strip.rung[1] / 2);
+    /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
+    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
+    for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
+    if (!code) code = gproji_polyline_reserve(object, runs, error);
     if (!code) {
-        gproji_strip_insert(object, &strip, t);
+        for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
+        if (!strip.closed) {
+            gproji_strip_end(object, s->next[strip.rung[0] ^ 1]);
+            gproji_strip_end(object, strip.rung[last]);
+        }
+        for (i = 0; i < last; ++i) gproji_strip_cross(object, strip.rung[i], s->origin[strip.rung[i + 1]], t);
+        if (strip.closed) gproji_strip_cross(object, strip.rung[last], s->origin[strip.rung[0]], t);
         h = strip.rung[strip.given];
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : h / 2;
 }
 
-/* Collapses the rung in place i of a strip, if that may be. One that was merged into another, where the strip crosses
-   itself, is gone with that. */
-GPROJI_INTERNAL gproj_code gproji_strip_collapse_rung(gproji_edit_object *object, const gproji_strip *strip, int32_t i,
-                                                      double t, gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
-    gproj_code code;
-    if (e < 0) return GPROJ_OK;
-    h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
-    code = gproji_check_collapse(object, h, error);
-    if (!code) gproji_edit_collapse(object, h, t);
-    return code;
-}
-
-/* Collapses the rungs of a strip one by one; those that are refused again, after the others, as long as that helps. */
+/* Collapses a strip's rungs one by one; those that are refused again, after the others, as long as that helps. */
 GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
                                                  gproj_error *error) {
+    gproji_edit_store *s = &object->now;
     int32_t left = strip->count, tried, i;
     gproj_code code, refusal;
     do {
@@ -16890,7 +16743,11 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
         refusal = GPROJ_OK;
         gproji_error_clear(error);
         for (i = 0; i < tried; ++i) {
-            code = gproji_strip_collapse_rung(object, strip, i, t, error);
+            int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+            if (e < 0) continue; /* merged into another rung, if the strip crosses itself, and gone with that */
+            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+            code = gproji_check_collapse(object, h, error);
+            if (!code) gproji_edit_collapse(object, h, t);
             if (!code) continue;
             refusal = code;
             strip->rung[left] = strip->rung[i];
@@ -16900,17 +16757,10 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
     return refusal;
 }
 
-/* Says why a strip stays: `error` has why one of its rungs does. */
-GPROJI_INTERNAL void gproji_tell_strip(int32_t edge, gproj_error *error) {
-    char message[GPROJ_MESSAGE_SIZE];
-    if (!error) return;
-    gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
-    memcpy(error->message, message, sizeof message);
-}
-
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    char message[GPROJ_MESSAGE_SIZE];
     gproji_edit_store copy;
     gproji_strip strip;
     gproji_pool pool;
@@ -16921,7 +16771,10 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
     if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
     if (!code) {
         code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
-        if (code) gproji_tell_strip(edge, error);
+        if (code && error) { /* the rung's reason, in a sentence about the strip */
+            gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+            memcpy(error->message, message, sizeof message);
+        }
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : strip.count;
@@ -16929,54 +16782,19 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each
-   vertex of the boundary two or three more. */
+/* Work arrays for gproj_mesh_dual, as large as a dual can be: each half-edge gives a corner, each boundary vertex two or
+   three more. */
 typedef struct gproji_dual {
     gproji_soup soup;
     double *position;
     int32_t *degree, *corner;
-    int32_t *vertex;   /* vertex_count: the number of a vertex that is in the dual, too, or -1 */
-    int32_t *midpoint; /* edge_count: the vertex in the middle of a boundary edge, or -1 */
+    int32_t *vertex;   /* vertex_count: a vertex's number in the dual, or -1 */
+    int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
     int32_t *seen;     /* face_count: the last face that met it as a neighbour */
     int32_t *start, *polyline;
-    int32_t polyline_count;
 } gproji_dual;
 
-/* False when there is no memory. */
-GPROJI_INTERNAL bool gproji_dual_take(gproji_pool *pool, const gproj_mesh *mesh, gproji_dual *dual) {
-    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    memset(dual, 0, sizeof *dual);
-    dual->position = (double *)gproji_pool_take(pool, faces + edges + vertices, 3 * sizeof(double));
-    dual->corner = (int32_t *)gproji_pool_take(pool, 2 * edges + 3 * vertices, sizeof(int32_t));
-    dual->degree = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
-    dual->vertex = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
-    dual->midpoint = (int32_t *)gproji_pool_take(pool, edges, sizeof(int32_t));
-    dual->seen = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
-    dual->start = (int32_t *)gproji_pool_take(pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    dual->polyline = (int32_t *)gproji_pool_take(pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
-    return dual->position && dual->corner && dual->degree && dual->vertex && dual->midpoint && dual->seen &&
-           dual->start && dual->polyline;
-}
-
-/* No two faces have two edges in common. */
-GPROJI_INTERNAL gproj_code gproji_check_dual(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
-    int32_t f, k, h, g;
-    gproji_fill(dual->seen, mesh->face_count, -1);
-    for (f = 0; f < mesh->face_count; ++f) {
-        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            g = mesh->face[h ^ 1];
-            if (g < 0) continue;
-            if (dual->seen[g] == f) {
-                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
-            }
-            dual->seen[g] = f;
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* A new vertex of the dual, at the mean of the origins of `count` half-edges, h and those that follow it. */
+/* Adds a vertex at the mean over `count` half-edges' origins, h and those that follow it. */
 GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
     int32_t number = dual->soup.vertex_count++, k;
     double *x = dual->position + 3 * (size_t)number;
@@ -16986,15 +16804,29 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* A vertex that is in the dual, too, gets its number there. */
+/* Numbers a vertex that is in the dual, too. */
 GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
     int32_t number = dual->soup.vertex_count++;
     gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
     dual->vertex[vertex] = number;
 }
 
-GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual *dual) {
-    int32_t f, e, v;
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproji_mesh_object *made, gproj_error *error) {
+    gproji_soup *soup = &dual->soup;
+    int32_t f, e, v, k, h, g, p, i, begin, end = 0, polylines = 0;
+    gproj_code code;
+    /* 1. No two faces may have two edges in common. */
+    gproji_fill(dual->seen, mesh->face_count, -1);
+    for (f = 0; f < mesh->face_count; ++f)
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            g = mesh->face[h ^ 1];
+            if (g >= 0 && dual->seen[g] == f)
+                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
+            if (g >= 0) dual->seen[g] = f;
+        }
+    /* 2. Vertices: faces, boundary edges, corners, isolated vertices. */
     for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
     for (e = 0; e < mesh->edge_count; ++e)
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
@@ -17003,61 +16835,40 @@ GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual
         if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
     for (v = 0; v < mesh->vertex_count; ++v)
         if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
-}
-
-/* The face of a vertex that has faces: those around it; at the boundary the middle of an edge, the faces, the middle of
-   the other edge, and the vertex if it is a corner. */
-GPROJI_INTERNAL void gproji_dual_face(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    gproji_soup *soup = &dual->soup;
-    int32_t last = mesh->vertex_halfedge[vertex], h, begin = soup->corner_count;
-    bool boundary = mesh->face[last] < 0;
-    h = boundary ? gproji_rotate(mesh, last) : last;
-    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
-    do {
-        dual->corner[soup->corner_count++] = mesh->face[h];
-        h = gproji_rotate(mesh, h);
-    } while (h != last);
-    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
-    if (dual->vertex[vertex] >= 0) dual->corner[soup->corner_count++] = dual->vertex[vertex];
-    dual->degree[soup->face_count++] = soup->corner_count - begin;
-}
-
-/* Polylines all of whose vertices are in the dual. */
-GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *dual) {
-    int32_t p, i, begin, end = 0;
+    /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a corner. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t last = mesh->vertex_halfedge[v];
+        bool boundary = last >= 0 && mesh->face[last] < 0;
+        if (vertex_face) vertex_face[v] = last < 0 ? -1 : soup->face_count;
+        if (last < 0) continue;
+        begin = soup->corner_count;
+        h = boundary ? gproji_rotate(mesh, last) : last;
+        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+        do {
+            dual->corner[soup->corner_count++] = mesh->face[h];
+            h = gproji_rotate(mesh, h);
+        } while (h != last);
+        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
+        if (dual->vertex[v] >= 0) dual->corner[soup->corner_count++] = dual->vertex[v];
+        dual->degree[soup->face_count++] = soup->corner_count - begin;
+    }
+    /* 4. Polylines that are in the dual as a whole. */
     dual->start[0] = 0;
     for (p = 0; p < mesh->polyline_count; ++p) {
-        bool whole = true;
         begin = end;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            int32_t v = dual->vertex[mesh->polyline_vertex[i]];
-            whole = whole && v >= 0;
+            v = dual->vertex[mesh->polyline_vertex[i]];
+            if (v < 0) break;
             dual->polyline[end++] = v;
         }
-        if (whole)
-            dual->start[++dual->polyline_count] = end;
+        if (i == mesh->polyline_start[p + 1])
+            dual->start[++polylines] = end;
         else
             end = begin;
     }
-}
-
-GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
-                                             gproji_mesh_object *made, gproj_error *error) {
-    gproj_code code = gproji_check_dual(mesh, dual, error);
-    int32_t v;
-    if (code) return code;
-    gproji_dual_vertices_of(mesh, dual);
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        bool isolated = mesh->vertex_halfedge[v] < 0;
-        if (vertex_face) vertex_face[v] = isolated ? -1 : dual->soup.face_count;
-        if (!isolated) gproji_dual_face(mesh, dual, v);
-    }
-    gproji_dual_polylines(mesh, dual);
-    dual->soup.position = dual->position;
-    dual->soup.face_degree = dual->degree;
-    dual->soup.face_vertex = dual->corner;
-    code = gproji_mesh_build(made, &dual->soup, error);
-    return code ? code : gproji_mesh_set_polylines(made, dual->polyline_count, dual->start, dual->polyline, error);
+    soup->position = dual->position, soup->face_degree = dual->degree, soup->face_vertex = dual->corner;
+    code = gproji_mesh_build(made, soup, error);
+    return code ? code : gproji_mesh_set_polylines(made, polylines, dual->start, dual->polyline, error);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
@@ -17066,6 +16877,7 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     gproji_dual dual;
     gproji_pool pool;
     gproj_code code;
+    int64_t vertices, edges, faces;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
@@ -17074,8 +16886,20 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
-    code = gproji_dual_take(&pool, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
-                                                : gproji_fail_memory(error);
+    vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
+    memset(&dual, 0, sizeof dual);
+    dual.position = (double *)gproji_pool_take(&pool, faces + edges + vertices, 3 * sizeof(double));
+    dual.corner = (int32_t *)gproji_pool_take(&pool, 2 * edges + 3 * vertices, sizeof(int32_t));
+    dual.degree = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
+    dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
+    dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
+    dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
+    dual.start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    dual.polyline = (int32_t *)gproji_pool_take(&pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+    code = dual.position && dual.corner && dual.degree && dual.vertex && dual.midpoint && dual.seen && dual.start &&
+                   dual.polyline
+               ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
+               : gproji_fail_memory(error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
