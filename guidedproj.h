@@ -16905,12 +16905,21 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
 }
 
 /* ============================================================================================================
-   >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
+   >>measure   Planarity, folds, deviation, damage, statistics. Uses platform, vector, mesh.
 
-   The least-squares plane of a face is the plane through the mean of its vertices that is orthogonal to the direction
-   in which they scatter least; eigenvectors by Jacobi's method (1846). */
+   A face's least-squares plane goes through the mean over its vertices, orthogonal to the direction in which they
+   scatter least; eigenvectors by Jacobi's method (1846). Nothing here takes memory. Time is near-linear in a face's
+   corners, though a vertex asks for normals, and a side for the sides that it crosses: see gproji_normals and
+   gproji_is_bow_tie. */
+enum {
+    GPROJI_LARGE_FACE = 32,   /* corners: beyond, quadratic work is avoided */
+    GPROJI_NORMALS = 8,       /* large faces remembered */
+    GPROJI_CHAIN = 8,         /* sides in chains that are compared one by one */
+    GPROJI_CHAIN_DEPTH = 128, /* pairs at once: two more at each of 28 halvings in either chain */
+    GPROJI_SWEEPS = 12
+};
 
-/* Rotates rows and columns p, q of the symmetric matrix m so that m[p][q] = 0, and the columns of v along. */
+/* Rotates rows and columns p, q in the symmetric matrix m so that m[p][q] = 0, and v's columns along. */
 GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_t p, int32_t q) {
     double theta, t, c, s;
     int32_t k;
@@ -16936,12 +16945,11 @@ GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_
     }
 }
 
-/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). Sweeps square what is left beside the
-   diagonal, so 4 or 5 are usual until it is below all rounding. */
+/* Finds the unit eigenvector for the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
 GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
     int32_t sweep, largest = 0, k;
-    for (sweep = 0; sweep < 12; ++sweep) {
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
         double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
         if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
         gproji_jacobi_rotate(m, v, 0, 1);
@@ -16957,26 +16965,20 @@ GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int
     return mesh->position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* The same with other positions. */
 GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3]) {
-    int32_t h = mesh->face_halfedge[face], k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_at(mesh, position, h), mean);
-}
-
-/* The least-squares plane of a face: the mean of its vertices and a unit normal. Its directions are found one after the
-   other, the longest first and then, from the points without their part along it, the one across: so a narrow face has
-   its normal to rounding, too, where the eigenvectors of its scatter matrix would have half the digits. */
+/* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
                                        double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
-    gproji_face_mean(mesh, position, face, mean);
+    gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < degree; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
+    /* The longest direction first and then, from points without their part along it, the one across: so a narrow face
+       has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         for (i = 0; i < 3; ++i)
@@ -16990,11 +16992,11 @@ GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *pos
         uv += gproji_dot3(d, u) * gproji_dot3(d, v);
         vv += gproji_dot3(d, v) * gproji_dot3(d, v);
     }
-    angle = 0.5 * atan2(2 * uv, uu - vv); /* of the direction across, in the basis u, v */
+    angle = 0.5 * atan2(2 * uv, uu - vv); /* from u to the direction across */
     for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
 }
 
-/* The largest distance of a face's vertices from its least-squares plane, in the mesh's units. */
+/* The largest distance between a face's vertices and its least-squares plane, in the mesh's units. */
 GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                              const double normal[3]) {
     double d[3], worst = 0;
@@ -17006,17 +17008,16 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     return worst;
 }
 
-/* The point in the plane of a face that is, in the least-squares sense, on the perpendicular bisectors of all its
-   edges: with d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e, in the plane's coordinates. False
-   where the face has no such point (its edges are parallel). */
+/* Finds the point in a face's plane that is, in the least-squares sense, on all edges' perpendicular bisectors: with
+   d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e, in plane coordinates. False if all edges are
+   parallel. */
 GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *position, int32_t face,
                                          const double mean[3], const double normal[3], double out[3]) {
     double u[3], v[3], e[3], m[3], uu = 0, uv = 0, vv = 0, bu = 0, bv = 0, determinant, along, eu, ev;
     int32_t h = mesh->face_halfedge[face], k, i;
     gproji_tangents3(normal, u, v);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        const double *a = position + 3 * (size_t)mesh->origin[h],
-                     *b = position + 3 * (size_t)mesh->origin[mesh->next[h]];
+        const double *a = gproji_corner_at(mesh, position, h), *b = gproji_corner_at(mesh, position, mesh->next[h]);
         gproji_sub3(b, a, e);
         for (i = 0; i < 3; ++i) m[i] = (a[i] + b[i]) / 2 - mean[i];
         eu = gproji_dot3(e, u);
@@ -17033,7 +17034,7 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
     return true;
 }
 
-/* The largest difference of the distances of a face's vertices from its circumcentre; infinite without one. */
+/* The largest difference between a face's vertices in distance from its circumcentre; infinite without one. */
 GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                                const double normal[3]) {
     double centre[3], least = HUGE_VAL, most = 0;
@@ -17048,34 +17049,52 @@ GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t f
     return most - least;
 }
 
-/* The unit normal of a face with other positions, along its vectorial area; 0 where that is 0. */
+/* -- normals and vertices -- */
+
+/* A face's unit normal along its vectorial area; 0 without area. */
 GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_area_vector(mesh, position, face, out);
     gproji_normalise3(out, none);
 }
 
-/* The bisecting plane of the two faces at a half-edge: its unit normal b is along e x (n_f + n_g), e the unit vector of
-   the edge, n the unit normals. False at the boundary. */
-GPROJI_INTERNAL bool gproji_bisecting_plane(const gproj_mesh *mesh, const double *position, int32_t halfedge,
-                                            double b[3]) {
-    static const double none[3] = {0, 0, 0};
-    double e[3], other[3];
-    if (mesh->face[halfedge] < 0 || mesh->face[halfedge ^ 1] < 0) return false;
-    gproji_sub3(position + 3 * (size_t)mesh->origin[halfedge ^ 1], position + 3 * (size_t)mesh->origin[halfedge], e);
-    gproji_normalise3(e, none);
-    gproji_unit_normal(mesh, position, mesh->face[halfedge], b);
-    gproji_unit_normal(mesh, position, mesh->face[halfedge ^ 1], other);
-    gproji_add_scaled3(1, other, b);
-    gproji_cross3(e, b, b);
-    gproji_normalise3(b, none);
-    return true;
+/* Unit normals on demand. Each corner's vertex may ask for a large face's, so the last few are remembered. */
+typedef struct gproji_normals {
+    const gproj_mesh *mesh;
+    const double *position;
+    int32_t oldest;               /* the place that is replaced next */
+    int32_t face[GPROJI_NORMALS]; /* -1: free */
+    double normal[GPROJI_NORMALS][3];
+} gproji_normals;
+
+GPROJI_INTERNAL gproji_normals gproji_normals_of(const gproj_mesh *mesh, const double *position) {
+    gproji_normals normals;
+    memset(&normals, 0, sizeof normals);
+    normals.mesh = mesh, normals.position = position;
+    memset(normals.face, -1, sizeof normals.face);
+    return normals;
 }
 
-/* The mean unit normal of the faces around a vertex; e_z where they have none. Returns the number of faces. */
-GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                           double out[3]) {
+GPROJI_INTERNAL void gproji_recall_normal(gproji_normals *normals, int32_t face, double out[3]) {
+    int32_t i;
+    if (normals->mesh->face_degree[face] <= GPROJI_LARGE_FACE) {
+        gproji_unit_normal(normals->mesh, normals->position, face, out);
+        return;
+    }
+    for (i = 0; i < GPROJI_NORMALS && normals->face[i] != face; ++i) continue;
+    if (i == GPROJI_NORMALS) {
+        i = normals->oldest;
+        normals->oldest = (i + 1) % GPROJI_NORMALS;
+        normals->face[i] = face;
+        gproji_unit_normal(normals->mesh, normals->position, face, normals->normal[i]);
+    }
+    gproji_copy3(normals->normal[i], out);
+}
+
+/* Finds the mean unit normal over the faces around a vertex; e_z without faces. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
+    const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
     double n[3];
     gproji_copy3(up, out);
@@ -17083,7 +17102,7 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double 
     gproji_set3(0, 0, 0, out);
     do {
         if (mesh->face[h] >= 0) {
-            gproji_unit_normal(mesh, position, mesh->face[h], n);
+            gproji_recall_normal(normals, mesh->face[h], n);
             gproji_add_scaled3(1, n, out);
             ++count;
         }
@@ -17093,18 +17112,28 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double 
     return count;
 }
 
-/* The axis of the cone that the planes around a vertex touch: it is in the bisecting planes of all edges. The unit
-   vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
-   to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
-GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                         double axis[3]) {
-    int32_t count = gproji_mean_normal(mesh, position, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
-    double b[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant, t[2];
+/* Finds the axis of the cone that the planes around a vertex touch; it is in all edges' bisecting planes. The unit vector
+   along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal to it
+   and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex, double axis[3]) {
+    static const double none[3] = {0, 0, 0};
+    const gproj_mesh *mesh = normals->mesh;
+    int32_t count = gproji_mean_normal(normals, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
+    double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant, t[2];
     if (count < 3) return count;
     gproji_tangents3(axis, u, v);
     do {
-        if (gproji_bisecting_plane(mesh, position, h, b)) {
-            double bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
+        if (mesh->face[h] >= 0 && mesh->face[h ^ 1] >= 0) { /* b along e x (n_f + n_g), e the edge's unit vector */
+            double bu, bv, bm;
+            gproji_sub3(gproji_corner_at(mesh, normals->position, h ^ 1), gproji_corner_at(mesh, normals->position, h),
+                        e);
+            gproji_normalise3(e, none);
+            gproji_recall_normal(normals, mesh->face[h], b);
+            gproji_recall_normal(normals, mesh->face[h ^ 1], n);
+            gproji_add_scaled3(1, n, b);
+            gproji_cross3(e, b, b);
+            gproji_normalise3(b, none);
+            bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
             uu += bu * bu, uv += bu * bv, vv += bv * bv;
             um -= bu * bm, vm -= bv * bm;
         }
@@ -17122,16 +17151,24 @@ GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *p
     return count;
 }
 
-/* The largest difference of the angles between the normals of the faces around a vertex and their best axis; 0 where
-   fewer than four meet. */
-GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t vertex) {
+/* Finds the axis at a single vertex. */
+GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
+                                         double axis[3]) {
+    gproji_normals normals = gproji_normals_of(mesh, position);
+    return gproji_find_axis(&normals, vertex, axis);
+}
+
+/* The largest difference between the angles that the normals around a vertex make with their best axis; 0 with fewer
+   than four faces. */
+GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t vertex) {
+    const gproj_mesh *mesh = normals->mesh;
     double axis[3], n[3], cross[3], least = HUGE_VAL, most = 0;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    if (gproji_cone_axis(mesh, mesh->position, vertex, axis) < 4) return 0;
+    if (gproji_find_axis(normals, vertex, axis) < 4) return 0;
     do {
         if (mesh->face[h] >= 0) {
             double angle;
-            gproji_unit_normal(mesh, mesh->position, mesh->face[h], n);
+            gproji_recall_normal(normals, mesh->face[h], n);
             gproji_cross3(n, axis, cross);
             angle = atan2(gproji_length3(cross), gproji_dot3(n, axis));
             least = gproji_fmin(least, angle);
@@ -17142,8 +17179,8 @@ GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t 
     return most - least;
 }
 
-/* |w1 - w2 + w3 - w4| for the angles of the four faces around an interior vertex: 0 where they touch a cone, but anything
-   where the vertex is flat, though its normals say nothing of it. 0 at other vertices. */
+/* |w1 - w2 + w3 - w4| for the four faces' angles around an interior vertex: 0 if they touch a cone, but anything where
+   the vertex is flat, though its normals do not show it. 0 at other vertices. */
 GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
     double a[3], b[3], cross[3], sum = 0;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
@@ -17160,18 +17197,33 @@ GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t ve
     return fabs(sum);
 }
 
-/* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
-   the vector that joins them over the area they span. */
-GPROJI_INTERNAL double gproji_diagonal_distance(const gproj_mesh *mesh, int32_t face) {
-    int32_t a = mesh->face_halfedge[face], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
-    double first[3], second[3], joining[3], normal[3], length;
-    gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
-    gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
-    gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
-    gproji_cross3(first, second, normal);
-    length = gproji_length3(normal);
-    return length > 0 ? fabs(gproji_dot3(normal, joining)) / length : 0;
+/* The area of the normals' spherical polygon around an interior vertex, as a fan of plane triangles about their mean; 0
+   at the boundary. */
+GPROJI_INTERNAL double gproji_gauss_area(gproji_normals *normals, int32_t vertex) {
+    const gproj_mesh *mesh = normals->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double mean[3] = {0, 0, 0}, previous[3], n[3], a[3], b[3], area[3], sum = 0;
+    if (start < 0 || mesh->face[start] < 0) return 0;
+    do {
+        gproji_recall_normal(normals, mesh->face[h], previous);
+        gproji_add_scaled3(1, previous, mean);
+        count++;
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    mean[0] /= count, mean[1] /= count, mean[2] /= count;
+    do { /* `previous` begins as the last face's normal */
+        gproji_recall_normal(normals, mesh->face[h], n);
+        gproji_sub3(previous, mean, a);
+        gproji_sub3(n, mean, b);
+        gproji_cross3(a, b, area);
+        sum += 0.5 * gproji_length3(area);
+        gproji_copy3(n, previous);
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    return sum;
 }
+
+/* -- crossings and folds -- */
 
 /* Twice the signed area of the triangle a b c seen along `axis`. */
 GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], const double c[3], const double axis[3]) {
@@ -17182,12 +17234,12 @@ GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], co
     return gproji_dot3(n, axis);
 }
 
-/* Are a and b of different signs, both clear of rounding? */
+/* Have a and b different signs, both clear of rounding? */
 GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
     return (a > rounding && b < -rounding) || (a < -rounding && b > rounding);
 }
 
-/* Do the segments of half-edges g and h cross properly, seen along the unit vector `axis`? */
+/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`? */
 GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *position, int32_t g, int32_t h,
                                         const double axis[3]) {
     const double *a = gproji_corner_at(mesh, position, g), *b = gproji_corner_at(mesh, position, mesh->next[g]);
@@ -17197,42 +17249,139 @@ GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *po
            gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
 }
 
-/* Does a side of the face cross another, seen along the normal of its least-squares plane? Its vectorial area would not
-   do: a symmetric bow-tie has none. */
+/* Consecutive sides, from a half-edge on. */
+typedef struct gproji_chain {
+    int32_t first, count;
+    double low[2], high[2]; /* the box around it in the coordinates u and v */
+} gproji_chain;
+
+/* Describes a chain; the box is relative to the point basis[0]. Returns the half-edge after the last. */
+GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double *position, double basis[3][3],
+                                           int32_t first, int32_t count, gproji_chain *chain) {
+    int32_t h = first, k, i;
+    chain->first = first, chain->count = count;
+    for (k = 0;; ++k, h = mesh->next[h]) {
+        double d[3];
+        gproji_sub3(gproji_corner_at(mesh, position, h), basis[0], d);
+        for (i = 0; i < 2; ++i) {
+            double x = gproji_dot3(d, basis[i + 1]);
+            if (k == 0 || x < chain->low[i]) chain->low[i] = x;
+            if (k == 0 || x > chain->high[i]) chain->high[i] = x;
+        }
+        if (k == count) return h;
+    }
+}
+
+/* Does a side cross another, seen along the normal of the face's least-squares plane? Its vectorial area would not do:
+   a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
+   out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
                                        const double axis[3]) {
-    int32_t degree = mesh->face_degree[face], g = mesh->face_halfedge[face], h, i, j;
-    for (i = 0; i + 2 < degree; ++i, g = mesh->next[g]) {
-        h = mesh->next[mesh->next[g]];
-        for (j = i + 2; j < degree; ++j, h = mesh->next[h])
-            if (mesh->next[h] != g && gproji_sides_cross(mesh, position, g, h, axis)) return true;
+    gproji_chain stack[GPROJI_CHAIN_DEPTH][2], part[2];
+    int32_t degree = mesh->face_degree[face], most = degree > GPROJI_LARGE_FACE ? GPROJI_CHAIN : degree, depth = 0;
+    int32_t g, h, i, j;
+    double basis[3][3];
+    gproji_copy3(gproji_corner_at(mesh, position, mesh->face_halfedge[face]), basis[0]);
+    gproji_tangents3(axis, basis[1], basis[2]);
+    memset(part, 0, sizeof part); /* the whole outline meets itself: its box does not matter */
+    part[0].first = mesh->face_halfedge[face], part[0].count = degree;
+    stack[depth][0] = part[0], stack[depth++][1] = part[0];
+    while (depth > 0) {
+        const gproji_chain a = stack[--depth][0], b = stack[depth][1];
+        bool same = a.first == b.first;
+        if (a.low[0] > b.high[0] || a.high[0] < b.low[0] || a.low[1] > b.high[1] || a.high[1] < b.low[1]) continue;
+        if (a.count > most || b.count > most) {
+            const gproji_chain *whole = a.count >= b.count ? &a : &b;
+            h = gproji_bound_chain(mesh, position, basis, whole->first, whole->count / 2, &part[0]);
+            gproji_bound_chain(mesh, position, basis, h, whole->count - whole->count / 2, &part[1]);
+            for (i = 0; i < 2; ++i, ++depth)
+                stack[depth][0] = same || whole == &a ? part[i] : a,
+                stack[depth][1] = same || whole == &b ? part[i] : b;
+            if (same) stack[depth][0] = part[0], stack[depth++][1] = part[1];
+            continue;
+        }
+        for (i = 0, g = a.first; i < a.count; ++i, g = mesh->next[g]) { /* sides that are not neighbours */
+            h = same ? mesh->next[g] : b.first;
+            for (j = same ? i + 1 : 0; j < b.count; ++j, h = mesh->next[h])
+                if (mesh->next[g] != h && mesh->next[h] != g && gproji_sides_cross(mesh, position, g, h, axis))
+                    return true;
+        }
     }
     return false;
 }
 
 /* Do the normals of an edge's two faces make more than 120 degrees? */
-GPROJI_INTERNAL bool gproji_is_folded(const gproj_mesh *mesh, const double *position, int32_t edge) {
-    static const double none[3] = {0, 0, 0};
-    int32_t left = mesh->face[2 * edge], right = mesh->face[2 * edge + 1];
+GPROJI_INTERNAL bool gproji_is_folded(gproji_normals *normals, int32_t edge) {
+    int32_t left = normals->mesh->face[2 * edge], right = normals->mesh->face[2 * edge + 1];
     double a[3], b[3];
     if (left < 0 || right < 0) return false;
-    gproji_area_vector(mesh, position, left, a);
-    gproji_area_vector(mesh, position, right, b);
-    return gproji_normalise3(a, none) && gproji_normalise3(b, none) && gproji_dot3(a, b) < -0.5;
+    gproji_recall_normal(normals, left, a);
+    gproji_recall_normal(normals, right, b);
+    return gproji_dot3(a, b) < -0.5;
 }
 
-GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures *m) {
-    int32_t e;
-    m->mean_edge = gproji_mean_edge(mesh, mesh->position);
-    for (e = 0; e < mesh->edge_count; ++e) {
-        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
-        if (e == 0 || length < m->min_edge) m->min_edge = length;
-        if (length > m->max_edge) m->max_edge = length;
-        m->length += length;
-        m->collapsed_edges += length <= 1e-6 * m->mean_edge;
-        m->folded_edges += gproji_is_folded(mesh, mesh->position, e);
+/* -- volume -- */
+
+/* Computes the volume (see gproj_add_volume) down to the plane z = -height, and the sum of the faces' areas; `gradient`
+   becomes six times the volume's derivatives, 3 numbers a vertex. `gradient` and `area` may be NULL. */
+GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
+                                     double *area) {
+    double sum = 0, all = 0, apex[3], a[3], b[3], cross[3];
+    int32_t f, i;
+    gproji_set3(position[0], position[1], -height, apex);
+    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    /* 1. Tetrahedra between the apex and the triangles at each face's first corner. `before` sums both triangles at a
+       corner, which give the derivative there as far as the mesh is closed. */
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
+        const double *first = gproji_corner_at(mesh, position, start);
+        double face[3] = {0, 0, 0}, before[3] = {0, 0, 0};
+        gproji_sub3(gproji_corner_at(mesh, position, h), first, a);
+        for (; (next = mesh->next[h]) != start; h = next) {
+            gproji_sub3(gproji_corner_at(mesh, position, next), first, b);
+            gproji_cross3(a, b, cross);
+            gproji_add_scaled3(1, cross, face);
+            gproji_add_scaled3(1, cross, before);
+            if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
+            gproji_copy3(cross, before);
+            gproji_copy3(b, a);
+        }
+        if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
+        if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
+        gproji_sub3(first, apex, a);
+        sum += gproji_dot3(a, face);
+        all += gproji_length3(face);
     }
+    /* 2. Walls from boundary edges pq, in the faces' direction, down to the plane: (p x q)_z (p_z + q_z) from the apex,
+       and to the derivatives the part - p x q that the faces lack there. */
+    for (i = 0; i < mesh->loop_count; ++i) {
+        int32_t start = mesh->loop_halfedge[i], h = start;
+        do {
+            int32_t p = mesh->origin[mesh->next[h]], q = mesh->origin[h];
+            double rise;
+            gproji_sub3(position + 3 * (size_t)p, apex, a);
+            gproji_sub3(position + 3 * (size_t)q, apex, b);
+            gproji_cross3(a, b, cross);
+            rise = a[2] + b[2];
+            if (gradient) {
+                gradient[3 * (size_t)p] += rise * b[1] - cross[0];
+                gradient[3 * (size_t)p + 1] -= rise * b[0] + cross[1];
+                gradient[3 * (size_t)q] -= rise * a[1] + cross[0];
+                gradient[3 * (size_t)q + 1] += rise * a[0] - cross[1];
+            }
+            sum += cross[2] * rise;
+            h = mesh->next[h];
+        } while (h != start);
+    }
+    if (area) *area = all / 2;
+    return sum / 6;
 }
+
+GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
+    return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
+}
+
+/* -- all measures -- */
 
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
     double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area;
@@ -17256,8 +17405,17 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
             m->planarity_max = flatness;
             m->planarity_face = f;
         }
-        if (mesh->face_degree[f] == 4)
-            m->diagonal_max = gproji_fmax(m->diagonal_max, gproji_diagonal_distance(mesh, f) / unit);
+        if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
+            int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
+            double first[3], second[3], joining[3], across[3], length;
+            gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
+            gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
+            gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
+            gproji_cross3(first, second, across);
+            length = gproji_length3(across);
+            if (length > 0)
+                m->diagonal_max = gproji_fmax(m->diagonal_max, fabs(gproji_dot3(across, joining)) / length / unit);
+        }
         if (planarity) planarity[f] = flatness;
     }
     mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
@@ -17265,130 +17423,17 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
 }
 
-/* The area of the spherical polygon of the normals around an interior vertex, as a fan of plane triangles about their
-   mean; 0 at the boundary. */
-GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex) {
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
-    double mean[3] = {0, 0, 0}, previous[3], n[3], a[3], b[3], area[3], sum = 0;
-    static const double none[3] = {0, 0, 0};
-    if (start < 0 || mesh->face[start] < 0) return 0;
-    do {
-        gproji_area_vector(mesh, mesh->position, mesh->face[h], previous);
-        gproji_normalise3(previous, none);
-        gproji_add_scaled3(1, previous, mean);
-        count++;
-        h = mesh->twin[mesh->prev[h]];
-    } while (h != start);
-    mean[0] /= count, mean[1] /= count, mean[2] /= count;
-    do { /* `previous` begins as the normal of the last face */
-        gproji_area_vector(mesh, mesh->position, mesh->face[h], n);
-        gproji_normalise3(n, none);
-        gproji_sub3(previous, mean, a);
-        gproji_sub3(n, mean, b);
-        gproji_cross3(a, b, area);
-        sum += 0.5 * gproji_length3(area);
-        gproji_copy3(n, previous);
-        h = mesh->twin[mesh->prev[h]];
-    } while (h != start);
-    return sum;
-}
-
-/* What a face adds to six times the volume between the mesh and `apex`, by tetrahedra of that and the triangles from the
-   face's first corner, and to the derivatives of the volume where the mesh is closed; `face`: twice its vectorial area. */
-GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
-                                          int32_t f, double *gradient, double face[3]) {
-    int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
-    const double *first = position + 3 * (size_t)mesh->origin[start];
-    double b[3], c[3], area[3], before[3] = {0, 0, 0};
-    gproji_sub3(position + 3 * (size_t)mesh->origin[h], first, b);
-    for (; (next = mesh->next[h]) != start; h = next) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[next], first, c);
-        gproji_cross3(b, c, area);
-        gproji_add_scaled3(1, area, face);
-        gproji_add_scaled3(1, area, before); /* both triangles at this corner */
-        if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
-        gproji_copy3(area, before);
-        gproji_copy3(c, b);
-    }
-    if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
-    if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
-    gproji_sub3(first, apex, b);
-    return gproji_dot3(b, face);
-}
-
-/* The same of all faces; `area`: the sum of their areas. */
-GPROJI_INTERNAL double gproji_faces_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
-                                           double *gradient, double *area) {
-    double sum = 0, all = 0;
-    int32_t f;
-    for (f = 0; f < mesh->face_count; ++f) {
-        double face[3] = {0, 0, 0};
-        sum += gproji_face_volume(mesh, position, apex, f, gradient, face);
-        all += gproji_length3(face);
-    }
-    *area = all / 2;
-    return sum;
-}
-
-/* What the wall from a face's edge pq at the boundary down to the plane through `apex` adds to six times the volume, in
-   coordinates from there (p x q)_z (p_z + q_z), and to its derivatives with what the faces' lack there, - p x q. */
-GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double apex[3], int32_t p, int32_t q,
-                                          double *gradient) {
-    double a[3], b[3], area[3], height;
-    gproji_sub3(position + 3 * (size_t)p, apex, a);
-    gproji_sub3(position + 3 * (size_t)q, apex, b);
-    gproji_cross3(a, b, area);
-    height = a[2] + b[2];
-    if (gradient) {
-        gradient[3 * (size_t)p] += height * b[1] - area[0];
-        gradient[3 * (size_t)p + 1] -= height * b[0] + area[1];
-        gradient[3 * (size_t)q] -= height * a[1] + area[0];
-        gradient[3 * (size_t)q + 1] += height * a[0] - area[1];
-    }
-    return area[2] * height;
-}
-
-/* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
-   areas; `gradient` becomes six times the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
-GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
-                                     double *area) {
-    double sum, all, apex[3];
-    int32_t i;
-    gproji_set3(position[0], position[1], -height, apex);
-    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
-    sum = gproji_faces_volume(mesh, position, apex, gradient, &all);
-    for (i = 0; i < mesh->loop_count; ++i) {
-        int32_t start = mesh->loop_halfedge[i], h = start;
-        do { /* against the faces' direction */
-            sum += gproji_wall_volume(position, apex, mesh->origin[mesh->next[h]], mesh->origin[h], gradient);
-            h = mesh->next[h];
-        } while (h != start);
-    }
-    if (area) *area = all;
-    return sum / 6;
-}
-
-GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
-    return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
-}
-
-GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    int32_t v, k;
-    for (v = 0; v < count; ++v) {
+GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge = gproji_mean_edge(mesh, original);
+    double sum = 0, squares = 0, before[3], now[3];
+    int32_t v, f, k;
+    for (v = 0; v < mesh->vertex_count; ++v)
         for (k = 0; k < 3; ++k) {
-            double x = position[3 * (size_t)v + (size_t)k];
+            double x = original[3 * (size_t)v + (size_t)k];
             if (v == 0 || x < low[k]) low[k] = x;
             if (v == 0 || x > high[k]) high[k] = x;
         }
-    }
-    return gproji_distance3(low, high);
-}
-
-GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
-    double diagonal = gproji_box_diagonal(original, mesh->vertex_count), edge = gproji_mean_edge(mesh, original);
-    double sum = 0, squares = 0, before[3], now[3];
-    int32_t v, f;
+    diagonal = gproji_distance3(low, high);
     if (!(diagonal > 0)) diagonal = 1;
     if (!(edge > 0)) edge = 1;
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -17427,22 +17472,32 @@ GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planari
 }
 
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
+    gproji_normals normals;
     gproj_measures m;
-    int32_t v;
+    int32_t v, e;
     memset(&m, 0, sizeof m);
     m.planarity_face = -1;
     if (!mesh) return m;
-    gproji_measure_edges(mesh, &m);
+    normals = gproji_normals_of(mesh, mesh->position);
+    m.mean_edge = gproji_mean_edge(mesh, mesh->position);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
+        if (e == 0 || length < m.min_edge) m.min_edge = length;
+        if (length > m.max_edge) m.max_edge = length;
+        m.length += length;
+        m.collapsed_edges += length <= 1e-6 * m.mean_edge;
+        m.folded_edges += gproji_is_folded(&normals, e);
+    }
     gproji_measure_faces(mesh, planarity, &m);
     for (v = 0; v < mesh->vertex_count; ++v) {
-        m.gauss_variation += gproji_gauss_area(mesh, v);
-        m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(mesh, v));
+        m.gauss_variation += gproji_gauss_area(&normals, v);
+        m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(&normals, v));
     }
     if (original) gproji_measure_change(mesh, original, &m);
     return m;
 }
 
-/* -- what is spoiled -- */
+/* -- damage -- */
 
 /* Kinds of damage, in the order in which sentences tell them. */
 typedef enum gproji_damage {
@@ -17457,7 +17512,7 @@ typedef enum gproji_damage {
 
 typedef struct gproji_damages {
     int32_t count[GPROJI_DAMAGE_COUNT];
-    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge of each kind; -1: none */
+    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge with each kind, or -1 */
 } gproji_damages;
 
 GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, int32_t element, bool spoiled) {
@@ -17465,11 +17520,11 @@ GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, 
     if (d->count[kind]++ == 0) d->first[kind] = element;
 }
 
-/* Is a quad with this vectorial area clearly convex, and nearly flat? Then it does not cross itself, and needs no plane of
-   least squares to say so. */
+/* Is a quad with this vectorial area clearly convex, and nearly flat? Then it does not cross itself, and needs no
+   least-squares plane to say so. */
 GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double *position, int32_t face,
                                            const double area[3]) {
-    /* Height over least altitude: the plane's normal then leans by at most 1.5 flat, which takes at most 3 flat^2 of a
+    /* Height over least altitude: the plane's normal then leans by at most 1.5 flat, which takes at most 3 flat^2 from a
        corner's area. */
     static const double flat = 0.1;
     double side[4][3], cross[3], longest = 0, least = HUGE_VAL;
@@ -17479,11 +17534,11 @@ GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double 
         gproji_sub3(gproji_corner_at(mesh, position, mesh->next[h]), gproji_corner_at(mesh, position, h), side[k]);
         longest = gproji_fmax(longest, gproji_length3(side[k]));
     }
-    for (k = 0; k < 4; ++k) { /* twice the areas of the corners' triangles, times that of the quad */
+    for (k = 0; k < 4; ++k) { /* twice the corner triangles' areas, times the quad's */
         gproji_cross3(side[k], side[(k + 1) % 4], cross);
         least = gproji_fmin(least, gproji_dot3(cross, area));
     }
-    /* Both diagonals are orthogonal to the vectorial area: each side rises by the height between them. */
+    /* The diagonals are orthogonal to the vectorial area: each side rises by the height between them. */
     return fabs(gproji_dot3(side[0], area)) * longest < flat * least;
 }
 
@@ -17493,27 +17548,25 @@ GPROJI_INTERNAL bool gproji_crosses_itself(const gproj_mesh *mesh, const double 
     return gproji_is_bow_tie(mesh, position, face, normal);
 }
 
-/* The least factor by which edges have grown, and at least 1: a mesh that is scaled up as a whole has no spikes. */
-GPROJI_INTERNAL double gproji_least_growth(const gproj_mesh *mesh, const double *position, const double *original) {
-    double least = HUGE_VAL;
-    int32_t e;
-    for (e = 0; e < mesh->edge_count && least > 1; ++e) {
-        int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
-        double before = gproji_distance3(original + 3 * (size_t)i, original + 3 * (size_t)j);
-        double now = gproji_distance3(position + 3 * (size_t)i, position + 3 * (size_t)j);
-        if (before > 0) least = gproji_fmin(least, now / before);
-    }
-    return least > 1 && least < HUGE_VAL ? least : 1;
-}
-
-/* Counts what is spoiled at these positions. Folds and crossings at the original are looked at only where there is one
-   now: nearly never. */
+/* Counts damage at these positions. The original is asked for folds and crossings only if there is one now: nearly
+   never. */
 GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *position, const double *original,
                                          gproji_damages *d) {
-    double grown = gproji_least_growth(mesh, position, original), mean = grown * gproji_mean_edge(mesh, original);
+    gproji_normals was = gproji_normals_of(mesh, original), is = gproji_normals_of(mesh, position);
+    double grown = HUGE_VAL, mean;
     int32_t i;
     memset(d->count, 0, sizeof d->count);
     for (i = 0; i < GPROJI_DAMAGE_COUNT; ++i) d->first[i] = -1;
+    /* 1. The least factor by which edges have grown, and at least 1: a mesh scaled up as a whole has no spikes. */
+    for (i = 0; i < mesh->edge_count && grown > 1; ++i) {
+        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
+        double before = gproji_distance3(original + a, original + b),
+               now = gproji_distance3(position + a, position + b);
+        if (before > 0) grown = gproji_fmin(grown, now / before);
+    }
+    if (!(grown > 1 && grown < HUGE_VAL)) grown = 1;
+    mean = grown * gproji_mean_edge(mesh, original);
+    /* 2. Faces. */
     for (i = 0; i < mesh->face_count; ++i) {
         double before[3], now[3];
         gproji_area_vector(mesh, original, i, before);
@@ -17525,18 +17578,18 @@ GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *p
                             mesh->face_degree[i] > 3 && !gproji_is_convex_quad(mesh, position, i, now) &&
                                 gproji_crosses_itself(mesh, position, i) && !gproji_crosses_itself(mesh, original, i));
     }
+    /* 3. Edges. */
     for (i = 0; i < mesh->edge_count; ++i) {
-        int32_t a = mesh->origin[2 * i], b = mesh->origin[2 * i + 1];
-        double before = grown * gproji_distance3(original + 3 * (size_t)a, original + 3 * (size_t)b);
-        double now = gproji_distance3(position + 3 * (size_t)a, position + 3 * (size_t)b);
+        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
+        double before = grown * gproji_distance3(original + a, original + b);
+        double now = gproji_distance3(position + a, position + b);
         gproji_count_damage(d, GPROJI_DAMAGE_EDGE, i, now < 0.1 * before && now < 0.1 * mean);
         gproji_count_damage(d, GPROJI_DAMAGE_SPIKE, i, before > 0 && now > 5 * before && now > 3 * mean);
-        gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i,
-                            gproji_is_folded(mesh, position, i) && !gproji_is_folded(mesh, original, i));
+        gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i, gproji_is_folded(&is, i) && !gproji_is_folded(&was, i));
     }
 }
 
-/* Where damage of a kind is. */
+/* The kind of element that this damage counts. */
 GPROJI_INTERNAL gproj_place gproji_damage_place(int32_t kind) {
     bool edge = kind == GPROJI_DAMAGE_FOLDED || kind == GPROJI_DAMAGE_EDGE || kind == GPROJI_DAMAGE_SPIKE;
     return edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_FACE;
@@ -17571,31 +17624,31 @@ GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const doub
 }
 
 /* ============================================================================================================
-   >>offset   Parallel meshes at constant distance, and what is between them. Uses platform, memory, error, vector, mesh,
+   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector, mesh,
    measure.
 
    Based on Pottmann, Liu, Wallner, Bobenko, Wang: Geometry of multi-layer freeform structures for architecture (2007),
    and Liu, Pottmann, Wallner, Yang, Wang: Geometric modeling with conical meshes and developable surfaces (2006).
    An offset is the mesh with vertices v + distance * x; a first part finds the field x, 3 numbers a vertex. */
 
-/* -- the field of a vertex offset -- */
+/* -- the field for a vertex offset -- */
 
-/* The work of gproji_vertex_field: all arrays 9 numbers or 1 entry a vertex. */
+/* Work arrays for gproji_vertex_field: 9 numbers or 1 entry a vertex. */
 typedef struct gproji_mirrors {
-    double *image;  /* 3x3, by rows: the product of reflections that leads from the first vertex of the component */
-    int32_t *queue; /* the vertices of the component, in the order in which they are reached */
+    double *image;  /* 3x3, by rows: the product of reflections on the way from the component's first vertex */
+    int32_t *queue; /* the component's vertices, breadth first */
     bool *reached;
-    int32_t first, last; /* the component's part of the queue */
+    int32_t first, last; /* the component's part in the queue */
 } gproji_mirrors;
 
-/* The unit vector of an edge from the origin of a half-edge; 0 without length. */
+/* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
     gproji_normalise3(out, none);
 }
 
-/* `out` = the 3x3 matrix `in`, mirrored in the plane orthogonal to the half-edge: (I - 2 e e') in. */
+/* Mirrors the 3x3 matrix `in` in the plane orthogonal to the half-edge: out = (I - 2 e e') in. */
 GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, const double in[9], double out[9]) {
     double e[3];
     int32_t i, j;
@@ -17606,65 +17659,35 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
     }
 }
 
-/* Reaches the component of a vertex, breadth first. */
-GPROJI_INTERNAL void gproji_reach(const gproj_mesh *mesh, int32_t vertex, gproji_mirrors *work) {
-    double *image = work->image + 9 * (size_t)vertex;
-    int32_t at;
-    memset(image, 0, 9 * sizeof *image);
-    image[0] = image[4] = image[8] = 1;
-    work->first = work->last;
-    work->queue[work->last++] = vertex;
-    work->reached[vertex] = true;
-    for (at = work->first; at < work->last; ++at) {
-        int32_t start = mesh->vertex_halfedge[work->queue[at]], h = start;
-        do {
-            int32_t next = mesh->origin[h ^ 1];
-            if (!work->reached[next]) {
-                gproji_mirror(mesh, h, work->image + 9 * (size_t)work->queue[at], work->image + 9 * (size_t)next);
-                work->reached[next] = true;
-                work->queue[work->last++] = next;
-            }
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
-    }
-}
-
-/* The mean of D'D over the edges of the component, D = image_j - mirror(image_i): m at the first vertex closes along an
-   edge where D m = 0. And the sum of image'n over its vertices, n the unit normal there: m goes along it best. */
-GPROJI_INTERNAL void gproji_closing(const gproj_mesh *mesh, const gproji_mirrors *work, double closing[3][3],
-                                    double wanted[3]) {
-    int32_t at, edges = 0, i, j, k;
-    memset(closing, 0, 9 * sizeof closing[0][0]);
-    gproji_set3(0, 0, 0, wanted);
+/* Chooses the unit vector m at the component's first vertex: along the vertex normals, as far as edges stay parallel. */
+GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
+                                       double m[3]) {
+    static const double up[3] = {0, 0, 1};
+    double closing[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
+    int32_t at, edges = 0, sweep, best = 0, i, j, k;
+    /* 1. `closing`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
+       the sum over image'n, n the unit normal at the vertex; m goes along it best. */
     for (at = work->first; at < work->last; ++at) {
         int32_t vertex = work->queue[at], start = mesh->vertex_halfedge[vertex], h = start;
         const double *image = work->image + 9 * (size_t)vertex;
         double normal[3];
-        gproji_mean_normal(mesh, mesh->position, vertex, normal);
+        gproji_mean_normal(normals, vertex, normal);
         for (i = 0; i < 3; ++i) gproji_add_scaled3(normal[i], image + 3 * i, wanted);
         do {
             const double *other = work->image + 9 * (size_t)mesh->origin[h ^ 1];
             double d[9];
             gproji_mirror(mesh, h, image, d);
             for (i = 0; i < 9; ++i) d[i] = other[i] - d[i];
-            for (i = 0; i < 3; ++i)
-                for (j = 0; j < 3; ++j)
-                    for (k = 0; k < 3; ++k) closing[i][j] += d[3 * k + i] * d[3 * k + j];
+            for (i = 0; i < 9; ++i)
+                for (k = 0; k < 3; ++k) closing[i / 3][i % 3] += d[3 * k + i / 3] * d[3 * k + i % 3];
             ++edges;
             h = gproji_rotate(mesh, h);
         } while (h != start);
     }
     for (i = 0; i < 3; ++i)
         for (j = 0; j < 3; ++j) closing[i][j] /= edges;
-}
-
-/* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed)
-   in which the mesh does not close as well as it can; all of it where hardly half would be left. */
-GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted[3], double m[3]) {
-    static const double up[3] = {0, 0, 1};
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, least, column[3];
-    int32_t sweep, k, best = 0;
-    for (sweep = 0; sweep < 12; ++sweep) {
+    /* 2. `wanted` in the principal directions that close as well as any; all directions if hardly half is left. */
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) {
         gproji_jacobi_rotate(closing, v, 0, 1);
         gproji_jacobi_rotate(closing, v, 0, 2);
         gproji_jacobi_rotate(closing, v, 1, 2);
@@ -17685,6 +17708,7 @@ GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
     static const double none[3] = {0, 0, 0};
     size_t vertices = (size_t)mesh->vertex_count;
+    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
     int32_t v, at;
     work.first = work.last = 0;
@@ -17692,11 +17716,28 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
     work.queue = (int32_t *)gproji_take(heap, vertices, sizeof *work.queue);
     work.reached = (bool *)gproji_take_zeroed(heap, vertices, sizeof *work.reached);
     for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
-        double closing[3][3], wanted[3], m[3];
+        double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
-        gproji_reach(mesh, v, &work);
-        gproji_closing(mesh, &work, closing, wanted);
-        gproji_best_start(closing, wanted, m);
+        /* 1. Reflections along a breadth-first tree, which keeps their products short. */
+        memset(identity, 0, 9 * sizeof *identity);
+        identity[0] = identity[4] = identity[8] = 1;
+        work.first = work.last;
+        work.queue[work.last++] = v;
+        work.reached[v] = true;
+        for (at = work.first; at < work.last; ++at) {
+            int32_t from = work.queue[at], start = mesh->vertex_halfedge[from], h = start;
+            do {
+                int32_t next = mesh->origin[h ^ 1];
+                if (!work.reached[next]) {
+                    gproji_mirror(mesh, h, work.image + 9 * (size_t)from, work.image + 9 * (size_t)next);
+                    work.reached[next] = true;
+                    work.queue[work.last++] = next;
+                }
+                h = gproji_rotate(mesh, h);
+            } while (h != start);
+        }
+        /* 2. Images of the best vector. */
+        gproji_best_start(mesh, &normals, &work, m);
         for (at = work.first; at < work.last; ++at) {
             const double *image = work.image + 9 * (size_t)work.queue[at];
             double *out = x + 3 * (size_t)work.queue[at];
@@ -17710,14 +17751,13 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
     return work.image && work.queue && work.reached;
 }
 
-/* -- the field of a face offset -- */
+/* -- the field for a face offset -- */
 
-/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the minimum that is nearest to it; in two
-   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between
-   two faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for
-   edges between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x
-   moves only as the distances of the faces allow: along the one edge between two faces, or in the plane of the only
-   face. */
+/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the nearest minimum, in two stages. First
+   sum (n_k'x_v - 1)^2 over the corners v on the faces k + sum |P (x_j - x_i)|^2 over the edges between two faces, P the
+   projection across the edge: for a conical mesh the minimum is 0, and x is there already except at edges between
+   nearly coplanar faces. Then sum |P (x_j - x_i)|^2 over boundary edges; x moves only as the faces' distances allow:
+   along the one edge between two faces, or in the only face's plane. */
 typedef struct gproji_parallels {
     const gproj_mesh *mesh;
     bool boundary;     /* the second stage */
@@ -17729,54 +17769,24 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 2,
+    GPROJI_PARALLEL_ROUNDS = 2, /* restarts: the recurrences' rounding ends with them */
     GPROJI_PARALLEL_STEPS = 1000
 };
 
-/* out += n (n'x - distance) for the corners of the faces. */
-GPROJI_INTERNAL void gproji_apply_distances(const gproji_parallels *p, const double *x, double distance, double *out) {
+/* out = A x - distance * b: A the normal equations' matrix, b their right-hand side. */
+GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
     const gproj_mesh *mesh = p->mesh;
-    int32_t f, h, k;
-    for (f = 0; f < mesh->face_count; ++f) {
+    int32_t e, f, v, h, k;
+    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
+    for (f = 0; !p->boundary && f < mesh->face_count; ++f) { /* n (n'x - distance) at each corner */
         const double *n = p->normal + 3 * (size_t)f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            size_t v = 3 * (size_t)mesh->origin[h];
-            gproji_add_scaled3(gproji_dot3(n, x + v) - distance, n, out + v);
+            size_t i = 3 * (size_t)mesh->origin[h];
+            gproji_add_scaled3(gproji_dot3(n, x + i) - distance, n, out + i);
         }
     }
-}
-
-/* What a vertex of the second stage cannot do is taken from `out`. */
-GPROJI_INTERNAL void gproji_keep_distances(const gproji_parallels *p, double *out) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t v;
-    for (v = 0; v < mesh->vertex_count; ++v, out += 3) {
-        int32_t valence = gproj_mesh_valence(mesh, v), h;
-        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
-            gproji_set3(0, 0, 0, out);
-            continue;
-        }
-        h = gproji_rotate(mesh,
-                          mesh->vertex_halfedge[v]); /* with the first face on its left; on its right the second */
-        if (valence == 2) {
-            const double *n = p->normal + 3 * (size_t)mesh->face[h];
-            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
-        } else {
-            const double *e = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
-            double along = gproji_dot3(e, out);
-            gproji_set3(along * e[0], along * e[1], along * e[2], out);
-        }
-    }
-}
-
-/* out = A x - distance * b: A the matrix of the normal equations, b its right-hand side. */
-GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t e;
-    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
-    if (!p->boundary) gproji_apply_distances(p, x, distance, out);
-    for (e = 0; e < mesh->edge_count; ++e) {
+    for (e = 0; e < mesh->edge_count; ++e) { /* P (x_j - x_i) */
         const double *direction = p->direction + 3 * (size_t)e;
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         double d[3];
@@ -17786,10 +17796,25 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
         gproji_add_scaled3(1, d, out + j);
         gproji_add_scaled3(-1, d, out + i);
     }
-    if (p->boundary) gproji_keep_distances(p, out);
+    for (v = 0; p->boundary && v < mesh->vertex_count; ++v, out += 3) { /* only moves that keep the distances */
+        int32_t valence = gproj_mesh_valence(mesh, v);
+        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
+            gproji_set3(0, 0, 0, out);
+            continue;
+        }
+        h = gproji_rotate(mesh, mesh->vertex_halfedge[v]); /* the first face at the left, the second at the right */
+        if (valence == 2) {
+            const double *n = p->normal + 3 * (size_t)mesh->face[h];
+            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
+        } else {
+            const double *d = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
+            double along = gproji_dot3(d, out);
+            gproji_set3(along * d[0], along * d[1], along * d[2], out);
+        }
+    }
 }
 
-/* One round, until the slope is a small part of what it was. */
+/* Descends once, until the slope is a small part of that at the start. */
 GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     size_t count = 3 * (size_t)p->mesh->vertex_count, i;
     double square, before, start, curvature;
@@ -17811,30 +17836,13 @@ GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     }
 }
 
-/* Where it begins: each vertex for itself, x = a / cos(angle) with the axis a of its cone. */
-GPROJI_INTERNAL void gproji_start_parallels(const gproji_parallels *p, double *x) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t v;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], h = start, count;
-        double axis[3], cosine = 0;
-        gproji_set3(0, 0, 0, x + 3 * (size_t)v);
-        count = gproji_cone_axis(mesh, mesh->position, v, axis);
-        if (count == 0) continue;
-        do {
-            if (mesh->face[h] >= 0) cosine += gproji_dot3(p->normal + 3 * (size_t)mesh->face[h], axis) / count;
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
-        gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
-    }
-}
-
 GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
     size_t faces = 3 * (size_t)mesh->face_count, edges = 3 * (size_t)mesh->edge_count,
            count = 3 * (size_t)mesh->vertex_count;
+    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_parallels p;
     bool taken;
-    int32_t i;
+    int32_t i, stage, v;
     p.mesh = mesh;
     p.normal = (double *)gproji_take(heap, faces, sizeof *p.normal);
     p.direction = (double *)gproji_take(heap, edges, sizeof *p.direction);
@@ -17842,13 +17850,24 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
     p.step = (double *)gproji_take(heap, count, sizeof *p.step);
     p.image = (double *)gproji_take(heap, count, sizeof *p.image);
     taken = p.normal && p.direction && p.slope && p.step && p.image;
-    if (taken) {
-        for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
-        for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
-        gproji_start_parallels(&p, x);
-        p.boundary = false;
-        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
-        p.boundary = true;
+    for (i = 0; taken && i < mesh->face_count; ++i)
+        gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
+    for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
+    /* Each vertex begins by itself, at x = a / cos(angle) with the axis a of its cone. */
+    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start;
+        double axis[3], cosine = 0;
+        gproji_set3(0, 0, 0, x + 3 * (size_t)v);
+        i = gproji_find_axis(&normals, v, axis);
+        if (i == 0) continue;
+        do {
+            if (mesh->face[h] >= 0) cosine += gproji_dot3(p.normal + 3 * (size_t)mesh->face[h], axis) / i;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+        gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
+    }
+    for (stage = 0; taken && stage < 2; ++stage) {
+        p.boundary = stage == 1;
         for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
     }
     gproji_give(heap, p.normal, faces, sizeof *p.normal);
@@ -17863,7 +17882,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
 
 typedef bool (*gproji_field)(gproji_heap *heap, const gproj_mesh *mesh, double *x);
 
-/* The mesh with vertices v + distance * x. */
+/* Makes the mesh with vertices v + distance * x. */
 GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distance, gproji_field field,
                                           const gproj_host *host, gproj_error *error) {
     gproj_mesh *offset;
@@ -17912,15 +17931,6 @@ GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b)
     return memcmp(a->origin, b->origin, bytes) == 0 && memcmp(a->face, b->face, bytes) == 0;
 }
 
-/* The four corners of the panel of an edge: v_i v_j o_j o_i. */
-GPROJI_INTERNAL void gproji_support_quad(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
-                                         double out[12]) {
-    gproji_copy3(gproji_corner_position(mesh, 2 * edge), out);
-    gproji_copy3(gproji_corner_position(mesh, 2 * edge + 1), out + 3);
-    gproji_copy3(gproji_corner_position(offset, 2 * edge + 1), out + 6);
-    gproji_copy3(gproji_corner_position(offset, 2 * edge), out + 9);
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
     gproji_heap heap = gproji_heap_of(host);
@@ -17944,8 +17954,12 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     degree = (int32_t *)gproji_take(&heap, edges, sizeof *degree);
     corner = (int32_t *)gproji_take(&heap, 4 * edges, sizeof *corner);
     if (position && degree && corner) {
-        for (e = 0; e < mesh->edge_count; ++e) {
-            gproji_support_quad(mesh, offset, e, position + 12 * (size_t)e);
+        for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+            double *out = position + 12 * (size_t)e;
+            gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
+            gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
+            gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
+            gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
             degree[e] = 4;
         }
         for (e = 0; e < 4 * mesh->edge_count; ++e) corner[e] = e;
@@ -17966,25 +17980,8 @@ GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
     *most = gproji_fmax(*most, value);
 }
 
-/* How far the offset of an edge is from parallel, and its panel from planar: c = o_j - o_i without its part along the
-   edge e, and the part of c along the normal e x (o_i - v_i) of the panel. */
-GPROJI_INTERNAL void gproji_measure_edge_offset(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
-                                                double unit, gproj_offset_measures *m) {
-    static const double none[3] = {0, 0, 0};
-    double e[3], c[3], normal[3], along;
-    gproji_edge_direction(mesh, 2 * edge, e);
-    gproji_sub3(gproji_corner_position(offset, 2 * edge + 1), gproji_corner_position(offset, 2 * edge), c);
-    along = gproji_dot3(e, c);
-    m->reversed_edges += along < 0;
-    gproji_add_scaled3(-along, e, c);
-    m->parallel_max = gproji_fmax(m->parallel_max, gproji_length3(c) / unit);
-    gproji_sub3(gproji_corner_position(offset, 2 * edge), gproji_corner_position(mesh, 2 * edge), normal);
-    gproji_cross3(e, normal, normal);
-    gproji_normalise3(normal, none);
-    m->support_planarity_max = gproji_fmax(m->support_planarity_max, fabs(gproji_dot3(normal, c)) / unit);
-}
-
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
+    static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
     double unit, d[3], n[3];
     int32_t f, v, e, k, h;
@@ -18009,7 +18006,20 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         if (mesh->vertex_halfedge[v] >= 0)
             gproji_widen(gproji_distance3(offset->position + 3 * (size_t)v, mesh->position + 3 * (size_t)v),
                          &m.vertex_distance_min, &m.vertex_distance_max);
-    for (e = 0; e < mesh->edge_count; ++e) gproji_measure_edge_offset(mesh, offset, e, unit, &m);
+    /* Edges: c = o_j - o_i without the part along the edge's direction, and c's part along the panel's normal. */
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double direction[3], c[3], along;
+        gproji_edge_direction(mesh, 2 * e, direction);
+        gproji_sub3(gproji_corner_position(offset, 2 * e + 1), gproji_corner_position(offset, 2 * e), c);
+        along = gproji_dot3(direction, c);
+        m.reversed_edges += along < 0;
+        gproji_add_scaled3(-along, direction, c);
+        m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
+        gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
+        gproji_cross3(direction, n, n);
+        gproji_normalise3(n, none);
+        m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
+    }
     return m;
 }
 
