@@ -17281,15 +17281,17 @@ GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *pos
     int32_t degree = mesh->face_degree[face], most = degree > GPROJI_LARGE_FACE ? GPROJI_CHAIN : degree, depth = 0;
     int32_t g, h, i, j;
     double basis[3][3];
-    gproji_copy3(gproji_corner_at(mesh, position, mesh->face_halfedge[face]), basis[0]);
-    gproji_tangents3(axis, basis[1], basis[2]);
-    memset(part, 0, sizeof part); /* the whole outline meets itself: its box does not matter */
     part[0].first = mesh->face_halfedge[face], part[0].count = degree;
+    if (degree > most) {
+        gproji_copy3(gproji_corner_at(mesh, position, part[0].first), basis[0]);
+        gproji_tangents3(axis, basis[1], basis[2]);
+    }
     stack[depth][0] = part[0], stack[depth++][1] = part[0];
     while (depth > 0) {
         const gproji_chain a = stack[--depth][0], b = stack[depth][1];
         bool same = a.first == b.first;
-        if (a.low[0] > b.high[0] || a.high[0] < b.low[0] || a.low[1] > b.high[1] || a.high[1] < b.low[1]) continue;
+        if (!same && (a.low[0] > b.high[0] || a.high[0] < b.low[0] || a.low[1] > b.high[1] || a.high[1] < b.low[1]))
+            continue;
         if (a.count > most || b.count > most) {
             const gproji_chain *whole = a.count >= b.count ? &a : &b;
             h = gproji_bound_chain(mesh, position, basis, whole->first, whole->count / 2, &part[0]);
