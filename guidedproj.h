@@ -15798,19 +15798,13 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     gproj_mesh *view = &object->view;
     size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
            faces = (size_t)s->room[GPROJI_EDIT_FACE];
-    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX];
-    s->vertex_into = s->vertex_halfedge + vertices;
-    s->vertex_mark = s->vertex_into + vertices;
-    s->on_polyline = s->vertex_mark + vertices;
-    s->next = s->block[GPROJI_EDIT_HALFEDGE];
-    s->prev = s->next + halfedges;
-    s->origin = s->prev + halfedges;
-    s->face = s->origin + halfedges;
+    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_mark = s->vertex_into + vertices, s->on_polyline = s->vertex_mark + vertices;
+    s->next = s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
+    s->origin = s->prev + halfedges, s->face = s->origin + halfedges;
     s->edge_into = s->block[GPROJI_EDIT_EDGE];
-    s->face_halfedge = s->block[GPROJI_EDIT_FACE];
-    s->face_degree = s->face_halfedge + faces;
-    s->face_parent = s->face_degree + faces;
-    s->face_mark = s->face_parent + faces;
+    s->face_halfedge = s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
+    s->face_parent = s->face_degree + faces, s->face_mark = s->face_parent + faces;
     edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
     edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
     edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
@@ -15995,19 +15989,17 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
 
 /* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
+    gproj_code code = GPROJ_OK;
     int32_t root;
     if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
-    if (root < 0) {
-        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
-        return -1;
-    }
-    if (!(t >= 0 && t <= 1)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                    "the parameter %g on edge %d is not from 0 to 1", t, edge);
-        return -1;
-    }
-    return 2 * root;
+    if (root < 0)
+        code =
+            gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+    else if (!(t >= 0 && t <= 1))
+        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                           "the parameter %g on edge %d is not from 0 to 1", t, edge);
+    return code ? -1 : 2 * root;
 }
 
 GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
@@ -16066,7 +16058,7 @@ GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, i
 
 /* -- the three operators; there is room -- */
 
-/* Splits half-edge h's edge at parameter t from its origin. h ends at the new vertex; returns the half-edge on the new
+/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge on the new
    edge from there on. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
@@ -16162,7 +16154,7 @@ GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int3
     return y ^ 1;
 }
 
-/* Collapses half-edge h's edge to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
+/* Collapses half-edge h's edge to parameter t from the origin, after gproji_check_collapse. Returns the vertex. */
 GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
@@ -16339,7 +16331,7 @@ GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *
     out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
     out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
     if (!(complete && position && degree && corner && out->start && out->vertex)) return false;
-    /* 2. Vertices; a merged one has its lower root's number already. */
+    /* 2. Vertices; a merged one gets the number that the lower one has already. */
     vertex = out->number[GPROJI_EDIT_VERTEX], face = out->number[GPROJI_EDIT_FACE];
     for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
@@ -16436,22 +16428,22 @@ GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproj_code code;
     int32_t from, to;
     if (!object || !gproji_edit_given_face(object, face, error)) return -1;
     from = gproji_edit_given_corner(object, face, vertex, error);
     to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
     if (to < 0) return -1;
-    if (from == to) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
-                    "face %d cannot be cut from vertex %d to itself", face, vertex);
-        return -1;
-    }
-    if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0) {
-        gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                    "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex, other);
-        return -1;
-    }
-    return gproji_edit_reserve(object, 0, 1, 1, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
+    if (from == to)
+        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut from vertex %d to itself", face, vertex);
+    else if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
+        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
+                           other);
+    else
+        code = gproji_edit_reserve(object, 0, 1, 1, error);
+    return code ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
@@ -16513,7 +16505,7 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
 }
 
 /* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), x = sqrt(1/12) for equal sides; for x near 0 and triangles turned
-   over, its tangent at 1e-6. */
+   over, the tangent at 1e-6. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     const double least = 1e-6;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
@@ -16588,7 +16580,7 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool pool;
     gproj_code code;
     int64_t cuts = 0, side;
-    int32_t f, first = face, last = face, degree = 3;
+    int32_t f, first = face, last = face, degree = 3, *ints;
     bool saved = false;
     if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
     if (face == -1) first = 0, last = edit->face_count - 1;
@@ -16604,16 +16596,14 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     memset(&work, 0, sizeof work);
     work.polygon.capacity = degree;
     work.polygon.xy = (double *)gproji_pool_take(&pool, degree, 2 * sizeof(double));
-    work.polygon.vertex = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
-    work.polygon.next = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
-    work.polygon.prev = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
-    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
-    work.ear = (int32_t *)gproji_pool_take(&pool, degree, 2 * sizeof(int32_t));
+    ints = (int32_t *)gproji_pool_take(&pool, degree, 6 * sizeof *ints);
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
     work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
-    if (!code && !(work.polygon.xy && work.polygon.vertex && work.polygon.next && work.polygon.prev && work.halfedge &&
-                   work.ear && work.least && work.apex))
-        code = gproji_fail_memory(error);
+    if (!code && !(work.polygon.xy && ints && work.least && work.apex)) code = gproji_fail_memory(error);
+    if (!code) {
+        work.polygon.vertex = ints, work.polygon.next = ints + degree, work.polygon.prev = ints + 2 * (size_t)degree;
+        work.halfedge = ints + 3 * (size_t)degree, work.ear = ints + 4 * (size_t)degree;
+    }
     if (!code && face == -1) { /* all faces or none: a later one may be refused */
         saved = gproji_edit_save(object, &copy);
         if (!saved) code = gproji_fail_memory(error);
@@ -16929,19 +16919,13 @@ GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_
     c = 1 / sqrt(t * t + 1);
     s = t * c;
     for (k = 0; k < 3; ++k) {
-        double kp = m[k][p], kq = m[k][q];
-        m[k][p] = c * kp - s * kq;
-        m[k][q] = s * kp + c * kq;
+        double mp = m[k][p], mq = m[k][q], vp = v[k][p], vq = v[k][q];
+        m[k][p] = c * mp - s * mq, m[k][q] = s * mp + c * mq;
+        v[k][p] = c * vp - s * vq, v[k][q] = s * vp + c * vq;
     }
     for (k = 0; k < 3; ++k) {
-        double pk = m[p][k], qk = m[q][k];
-        m[p][k] = c * pk - s * qk;
-        m[q][k] = s * pk + c * qk;
-    }
-    for (k = 0; k < 3; ++k) {
-        double kp = v[k][p], kq = v[k][q];
-        v[k][p] = c * kp - s * kq;
-        v[k][q] = s * kp + c * kq;
+        double mp = m[p][k], mq = m[q][k];
+        m[p][k] = c * mp - s * mq, m[q][k] = s * mp + c * mq;
     }
 }
 
@@ -16996,7 +16980,7 @@ GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *pos
     for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
 }
 
-/* The largest distance between a face's vertices and its least-squares plane, in the mesh's units. */
+/* The largest distance between a face's vertices and the least-squares plane, in the mesh's units. */
 GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                              const double normal[3]) {
     double d[3], worst = 0;
@@ -17034,7 +17018,7 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
     return true;
 }
 
-/* The largest difference between a face's vertices in distance from its circumcentre; infinite without one. */
+/* The largest difference between a face's vertices in distance from the circumcentre; infinite without one. */
 GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                                const double normal[3]) {
     double centre[3], least = HUGE_VAL, most = 0;
@@ -17051,7 +17035,7 @@ GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t f
 
 /* -- normals and vertices -- */
 
-/* A face's unit normal along its vectorial area; 0 without area. */
+/* A face's unit normal along the vectorial area; 0 without area. */
 GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_area_vector(mesh, position, face, out);
@@ -17272,8 +17256,8 @@ GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double 
     }
 }
 
-/* Does a side cross another, seen along the normal of the face's least-squares plane? Its vectorial area would not do:
-   a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
+/* Does a side cross another, seen along the normal of the face's least-squares plane? The vectorial area would not
+   do: a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
    out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
                                        const double axis[3]) {
@@ -17709,14 +17693,15 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
 
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
     static const double none[3] = {0, 0, 0};
-    size_t vertices = (size_t)mesh->vertex_count;
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
+    gproji_pool pool;
     int32_t v, at;
+    gproji_pool_start(&pool, heap);
     work.first = work.last = 0;
-    work.image = (double *)gproji_take(heap, 9 * vertices, sizeof *work.image);
-    work.queue = (int32_t *)gproji_take(heap, vertices, sizeof *work.queue);
-    work.reached = (bool *)gproji_take_zeroed(heap, vertices, sizeof *work.reached);
+    work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
+    work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
+    work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
     for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
@@ -17747,9 +17732,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
             gproji_normalise3(out, none);
         }
     }
-    gproji_give(heap, work.image, 9 * vertices, sizeof *work.image);
-    gproji_give(heap, work.queue, vertices, sizeof *work.queue);
-    gproji_give(heap, work.reached, vertices, sizeof *work.reached);
+    gproji_pool_give_all(&pool);
     return work.image && work.queue && work.reached;
 }
 
@@ -17839,23 +17822,23 @@ GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
 }
 
 GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
-    size_t faces = 3 * (size_t)mesh->face_count, edges = 3 * (size_t)mesh->edge_count,
-           count = 3 * (size_t)mesh->vertex_count;
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_parallels p;
+    gproji_pool pool;
     bool taken;
     int32_t i, stage, v;
+    gproji_pool_start(&pool, heap);
     p.mesh = mesh;
-    p.normal = (double *)gproji_take(heap, faces, sizeof *p.normal);
-    p.direction = (double *)gproji_take(heap, edges, sizeof *p.direction);
-    p.slope = (double *)gproji_take(heap, count, sizeof *p.slope);
-    p.step = (double *)gproji_take(heap, count, sizeof *p.step);
-    p.image = (double *)gproji_take(heap, count, sizeof *p.image);
+    p.normal = (double *)gproji_pool_take(&pool, mesh->face_count, 3 * sizeof *p.normal);
+    p.direction = (double *)gproji_pool_take(&pool, mesh->edge_count, 3 * sizeof *p.direction);
+    p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
+    p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
+    p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
     taken = p.normal && p.direction && p.slope && p.step && p.image;
     for (i = 0; taken && i < mesh->face_count; ++i)
         gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
     for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
-    /* Each vertex begins by itself, at x = a / cos(angle) with the axis a of its cone. */
+    /* Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
     for (v = 0; taken && v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
         double axis[3], cosine = 0;
@@ -17872,11 +17855,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
         p.boundary = stage == 1;
         for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
     }
-    gproji_give(heap, p.normal, faces, sizeof *p.normal);
-    gproji_give(heap, p.direction, edges, sizeof *p.direction);
-    gproji_give(heap, p.slope, count, sizeof *p.slope);
-    gproji_give(heap, p.step, count, sizeof *p.step);
-    gproji_give(heap, p.image, count, sizeof *p.image);
+    gproji_pool_give_all(&pool);
     return taken;
 }
 
@@ -17937,9 +17916,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                                          gproj_error *error) {
     gproji_heap heap = gproji_heap_of(host);
     gproj_mesh *support = NULL;
+    gproji_pool pool;
     double *position;
     int32_t *degree, *corner, e;
-    size_t edges;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -17951,10 +17930,10 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    edges = (size_t)mesh->edge_count;
-    position = (double *)gproji_take(&heap, 12 * edges, sizeof *position);
-    degree = (int32_t *)gproji_take(&heap, edges, sizeof *degree);
-    corner = (int32_t *)gproji_take(&heap, 4 * edges, sizeof *corner);
+    gproji_pool_start(&pool, &heap);
+    position = (double *)gproji_pool_take(&pool, mesh->edge_count, 12 * sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, sizeof *degree);
+    corner = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, 4 * sizeof *corner);
     if (position && degree && corner) {
         for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
             double *out = position + 12 * (size_t)e;
@@ -17969,9 +17948,7 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     } else {
         gproji_fail_memory(error);
     }
-    gproji_give(&heap, position, 12 * edges, sizeof *position);
-    gproji_give(&heap, degree, edges, sizeof *degree);
-    gproji_give(&heap, corner, 4 * edges, sizeof *corner);
+    gproji_pool_give_all(&pool);
     return support;
 }
 
@@ -18726,13 +18703,6 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
     return true;
 }
 
-/* The side with the edge that begins at a boundary vertex. */
-GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
-    int32_t side = 0;
-    while (f->start.data[side + 1] <= vertex) ++side;
-    return side;
-}
-
 /* Places the boundary's vertices and makes the first outline, which follows it all. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     int32_t side, from, to, i, j;
@@ -18773,14 +18743,15 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     /* A simple curve may have chords that cross. */
     if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
-    i = gproji_side_of(f, i), j = gproji_side_of(f, j);
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[i],
-                       "with so few edges side %d meets side %d; divide them finer", i, j);
+    for (from = 0; f->start.data[from + 1] <= i;) ++from;
+    for (to = 0; f->start.data[to + 1] <= j;) ++to;
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[from],
+                       "with so few edges side %d meets side %d; divide them finer", from, to);
 }
 
 /* -- cuts -- */
 
-/* A cut through a patch outline, from its place i to its place j. */
+/* A cut through a patch outline, from place i to place j. */
 typedef struct gproji_cut_line {
     int32_t i, j;
     int32_t edges;
@@ -18974,15 +18945,16 @@ GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outl
 
 /* Chooses the `variant`-th good pattern, with flat corners under long strips, or else in a ring; at last a ring around
    one strip. False without memory. */
-GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
-                                           int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
+GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, const gproji_outline *o, int32_t sides,
+                                           const int32_t *place, const int32_t *length, int32_t flat,
                                            gproji_pattern *chosen) {
+    gproji_candidates c;
     int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
     memset(chosen, 0, sizeof *chosen);
     for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
-        gproji_find_patterns(c, sides, ring ? length : inner);
-        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
-            gproji_pattern *p = &c->pattern[i];
+        gproji_find_patterns(&c, sides, ring ? length : inner);
+        for (i = 0; i < c.count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c.pattern[i];
             gproji_patch patch;
             bool done;
             p->ring = ring != 0;
@@ -19004,7 +18976,7 @@ GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, gproji_candidates 
 }
 
 /* Fills an outline that is not cut. False without memory. */
-GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
+GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat = 0, sides, i, k, n, *number;
     gproji_pattern p;
     gproji_patch patch;
@@ -19029,7 +19001,7 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gpr
     }
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
     /* 2. The pattern. */
-    if (!gproji_choose_pattern(f, c, o, sides, place, length, flat, &p)) return false;
+    if (!gproji_choose_pattern(f, o, sides, place, length, flat, &p)) return false;
     done = gproji_build_patch(&patch, f->heap, &p, length);
     /* 3. Global numbers: from the outline along the boundary, new ones inside, at the boundary's mean as yet. */
     number = patch.uses.data, n = (int32_t)patch.loop.count;
@@ -19161,8 +19133,8 @@ typedef struct gproji_untangling {
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
-/* Computes a corner's distortion at z = (a, b), its gradient and the convex part of its Hessian; no derivatives if
-   `gradient` is NULL. */
+/* Computes a corner's distortion at z = (a, b), with the gradient and the Hessian's convex part unless `gradient` is
+   NULL. */
 GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
                                                 double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
@@ -19383,16 +19355,12 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
 
 /* Fills the outline in the options' variant. Sets whether it is good: inner valences up to `valence`, and no quad turned
    over. */
-GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
     int32_t n = f->boundary, ring, start, i, most = 0, *count;
     size_t at;
     gproj_code code;
-    f->polygon.count = (size_t)f->boundary;
-    f->patch.count = 1;
-    f->patch.data[0] = f->boundary;
-    f->quad.count = 0;
-    f->vertices = f->boundary;
-    f->leaves = 0;
+    f->polygon.count = (size_t)n, f->patch.count = 1, f->patch.data[0] = n;
+    f->quad.count = 0, f->vertices = n, f->leaves = 0;
     *good = false;
     /* 1. Rings, near the boundary as yet, and the outline inside them. */
     for (ring = 1; ring <= f->options.rings; ++ring)
@@ -19413,7 +19381,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidat
         gproji_outline o;
         if (f->patch.data[at] < 0) continue;
         o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
-        if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
+        if (!gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
     /* 3. Valences inside, before the work on positions. */
     count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
@@ -19436,16 +19404,14 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidat
 /* Tries variants from the wanted one on, with valences up to 5, then 6, then any. */
 GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
     static const int32_t valence[3] = {5, 6, INT32_MAX};
-    gproji_candidates *c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
     int32_t variant = f->options.variant, pass, tries;
     bool good = false;
-    gproj_code code = c ? GPROJ_OK : gproji_fail_memory(f->error);
+    gproj_code code = GPROJ_OK;
     for (pass = 0; pass < 3; ++pass)
         for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries && !code && !good; ++tries) {
             f->options.variant = variant + tries;
-            code = gproji_try_filling(f, c, valence[pass], &good);
+            code = gproji_try_filling(f, valence[pass], &good);
         }
-    gproji_give(f->heap, c, 1, sizeof *c);
     if (code || good) return code;
     return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                        "no filling without a quad turned over was found; divide the sides finer or mark other corners");
