@@ -15810,13 +15810,11 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
     edit->position = view->position = s->position;
     edit->vertex_halfedge = view->vertex_halfedge = s->vertex_halfedge;
-    edit->face_halfedge = view->face_halfedge = s->face_halfedge;
+    edit->face_halfedge = view->face_halfedge = s->face_halfedge,
     edit->face_degree = view->face_degree = s->face_degree;
     edit->face_parent = s->face_parent;
-    edit->next = view->next = s->next;
-    edit->prev = view->prev = s->prev;
-    edit->origin = view->origin = s->origin;
-    edit->face = view->face = s->face;
+    edit->next = view->next = s->next, edit->prev = view->prev = s->prev;
+    edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
     edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
     edit->edge_number = object->number[GPROJI_EDIT_EDGE];
     edit->face_number = object->number[GPROJI_EDIT_FACE];
@@ -15902,8 +15900,7 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
             memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old,
                    (size_t)s->count[kind] * sizeof(int32_t));
         gproji_give(&object->heap, s->block[kind], (size_t)old, size);
-        s->block[kind] = block;
-        s->room[kind] = room;
+        s->block[kind] = block, s->room[kind] = room;
         gproji_edit_publish(object);
     }
     return GPROJ_OK;
@@ -15928,9 +15925,10 @@ GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
     return number;
 }
 
-GPROJI_INLINE void gproji_edit_link(gproji_edit_store *s, int32_t h, int32_t following) {
-    s->next[h] = following;
-    s->prev[following] = h;
+/* Puts half-edge h between two others. */
+GPROJI_INLINE void gproji_edit_insert(gproji_edit_store *s, int32_t before, int32_t h, int32_t after) {
+    s->next[before] = h, s->prev[h] = before;
+    s->next[h] = after, s->prev[after] = h;
 }
 
 /* Chooses vertex_halfedge, given an outgoing half-edge: at the boundary the one without a face. */
@@ -16051,8 +16049,7 @@ GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, i
     moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
                                      sizeof(int32_t));
     if (!moved) return gproji_fail_memory(error);
-    s->polyline_vertex = moved;
-    s->polyline_room = room;
+    s->polyline_vertex = moved, s->polyline_room = room;
     return GPROJ_OK;
 }
 
@@ -16066,14 +16063,10 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
     int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
     s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
-    s->origin[onward] = s->origin[g] = x;
-    s->origin[back] = b;
-    s->face[onward] = s->face[h];
-    s->face[back] = s->face[g];
-    gproji_edit_link(s, onward, s->next[h]);
-    gproji_edit_link(s, h, onward);
-    gproji_edit_link(s, s->prev[g], back);
-    gproji_edit_link(s, back, g);
+    s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
+    s->face[onward] = s->face[h], s->face[back] = s->face[g];
+    gproji_edit_insert(s, h, onward, s->next[h]);
+    gproji_edit_insert(s, s->prev[g], back, g);
     if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
     if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
     /* g and back trade places as the half-edges that begin at x and b. */
@@ -16102,12 +16095,9 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
     bool first = false; /* is the whole's first corner in the part with `from`? */
     s->face_parent[part] = s->face_parent[whole];
-    s->origin[d] = s->origin[from];
-    s->origin[o] = s->origin[to];
-    gproji_edit_link(s, before_from, d);
-    gproji_edit_link(s, d, to);
-    gproji_edit_link(s, before_to, o);
-    gproji_edit_link(s, o, from);
+    s->origin[d] = s->origin[from], s->origin[o] = s->origin[to];
+    gproji_edit_insert(s, before_from, d, to);
+    gproji_edit_insert(s, before_to, o, from);
     for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
     s->face[d] = s->face[o] = whole;
     start = h = first ? d : o; /* the part without the first corner becomes the new face */
@@ -16116,8 +16106,7 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
         ++count;
         h = s->next[h];
     } while (h != start);
-    s->face_halfedge[part] = start;
-    s->face_degree[part] = count;
+    s->face_halfedge[part] = start, s->face_degree[part] = count;
     s->face_degree[whole] += 2 - count;
     gproji_edit_publish(object);
     return d;
@@ -16126,8 +16115,7 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
 /* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
 GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
     int32_t f = s->face[other];
-    gproji_edit_link(s, s->prev[other], h);
-    gproji_edit_link(s, h, s->next[other]);
+    gproji_edit_insert(s, s->prev[other], h, s->next[other]);
     s->face[h] = f;
     if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
     s->origin[other] = s->origin[other ^ 1] = -1;
@@ -16139,7 +16127,7 @@ GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
     int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
     *apex = -1;
-    gproji_edit_link(s, y, x);
+    s->next[y] = x, s->prev[x] = y;
     if (f < 0) return x;
     if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
     if (--s->face_degree[f] > 2) return x;
@@ -16166,10 +16154,8 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     } while (i != start);
     gproji_edit_unlink(s, h, &apex[0]);
     outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
-    s->origin[h] = s->origin[h ^ 1] = -1;
-    s->edge_into[h / 2] = -1;
-    s->vertex_into[gone] = kept;
-    s->vertex_halfedge[gone] = -1;
+    s->origin[h] = s->origin[h ^ 1] = -1, s->edge_into[h / 2] = -1;
+    s->vertex_into[gone] = kept, s->vertex_halfedge[gone] = -1;
     gproji_edit_anchor(object, outgoing);
     for (i = 0; i < 2; ++i)
         if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
@@ -16488,15 +16474,13 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
         any = any || refused >= left || budget <= 0;
         if (refused >= 2 * left) return false;
         if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
-            ++refused;
-            b = c;
+            ++refused, b = c;
             continue;
         }
         work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
         ++work->ear_count;
         polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0;
-        any = false;
+        --left, refused = 0, any = false;
         b = c;
     }
     for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
@@ -16659,8 +16643,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
     for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
         if (g == h) strip->given = i;
-        strip->rung[i] = g;
-        strip->side[i] = s->origin[g];
+        strip->rung[i] = g, strip->side[i] = s->origin[g];
     }
     return GPROJ_OK;
 }
@@ -16728,9 +16711,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
     int32_t left = strip->count, tried, i;
     gproj_code code, refusal;
     do {
-        tried = left;
-        left = 0;
-        refusal = GPROJ_OK;
+        tried = left, left = 0, refusal = GPROJ_OK;
         gproji_error_clear(error);
         for (i = 0; i < tried; ++i) {
             int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
@@ -16909,23 +16890,25 @@ enum {
     GPROJI_SWEEPS = 12
 };
 
-/* Rotates rows and columns p, q in the symmetric matrix m so that m[p][q] = 0, and v's columns along. */
-GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_t p, int32_t q) {
-    double theta, t, c, s;
-    int32_t k;
-    if (m[p][q] == 0) return;
-    theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-    t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1));
-    c = 1 / sqrt(t * t + 1);
-    s = t * c;
-    for (k = 0; k < 3; ++k) {
-        double mp = m[k][p], mq = m[k][q], vp = v[k][p], vq = v[k][q];
-        m[k][p] = c * mp - s * mq, m[k][q] = s * mp + c * mq;
-        v[k][p] = c * vp - s * vq, v[k][q] = s * vp + c * vq;
-    }
-    for (k = 0; k < 3; ++k) {
-        double mp = m[p][k], mq = m[q][k];
-        m[p][k] = c * mp - s * mq, m[q][k] = s * mp + c * mq;
+/* Rotates rows and columns p, q in the symmetric matrix m so that m[p][q] = 0, and v's columns along, for each pair. */
+GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
+    int32_t pair, k;
+    for (pair = 0; pair < 3; ++pair) {
+        int32_t p = pair / 2, q = pair == 0 ? 1 : 2;
+        double theta, t, c, s;
+        if (m[p][q] == 0) continue;
+        theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+        t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1));
+        c = 1 / sqrt(t * t + 1), s = t * c;
+        for (k = 0; k < 3; ++k) {
+            double mp = m[k][p], mq = m[k][q], vp = v[k][p], vq = v[k][q];
+            m[k][p] = c * mp - s * mq, m[k][q] = s * mp + c * mq;
+            v[k][p] = c * vp - s * vq, v[k][q] = s * vp + c * vq;
+        }
+        for (k = 0; k < 3; ++k) {
+            double mp = m[p][k], mq = m[q][k];
+            m[p][k] = c * mp - s * mq, m[q][k] = s * mp + c * mq;
+        }
     }
 }
 
@@ -16936,9 +16919,7 @@ GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) 
     for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
         double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
         if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
-        gproji_jacobi_rotate(m, v, 0, 1);
-        gproji_jacobi_rotate(m, v, 0, 2);
-        gproji_jacobi_rotate(m, v, 1, 2);
+        gproji_jacobi_sweep(m, v);
     }
     for (k = 1; k < 3; ++k)
         if (m[k][k] > m[largest][largest]) largest = k;
@@ -17004,8 +16985,7 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
         const double *a = gproji_corner_at(mesh, position, h), *b = gproji_corner_at(mesh, position, mesh->next[h]);
         gproji_sub3(b, a, e);
         for (i = 0; i < 3; ++i) m[i] = (a[i] + b[i]) / 2 - mean[i];
-        eu = gproji_dot3(e, u);
-        ev = gproji_dot3(e, v);
+        eu = gproji_dot3(e, u), ev = gproji_dot3(e, v);
         along = eu * gproji_dot3(m, u) + ev * gproji_dot3(m, v);
         uu += eu * eu, uv += eu * ev, vv += ev * ev;
         bu += eu * along, bv += ev * along;
@@ -17018,6 +16998,10 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
     return true;
 }
 
+GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
+    *least = gproji_fmin(*least, value), *most = gproji_fmax(*most, value);
+}
+
 /* The largest difference between a face's vertices in distance from the circumcentre; infinite without one. */
 GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                                const double normal[3]) {
@@ -17025,11 +17009,8 @@ GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t f
     int32_t h = mesh->face_halfedge[face], k;
     if (mesh->face_degree[face] == 3) return 0;
     if (!gproji_circumcentre(mesh, mesh->position, face, mean, normal, centre)) return HUGE_VAL;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        double distance = gproji_distance3(gproji_corner_position(mesh, h), centre);
-        least = gproji_fmin(least, distance);
-        most = gproji_fmax(most, distance);
-    }
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
     return most - least;
 }
 
@@ -17103,7 +17084,7 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = normals->mesh;
     int32_t count = gproji_mean_normal(normals, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
-    double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant, t[2];
+    double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant;
     if (count < 3) return count;
     gproji_tangents3(axis, u, v);
     do {
@@ -17127,10 +17108,8 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
     uu += ridge, vv += ridge;
     determinant = uu * vv - uv * uv;
     if (!(determinant > 0)) return count;
-    t[0] = (um * vv - vm * uv) / determinant;
-    t[1] = (vm * uu - um * uv) / determinant;
-    gproji_add_scaled3(t[0], u, axis);
-    gproji_add_scaled3(t[1], v, axis);
+    gproji_add_scaled3((um * vv - vm * uv) / determinant, u, axis);
+    gproji_add_scaled3((vm * uu - um * uv) / determinant, v, axis);
     gproji_normalise3(axis, axis);
     return count;
 }
@@ -17151,12 +17130,9 @@ GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t
     if (gproji_find_axis(normals, vertex, axis) < 4) return 0;
     do {
         if (mesh->face[h] >= 0) {
-            double angle;
             gproji_recall_normal(normals, mesh->face[h], n);
             gproji_cross3(n, axis, cross);
-            angle = atan2(gproji_length3(cross), gproji_dot3(n, axis));
-            least = gproji_fmin(least, angle);
-            most = gproji_fmax(most, angle);
+            gproji_widen(atan2(gproji_length3(cross), gproji_dot3(n, axis)), &least, &most);
         }
         h = gproji_rotate(mesh, h);
     } while (h != start);
@@ -17175,8 +17151,7 @@ GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t ve
         gproji_sub3(gproji_corner_position(mesh, next ^ 1), gproji_corner_position(mesh, h), b);
         gproji_cross3(a, b, cross);
         sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
-        sign = -sign;
-        h = next;
+        sign = -sign, h = next;
     } while (h != start);
     return fabs(sum);
 }
@@ -17379,18 +17354,14 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         gproji_face_plane(mesh, mesh->position, f, mean, normal);
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
-        m->area += area;
-        squares += area * area;
+        m->area += area, squares += area * area;
         m->circularity_max = gproji_fmax(m->circularity_max, gproji_face_circularity(mesh, f, mean, normal) / unit);
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
         m->bow_tie_faces += gproji_is_bow_tie(mesh, mesh->position, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
-        if (flatness > m->planarity_max) {
-            m->planarity_max = flatness;
-            m->planarity_face = f;
-        }
+        if (flatness > m->planarity_max) m->planarity_max = flatness, m->planarity_face = f;
         if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
             int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
             double first[3], second[3], joining[3], across[3], length;
@@ -17424,8 +17395,7 @@ GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double 
     if (!(edge > 0)) edge = 1;
     for (v = 0; v < mesh->vertex_count; ++v) {
         double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
-        sum += d;
-        squares += d * d;
+        sum += d, squares += d * d;
         m->deviation_max = gproji_fmax(m->deviation_max, d / diagonal);
     }
     if (mesh->vertex_count) {
@@ -17590,14 +17560,11 @@ GPROJI_INTERNAL gproj_spoiled gproji_spoiled_of(const gproji_damages *d) {
     spoiled.collapsed_edges = d->count[GPROJI_DAMAGE_EDGE];
     spoiled.collapsed_faces = d->count[GPROJI_DAMAGE_FACE];
     spoiled.spikes = d->count[GPROJI_DAMAGE_SPIKE];
-    spoiled.total = 0;
-    spoiled.place = GPROJ_PLACE_NONE;
-    spoiled.element = -1;
+    spoiled.total = 0, spoiled.place = GPROJ_PLACE_NONE, spoiled.element = -1;
     for (kind = GPROJI_DAMAGE_COUNT - 1; kind >= 0; --kind) {
         if (d->count[kind] == 0) continue;
         spoiled.total += d->count[kind];
-        spoiled.place = gproji_damage_place(kind);
-        spoiled.element = d->first[kind];
+        spoiled.place = gproji_damage_place(kind), spoiled.element = d->first[kind];
     }
     return spoiled;
 }
@@ -17673,11 +17640,7 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
     for (i = 0; i < 3; ++i)
         for (j = 0; j < 3; ++j) closing[i][j] /= edges;
     /* 2. `wanted` in the principal directions that close as well as any; all directions if hardly half is left. */
-    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) {
-        gproji_jacobi_rotate(closing, v, 0, 1);
-        gproji_jacobi_rotate(closing, v, 0, 2);
-        gproji_jacobi_rotate(closing, v, 1, 2);
-    }
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) gproji_jacobi_sweep(closing, v);
     for (k = 1; k < 3; ++k)
         if (closing[k][k] < closing[best][best]) best = k;
     least = gproji_fmax(closing[best][best], 0);
@@ -17709,16 +17672,14 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
         memset(identity, 0, 9 * sizeof *identity);
         identity[0] = identity[4] = identity[8] = 1;
         work.first = work.last;
-        work.queue[work.last++] = v;
-        work.reached[v] = true;
+        work.queue[work.last++] = v, work.reached[v] = true;
         for (at = work.first; at < work.last; ++at) {
             int32_t from = work.queue[at], start = mesh->vertex_halfedge[from], h = start;
             do {
                 int32_t next = mesh->origin[h ^ 1];
                 if (!work.reached[next]) {
                     gproji_mirror(mesh, h, work.image + 9 * (size_t)from, work.image + 9 * (size_t)next);
-                    work.reached[next] = true;
-                    work.queue[work.last++] = next;
+                    work.reached[next] = true, work.queue[work.last++] = next;
                 }
                 h = gproji_rotate(mesh, h);
             } while (h != start);
@@ -17954,11 +17915,6 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
 
 /* -- how exact they are -- */
 
-GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
-    *least = gproji_fmin(*least, value);
-    *most = gproji_fmax(*most, value);
-}
-
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
     static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
@@ -18189,9 +18145,7 @@ GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, i
    + k_0 - k_1). All strips begin at `least`. */
 GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
     int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
-    p->end[0] = p->end[1] = 1;
-    p->edges = n - 1;
-    p->below = 0;
+    p->end[0] = p->end[1] = 1, p->edges = n - 1, p->below = 0;
     p->rows = c->length[p->first];
     for (i = 1; i < n; ++i) p->rows -= c->length[(i + p->first) % n];
     p->rows /= 2;
@@ -18235,12 +18189,10 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
     int32_t most = length[0], a, b, below, i;
     gproji_pattern p;
     memset(&p, 0, sizeof p);
-    c->length = length;
-    c->count = 0;
+    c->length = length, c->count = 0;
     for (i = 1; i < sides; ++i) most = gproji_max(most, length[i]);
     /* 1. A point, and the grid: a path along one side. */
-    p.sides = sides;
-    p.end[0] = sides;
+    p.sides = sides, p.end[0] = sides;
     gproji_try_edges(c, &p, 0);
     if (sides == 4 && length[0] == length[2] && length[1] == length[3]) {
         p.end[0] = p.end[1] = 2, p.edges = 1, p.edge[0] = length[1], p.strip[1] = length[0];
@@ -18328,8 +18280,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     size_t q;
     /* 1. Room for sides as long as they become. */
     memset(patch, 0, sizeof *patch);
-    patch->heap = heap;
-    patch->sides = p->sides;
+    patch->heap = heap, patch->sides = p->sides;
     for (i = 0; i < p->sides; ++i) patch->block_size += (size_t)length[i] + 1;
     patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
     if (!patch->block) return false;
@@ -18451,8 +18402,7 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
             if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
                 continue;
             if (node->right >= 0) {
-                stack[depth++] = node->right;
-                stack[depth++] = at + 1;
+                stack[depth++] = node->right, stack[depth++] = at + 1;
                 continue;
             }
             for (k = node->begin; k < node->end; ++k) {
@@ -18697,8 +18647,7 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
     void *block = f->flat;
     if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
     f->flat = (double *)block;
-    f->flat[2 * (size_t)f->vertices] = x;
-    f->flat[2 * (size_t)f->vertices + 1] = y;
+    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
 }
@@ -19041,8 +18990,7 @@ typedef struct gproji_pairs {
 GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
     memset(m, 0, sizeof *m);
     gproji_pool_start(&m->pool, f->heap);
-    m->unknowns = unknowns;
-    m->count = count;
+    m->unknowns = unknowns, m->count = count;
     m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
     m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
@@ -19335,9 +19283,7 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
 
 GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
     int32_t i, n = (int32_t)f->quad.count;
-    info->boundary_count = f->boundary;
-    info->side_count = f->sides;
-    info->patch_count = f->leaves;
+    info->boundary_count = f->boundary, info->side_count = f->sides, info->patch_count = f->leaves;
     for (i = f->boundary; i < f->vertices; ++i) {
         int32_t valence = gproj_mesh_valence(mesh, i);
         info->irregular_count += valence != 4;
