@@ -16055,8 +16055,7 @@ GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, i
 
 /* -- the three operators; there is room -- */
 
-/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge on the new
-   edge from there on. */
+/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
@@ -16341,10 +16340,8 @@ GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *
             v = vertex[s->polyline_vertex[i]];
             if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
         }
-        if (end < begin + 2)
-            end = begin;
-        else
-            out->start[++out->polyline_count] = end;
+        if (end < begin + 2) end = begin;
+        if (end > begin) out->start[++out->polyline_count] = end;
     }
     return true;
 }
@@ -16374,13 +16371,9 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
-        int32_t *old = object->number[kind], count = object->number_count[kind];
-        if (!code) {
-            object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
-            gproji_give(&object->heap, old, (size_t)count, sizeof(int32_t));
-        } else {
-            gproji_give(&object->heap, out.number[kind], (size_t)s->count[kind], sizeof(int32_t));
-        }
+        int32_t *other = code ? out.number[kind] : object->number[kind];
+        gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
+        if (!code) object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
     }
     gproji_edit_publish(object);
     gproji_pool_give_all(&pool);
@@ -16488,8 +16481,7 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
     return true;
 }
 
-/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), x = sqrt(1/12) for equal sides; for x near 0 and triangles turned
-   over, the tangent at 1e-6. */
+/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-6 to triangles turned over. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     const double least = 1e-6;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
@@ -16500,8 +16492,7 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
 
-/* Finds the ring's triangulation with the least sum by dynamic programming (Klincsek 1980). False if each needs a
-   diagonal that is an edge already. */
+/* Finds the ring's cheapest triangulation (Klincsek 1980). False if each needs a diagonal that is an edge already. */
 GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
@@ -16662,8 +16653,7 @@ GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from
     gproji_edit_cut(object, from, to);
 }
 
-/* Cuts the triangle at which a strip ends, and which has got a fourth corner at half-edge h's origin: as a quad it would
-   lead on. */
+/* Cuts the triangle at which a strip ends, with a new corner at half-edge h's origin: as a quad it would lead on. */
 GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
     const gproji_edit_store *s = &object->now;
     if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
@@ -16753,8 +16743,7 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* Work arrays for gproj_mesh_dual, as large as a dual can be: each half-edge gives a corner, each boundary vertex two or
-   three more. */
+/* Work arrays for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
 typedef struct gproji_dual {
     gproji_soup soup;
     double *position;
@@ -16826,16 +16815,13 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
     /* 4. Polylines that are in the dual as a whole. */
     dual->start[0] = 0;
     for (p = 0; p < mesh->polyline_count; ++p) {
-        begin = end;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
             v = dual->vertex[mesh->polyline_vertex[i]];
             if (v < 0) break;
             dual->polyline[end++] = v;
         }
-        if (i == mesh->polyline_start[p + 1])
-            dual->start[++polylines] = end;
-        else
-            end = begin;
+        if (i == mesh->polyline_start[p + 1]) dual->start[++polylines] = end;
+        end = dual->start[polylines];
     }
     soup->position = dual->position, soup->face_degree = dual->degree, soup->face_vertex = dual->corner;
     code = gproji_mesh_build(made, soup, error);
@@ -16973,9 +16959,8 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     return worst;
 }
 
-/* Finds the point in a face's plane that is, in the least-squares sense, on all edges' perpendicular bisectors: with
-   d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e, in plane coordinates. False if all edges are
-   parallel. */
+/* Finds the point c in a face's plane that is on all edges' perpendicular bisectors in the least-squares sense: with
+   d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e. False if all edges are parallel. */
 GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *position, int32_t face,
                                          const double mean[3], const double normal[3], double out[3]) {
     double u[3], v[3], e[3], m[3], uu = 0, uv = 0, vv = 0, bu = 0, bv = 0, determinant, along, eu, ev;
@@ -17121,8 +17106,7 @@ GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *p
     return gproji_find_axis(&normals, vertex, axis);
 }
 
-/* The largest difference between the angles that the normals around a vertex make with their best axis; 0 with fewer
-   than four faces. */
+/* The largest difference between the normals around a vertex in angle to their axis; 0 with fewer than four faces. */
 GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t vertex) {
     const gproj_mesh *mesh = normals->mesh;
     double axis[3], n[3], cross[3], least = HUGE_VAL, most = 0;
@@ -17156,8 +17140,7 @@ GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t ve
     return fabs(sum);
 }
 
-/* The area of the normals' spherical polygon around an interior vertex, as a fan of plane triangles about their mean; 0
-   at the boundary. */
+/* The area enclosed by the normals around an interior vertex, as a fan about their mean; 0 at the boundary. */
 GPROJI_INTERNAL double gproji_gauss_area(gproji_normals *normals, int32_t vertex) {
     const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
@@ -17476,13 +17459,11 @@ GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, 
     if (d->count[kind]++ == 0) d->first[kind] = element;
 }
 
-/* Is a quad with this vectorial area clearly convex, and nearly flat? Then it does not cross itself, and needs no
-   least-squares plane to say so. */
+/* Is a quad with this vectorial area clearly convex, and nearly flat? Then no plane is needed to see no crossing. */
 GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double *position, int32_t face,
                                            const double area[3]) {
-    /* Height over least altitude: the plane's normal then leans by at most 1.5 flat, which takes at most 3 flat^2 from a
-       corner's area. */
-    static const double flat = 0.1;
+    static const double flat = 0.1; /* height over least altitude: the least-squares normal leans by at most 1.5 flat,
+                                       which takes at most 3 flat^2 from a corner's area */
     double side[4][3], cross[3], longest = 0, least = HUGE_VAL;
     int32_t h = mesh->face_halfedge[face], k;
     if (mesh->face_degree[face] != 4) return false;
@@ -17504,8 +17485,7 @@ GPROJI_INTERNAL bool gproji_crosses_itself(const gproj_mesh *mesh, const double 
     return gproji_is_bow_tie(mesh, position, face, normal);
 }
 
-/* Counts damage at these positions. The original is asked for folds and crossings only if there is one now: nearly
-   never. */
+/* Counts damage. The original is asked for folds and crossings only if there is one now: nearly never. */
 GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *position, const double *original,
                                          gproji_damages *d) {
     gproji_normals was = gproji_normals_of(mesh, original), is = gproji_normals_of(mesh, position);
@@ -18073,13 +18053,11 @@ GPROJI_INTERNAL void gproji_core_corners(const gproji_pattern *p, int32_t at[GPR
     at[n] = 2 * p->rows + 2 * all;
 }
 
-/* Solves rest_i = k_(i-1) + k_(i+1) for the strips k, which decouples into cycles of sides i, i + 2, .. False without a
-   solution. */
+/* Solves rest_i = k_(i-1) + k_(i+1) for the strips k, by cycles of sides i, i + 2, .. False without a solution. */
 GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
     int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
     for (first = 0; first < cycles; ++first) {
-        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: none, or a
-           family, from which the middle is taken). */
+        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: a family). */
         for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
         if (length % 2 ? value % 2 != 0 : value != 0) return false;
         start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
@@ -18298,16 +18276,11 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < p->sides; ++i) {
         patch->edges[i] = at[i + 1] - at[i];
         for (j = 0; j <= patch->edges[i]; ++j) {
-            int32_t place = around ? (at[i] + j) % around : 0, v;
-            if (place < rows)
-                v = (rows - place) * (all + 1);
-            else if (place <= rows + all)
-                v = place - rows;
-            else if (place <= 2 * rows + all)
-                v = (place - rows - all) * (all + 1) + all;
-            else
-                v = rows * (all + 1) + around - place;
-            patch->side[i][j] = v;
+            int32_t place = around ? (at[i] + j) % around : 0;
+            patch->side[i][j] = place < rows              ? (rows - place) * (all + 1)
+                                : place <= rows + all     ? place - rows
+                                : place <= 2 * rows + all ? (place - rows - all) * (all + 1) + all
+                                                          : rows * (all + 1) + around - place;
         }
     }
     patch->vertices = (rows + 1) * (all + 1);
@@ -18728,8 +18701,7 @@ GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t 
     return n;
 }
 
-/* Predicts how good the part from place i to place j becomes when closed by a cut, whose ends are corners (`first`,
-   `last`) or not. */
+/* Predicts the cost of the part from place i to place j closed by a cut, whose ends are corners if `first`, `last`. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
@@ -18892,8 +18864,7 @@ GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outl
     return true;
 }
 
-/* Chooses the `variant`-th good pattern, with flat corners under long strips, or else in a ring; at last a ring around
-   one strip. False without memory. */
+/* Chooses the `variant`-th good pattern: under long strips, or in a ring; at last one strip in a ring. */
 GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, const gproji_outline *o, int32_t sides,
                                            const int32_t *place, const int32_t *length, int32_t flat,
                                            gproji_pattern *chosen) {
@@ -19027,8 +18998,7 @@ GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
 GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
 GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
 
-/* Solves Laplace's equation: each vertex from `fixed` on gets its neighbours' mean. `field`: `fields` numbers a
-   vertex. */
+/* Solves Laplace's equation: each vertex from `fixed` on gets the mean over its neighbours in all `fields` numbers. */
 GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
     int32_t unknowns = f->vertices - fixed, n = (int32_t)f->quad.count, i, k, end;
     gproji_pairs m;
@@ -19081,8 +19051,7 @@ typedef struct gproji_untangling {
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
-/* Computes a corner's distortion at z = (a, b), with the gradient and the Hessian's convex part unless `gradient` is
-   NULL. */
+/* Computes a corner's distortion at z = (a, b), gradient and the Hessian's convex part; `gradient` may be NULL. */
 GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
                                                 double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
@@ -19299,8 +19268,7 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
 }
 
-/* Fills the outline in the options' variant. Sets whether it is good: inner valences up to `valence`, and no quad turned
-   over. */
+/* Fills the outline in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
 GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
     int32_t n = f->boundary, ring, start, i, most = 0, *count;
     size_t at;
