@@ -16165,8 +16165,6 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
-/* -- may an edge be collapsed? -- */
-
 GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
 }
@@ -16379,8 +16377,6 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
-
-/* -- edges and faces -- */
 
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
     gproji_edit_object *object = gproji_edit_owner(edit, NULL);
@@ -16865,9 +16861,8 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
    >>measure   Planarity, folds, deviation, damage, statistics. Uses platform, vector, mesh.
 
    A face's least-squares plane goes through the mean over its vertices, orthogonal to the direction in which they
-   scatter least; eigenvectors by Jacobi's method (1846). Nothing here takes memory. Time is near-linear in a face's
-   corners, though a vertex asks for normals, and a side for the sides that it crosses: see gproji_normals and
-   gproji_is_bow_tie. */
+   scatter least; eigenvectors by Jacobi's method (1846). Nothing here takes memory, and all is near-linear in a face's
+   corners, though vertices ask for normals and sides for crossings: see gproji_normals, gproji_is_bow_tie. */
 enum {
     GPROJI_LARGE_FACE = 32,   /* corners: beyond, quadratic work is avoided */
     GPROJI_NORMALS = 8,       /* large faces remembered */
@@ -17008,7 +17003,7 @@ GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *po
     gproji_normalise3(out, none);
 }
 
-/* Unit normals on demand. Each corner's vertex may ask for a large face's, so the last few are remembered. */
+/* Unit normals on demand. Each vertex around a large face asks for that face's, so the last few are remembered. */
 typedef struct gproji_normals {
     const gproj_mesh *mesh;
     const double *position;
@@ -17214,7 +17209,7 @@ GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double 
     }
 }
 
-/* Does a side cross another, seen along the normal of the face's least-squares plane? The vectorial area would not
+/* Does a side cross another, seen along the normal to the face's least-squares plane? The vectorial area would not
    do: a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
    out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
@@ -17254,7 +17249,7 @@ GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *pos
     return false;
 }
 
-/* Do the normals of an edge's two faces make more than 120 degrees? */
+/* Do the normals at an edge's two faces make more than 120 degrees? */
 GPROJI_INTERNAL bool gproji_is_folded(gproji_normals *normals, int32_t edge) {
     int32_t left = normals->mesh->face[2 * edge], right = normals->mesh->face[2 * edge + 1];
     double a[3], b[3];
@@ -17324,8 +17319,6 @@ GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *posit
 GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
     return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
 }
-
-/* -- all measures -- */
 
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
     double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area;
@@ -17893,8 +17886,6 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     return support;
 }
 
-/* -- how exact they are -- */
-
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
     static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
@@ -18037,7 +18028,7 @@ GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int3
 
 /* -- patterns: their equations -- */
 
-/* Finds the core's corners as places on the closed walk around it, and after them the walk's length. */
+/* Finds the core's corners as places on the closed walk around it, then the walk's length. */
 GPROJI_INTERNAL void gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES + 1]) {
     int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
     column[0] = 0;
@@ -18118,9 +18109,8 @@ GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, i
     } while (i < p->edges);
 }
 
-/* Tries the path with a corner at each node and rows. Sides 1, 2, .. have one e_j each and side 0 has their sum and
-   2 w, so e_j = l - k - k and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (with two sides:
-   + k_0 - k_1). All strips begin at `least`. */
+/* Tries the path with a corner at each node and rows: side 0 has all e_j and 2 w, so e_j = l - k - k on the others, and
+   w = (l_0 - l_1 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (two sides: k_0 - k_1). Strips begin at `least`. */
 GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
     int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
     p->end[0] = p->end[1] = 1, p->edges = n - 1, p->below = 0;
