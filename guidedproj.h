@@ -15022,13 +15022,13 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 }
 
 /* ============================================================================================================
-   >>edit   Changes of the combinatorics of a mesh. Uses platform, memory, error, vector, mesh,
+   >>edit   Changes to a mesh's combinatorics. Uses platform, memory, error, vector, mesh,
    surface (polygons).
 
    Three operators do all the work: an edge is split, a face is cut, an edge is collapsed; Mantyla (1988) calls them
-   Euler operators. Each has a part that checks, a part that makes room, and a part that cannot fail. Strips and
-   triangulations are sequences of them; those that may be refused midway work with a copy to go back to.
-   Invariants: those of >>mesh for the elements that are left, but for the order of edges. vertex_into and edge_into
+   Euler operators. Checks come first, then room is made, then comes a part that cannot fail. Strips and triangulations
+   are sequences; those that may be refused midway work with a copy to go back to.
+   Invariants: those in >>mesh for the elements that are left, except the order of edges. vertex_into and edge_into
    lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
@@ -15038,35 +15038,35 @@ typedef enum gproji_edit_kind {
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
 
-/* How many integers an element has: each is an array below. */
+/* Integers in each element: every one is an array below. */
 static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
 
-/* The state of an edit: what a copy to go back to must have. */
+/* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
     int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
-    double *position;                  /* 3 * room of vertices */
+    double *position;                  /* 3 * room for vertices */
     int32_t polyline_count;
     int32_t polyline_room;
     int32_t *polyline_start;  /* polyline_count + 1 */
-    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for what they were merged into */
+    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for those they were merged into */
 
     int32_t *vertex_halfedge;
-    int32_t *vertex_into; /* itself, or what it was merged into */
+    int32_t *vertex_into; /* itself, or the vertex it was merged into */
     int32_t *vertex_mark; /* the last stamp that met it */
-    int32_t *on_polyline; /* is it a vertex of a polyline? */
+    int32_t *on_polyline; /* does a polyline contain it? */
     int32_t *next, *prev, *origin, *face;
-    int32_t *edge_into; /* itself, what it was merged into, or -1: collapsed */
+    int32_t *edge_into; /* itself, the edge it was merged into, or -1: collapsed */
     int32_t *face_halfedge, *face_degree, *face_parent;
     int32_t *face_mark;
 } gproji_edit_store;
 
-/* The owner of a gproj_edit. */
+/* The object around a gproj_edit. */
 typedef struct gproji_edit_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_edit edit;
-    gproj_mesh view; /* the same arrays for the functions of >>mesh that go round a vertex or a face */
+    gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
     int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
     int32_t number_count[GPROJI_EDIT_KINDS];
@@ -15075,43 +15075,30 @@ typedef struct gproji_edit_object {
 
 /* -- memory -- */
 
-/* The arrays within the blocks. */
-GPROJI_INTERNAL void gproji_edit_point(gproji_edit_store *s) {
-    size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
-           faces = (size_t)s->room[GPROJI_EDIT_FACE];
-    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX];
-    s->vertex_into = s->vertex_halfedge + vertices;
-    s->vertex_mark = s->vertex_into + vertices;
-    s->on_polyline = s->vertex_mark + vertices;
-    s->next = s->block[GPROJI_EDIT_HALFEDGE];
-    s->prev = s->next + halfedges;
-    s->origin = s->prev + halfedges;
-    s->face = s->origin + halfedges;
-    s->edge_into = s->block[GPROJI_EDIT_EDGE];
-    s->face_halfedge = s->block[GPROJI_EDIT_FACE];
-    s->face_degree = s->face_halfedge + faces;
-    s->face_parent = s->face_degree + faces;
-    s->face_mark = s->face_parent + faces;
-}
-
-/* Shows the arrays in the public struct and in the view. */
+/* Finds the arrays within their blocks, and shows them in the public struct and in the view. */
 GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     gproji_edit_store *s = &object->now;
     gproj_edit *edit = &object->edit;
     gproj_mesh *view = &object->view;
-    gproji_edit_point(s);
+    size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
+           faces = (size_t)s->room[GPROJI_EDIT_FACE];
+    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_mark = s->vertex_into + vertices, s->on_polyline = s->vertex_mark + vertices;
+    s->next = s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
+    s->origin = s->prev + halfedges, s->face = s->origin + halfedges;
+    s->edge_into = s->block[GPROJI_EDIT_EDGE];
+    s->face_halfedge = s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
+    s->face_parent = s->face_degree + faces, s->face_mark = s->face_parent + faces;
     edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
     edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
     edit->face_count = view->face_count = s->count[GPROJI_EDIT_FACE];
     edit->position = view->position = s->position;
     edit->vertex_halfedge = view->vertex_halfedge = s->vertex_halfedge;
-    edit->face_halfedge = view->face_halfedge = s->face_halfedge;
+    edit->face_halfedge = view->face_halfedge = s->face_halfedge,
     edit->face_degree = view->face_degree = s->face_degree;
     edit->face_parent = s->face_parent;
-    edit->next = view->next = s->next;
-    edit->prev = view->prev = s->prev;
-    edit->origin = view->origin = s->origin;
-    edit->face = view->face = s->face;
+    edit->next = view->next = s->next, edit->prev = view->prev = s->prev;
+    edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
     edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
     edit->edge_number = object->number[GPROJI_EDIT_EDGE];
     edit->face_number = object->number[GPROJI_EDIT_FACE];
@@ -15126,7 +15113,7 @@ GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
     gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
 }
 
-/* Takes the arrays for the counts and rooms of a store; after a failure what there is can be given back. */
+/* Takes the blocks for a store's counts and rooms; after a failure those that were taken can be given back. */
 GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     bool complete = true;
     int32_t kind;
@@ -15138,12 +15125,10 @@ GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
     s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
     s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
-    if (!complete || !s->position || !s->polyline_start || !s->polyline_vertex) return false;
-    gproji_edit_point(s);
-    return true;
+    return complete && s->position && s->polyline_start && s->polyline_vertex;
 }
 
-/* A copy to go back to; false when there is no memory. */
+/* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
     const gproji_edit_store *s = &object->now;
     int32_t kind;
@@ -15161,7 +15146,7 @@ GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_st
     return true;
 }
 
-/* The end of what began with gproji_edit_save: back to the copy after an error. Returns the error. */
+/* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
 GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
     gproji_edit_give(&object->heap, code ? &object->now : copy);
     if (code) object->now = *copy;
@@ -15169,63 +15154,45 @@ GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji
     return code;
 }
 
-/* Makes room for `more` elements of a kind, at least doubling it. */
-GPROJI_INTERNAL bool gproji_edit_grow(gproji_edit_object *object, int32_t kind, int32_t more) {
-    gproji_edit_store *s = &object->now;
-    int32_t rows = gproji_edit_rows[kind], old_room = s->room[kind], room, r, *block;
-    int32_t needed = s->count[kind] + more;
-    double *position = NULL;
-    if (needed <= old_room) return true;
-    room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old_room) : needed;
-    block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, (size_t)rows * sizeof(int32_t));
-    if (!block) return false;
-    if (kind == GPROJI_EDIT_VERTEX) {
-        position =
-            (double *)gproji_retake(&object->heap, s->position, (size_t)old_room, (size_t)room, 3 * sizeof(double));
-        if (!position) {
-            gproji_give(&object->heap, block, (size_t)room, (size_t)rows * sizeof(int32_t));
-            return false;
-        }
-        s->position = position;
-    }
-    for (r = 0; r < rows; ++r)
-        memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old_room,
-               (size_t)s->count[kind] * sizeof(int32_t));
-    gproji_give(&object->heap, s->block[kind], (size_t)old_room, (size_t)rows * sizeof(int32_t));
-    s->block[kind] = block;
-    s->room[kind] = room;
-    gproji_edit_publish(object);
-    return true;
-}
-
-/* Makes room for new elements, so that those who add them cannot fail. */
+/* Makes room for new elements, so that the operators cannot fail. */
 GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
                                                int64_t faces, gproj_error *error) {
-    const int32_t *count = object->now.count;
-    if (count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
-        count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2) {
+    gproji_edit_store *s = &object->now;
+    int64_t more[GPROJI_EDIT_KINDS];
+    int32_t kind, r;
+    if (s->count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
+        s->count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    }
-    if (!gproji_edit_grow(object, GPROJI_EDIT_VERTEX, (int32_t)vertices) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_HALFEDGE, (int32_t)(2 * edges)) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_EDGE, (int32_t)edges) ||
-        !gproji_edit_grow(object, GPROJI_EDIT_FACE, (int32_t)faces)) {
-        return gproji_fail_memory(error);
+    more[GPROJI_EDIT_VERTEX] = vertices, more[GPROJI_EDIT_HALFEDGE] = 2 * edges;
+    more[GPROJI_EDIT_EDGE] = edges, more[GPROJI_EDIT_FACE] = faces;
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room, *block;
+        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        if (needed <= old) continue;
+        room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old) : needed; /* doubles: n additions cost O(n) */
+        block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, size);
+        if (block && kind == GPROJI_EDIT_VERTEX) {
+            double *position =
+                (double *)gproji_retake(&object->heap, s->position, (size_t)old, (size_t)room, 3 * sizeof(double));
+            if (position) s->position = position;
+            if (!position) gproji_give(&object->heap, block, (size_t)room, size), block = NULL;
+        }
+        if (!block) return gproji_fail_memory(error);
+        for (r = 0; r < gproji_edit_rows[kind]; ++r)
+            memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old,
+                   (size_t)s->count[kind] * sizeof(int32_t));
+        gproji_give(&object->heap, s->block[kind], (size_t)old, size);
+        s->block[kind] = block, s->room[kind] = room;
+        gproji_edit_publish(object);
     }
     return GPROJ_OK;
 }
 
 /* -- elements -- */
 
-GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
-    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
-    s->vertex_into[v] = v;
-    return v;
-}
-
-/* Its half-edges are 2e and 2e + 1. */
+/* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     int32_t e = s->count[GPROJI_EDIT_EDGE]++;
     s->count[GPROJI_EDIT_HALFEDGE] += 2;
@@ -15233,14 +15200,7 @@ GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     return e;
 }
 
-/* A part of face `whole`. */
-GPROJI_INTERNAL int32_t gproji_edit_add_face(gproji_edit_store *s, int32_t whole) {
-    int32_t f = s->count[GPROJI_EDIT_FACE]++;
-    s->face_parent[f] = s->face_parent[whole];
-    return f;
-}
-
-/* What a number stands for, by the chain of merges, which is shortened on the way; -1: nothing. */
+/* Follows the chain of merges from a number, and shortens it on the way; -1: removed. */
 GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
     while (number >= 0 && into[number] != number) {
         if (into[number] >= 0) into[number] = into[into[number]];
@@ -15249,12 +15209,13 @@ GPROJI_INTERNAL int32_t gproji_edit_root(int32_t *into, int32_t number) {
     return number;
 }
 
-GPROJI_INLINE void gproji_edit_link(gproji_edit_store *s, int32_t h, int32_t following) {
-    s->next[h] = following;
-    s->prev[following] = h;
+/* Puts half-edge h between two others. */
+GPROJI_INLINE void gproji_edit_insert(gproji_edit_store *s, int32_t before, int32_t h, int32_t after) {
+    s->next[before] = h, s->prev[h] = before;
+    s->next[h] = after, s->prev[after] = h;
 }
 
-/* Chooses vertex_halfedge, given an outgoing half-edge. */
+/* Chooses vertex_halfedge, given an outgoing half-edge: at the boundary the one without a face. */
 GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
     gproji_edit_store *s = &object->now;
     int32_t h = outgoing;
@@ -15265,7 +15226,7 @@ GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outg
     s->vertex_halfedge[s->origin[h]] = h;
 }
 
-/* The half-edge of a face that starts at a vertex; -1: it is no corner. */
+/* The half-edge in a face that starts at a vertex; -1: no corner is there. */
 GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t face, int32_t vertex) {
     int32_t start = s->face_halfedge[face], h = start;
     do {
@@ -15275,18 +15236,7 @@ GPROJI_INTERNAL int32_t gproji_edit_corner(const gproji_edit_store *s, int32_t f
     return -1;
 }
 
-/* A new stamp for marks, greater than all that are in use. */
-GPROJI_INTERNAL int32_t gproji_edit_stamp(gproji_edit_object *object) {
-    gproji_edit_store *s = &object->now;
-    if (object->stamp == INT32_MAX) {
-        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
-        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
-        object->stamp = 0;
-    }
-    return ++object->stamp;
-}
-
-/* out = (1 - t) v_a + t v_b, bit for bit one of them at t = 0 and 1. `out` may be one of them. */
+/* out = (1 - t) v_a + t v_b, bit for bit one end at t = 0 and 1. `out` may be a or b. */
 GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, int32_t b, double t, int32_t out) {
     const double *p = s->position + 3 * (size_t)a, *q = s->position + 3 * (size_t)b;
     double *x = s->position + 3 * (size_t)out;
@@ -15298,7 +15248,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
     for (k = 0; k < 3; ++k) x[k] = p[k] + t * (q[k] - p[k]);
 }
 
-/* -- what calls give -- */
+/* -- checks on arguments -- */
 
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
     gproji_error_clear(error);
@@ -15309,7 +15259,7 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
-/* Is a number in the range of its kind? */
+/* Is a number in the range for this kind? */
 GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
                                      gproj_place place, int32_t number, gproj_error *error) {
     int32_t count = object->now.count[kind];
@@ -15319,21 +15269,19 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
     return false;
 }
 
-/* Half-edge 2e of the edge e that a number stands for; -1 and an error where there is none. */
+/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
+    gproj_code code = GPROJ_OK;
     int32_t root;
     if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
-    if (root < 0) {
-        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
-        return -1;
-    }
-    if (!(t >= 0 && t <= 1)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                    "the parameter %g on edge %d is not from 0 to 1", t, edge);
-        return -1;
-    }
-    return 2 * root;
+    if (root < 0)
+        code =
+            gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+    else if (!(t >= 0 && t <= 1))
+        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                           "the parameter %g on edge %d is not from 0 to 1", t, edge);
+    return code ? -1 : 2 * root;
 }
 
 GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
@@ -15343,7 +15291,7 @@ GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, in
     return false;
 }
 
-/* The half-edge of a face at the corner that a vertex number stands for; -1 and an error where there is none. */
+/* The half-edge in a face at the corner that a vertex number stands for; -1 and an error without one. */
 GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
                                                  gproj_error *error) {
     int32_t h;
@@ -15357,13 +15305,13 @@ GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int
 
 /* -- polylines -- */
 
-/* Do vertices at `i` and `i + 1` of the polylines run along the edge between a and b? */
+/* Does a polyline run along the edge between a and b, from place i to place i + 1? */
 GPROJI_INLINE bool gproji_polyline_runs(const gproji_edit_store *s, int32_t i, int32_t a, int32_t b) {
     int32_t u = s->polyline_vertex[i], v = s->polyline_vertex[i + 1];
     return (u == a && v == b) || (u == b && v == a);
 }
 
-/* How often polylines run along a half-edge's edge. */
+/* Counts how often polylines run along a half-edge's edge. */
 GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, int32_t h) {
     int32_t a = s->origin[h], b = s->origin[h ^ 1], p, i, count = 0;
     if (!s->on_polyline[a] || !s->on_polyline[b]) return 0;
@@ -15372,30 +15320,43 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
     return count;
 }
 
-/* Makes room for `more` vertices of polylines. */
+/* Makes room for `more` polyline vertices. */
 GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
     gproji_edit_store *s = &object->now;
     int64_t needed = s->polyline_start[s->polyline_count] + more;
     int32_t *moved, room;
     if (needed <= s->polyline_room) return GPROJ_OK;
-    if (needed > INT32_MAX / 2) {
+    if (needed > INT32_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
-    }
     room = 2 * (int32_t)needed;
     moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
                                      sizeof(int32_t));
     if (!moved) return gproji_fail_memory(error);
-    s->polyline_vertex = moved;
-    s->polyline_room = room;
+    s->polyline_vertex = moved, s->polyline_room = room;
     return GPROJ_OK;
 }
 
-/* Puts vertex x, new between a and b, into polylines that run along their edge. There is room. */
-GPROJI_INTERNAL void gproji_polyline_split(gproji_edit_store *s, int32_t a, int32_t b, int32_t x) {
-    int32_t p, q, i;
-    if (!s->on_polyline[a] || !s->on_polyline[b]) return;
-    for (p = 0; p < s->polyline_count; ++p) {
+/* -- the three operators; there is room -- */
+
+/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after it. */
+GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
+    gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
+    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
+    s->vertex_into[x] = x;
+    gproji_edit_between(s, a, b, t, x);
+    s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
+    s->face[onward] = s->face[h], s->face[back] = s->face[g];
+    gproji_edit_insert(s, h, onward, s->next[h]);
+    gproji_edit_insert(s, s->prev[g], back, g);
+    if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
+    if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
+    /* g and back trade places as the half-edges that begin at x and b. */
+    if (s->face[g] >= 0 && s->face_halfedge[s->face[g]] == g) s->face_halfedge[s->face[g]] = back;
+    if (s->vertex_halfedge[b] == g) s->vertex_halfedge[b] = back;
+    s->vertex_halfedge[x] = s->face[g] < 0 ? g : onward;
+    for (p = 0; s->on_polyline[a] && s->on_polyline[b] && p < s->polyline_count; ++p)
         for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
             int32_t *place = s->polyline_vertex + i + 1;
             if (!gproji_polyline_runs(s, i, a, b)) continue;
@@ -15403,96 +15364,57 @@ GPROJI_INTERNAL void gproji_polyline_split(gproji_edit_store *s, int32_t a, int3
             *place = x;
             s->on_polyline[x] = 1;
             for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
-            ++i;
+            ++i; /* past x */
         }
-    }
-}
-
-GPROJI_INTERNAL void gproji_polyline_merge(gproji_edit_store *s, int32_t gone, int32_t kept) {
-    int32_t i;
-    if (!s->on_polyline[gone]) return;
-    s->on_polyline[kept] = 1;
-    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
-        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
-}
-
-/* -- the three operators; there is room -- */
-
-/* Splits the edge of half-edge h at parameter t from its origin. h ends at the new vertex; the half-edge from there on,
-   of the new edge, is returned. */
-GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
-    gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
-    int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1;
-    gproji_edit_between(s, a, b, t, x);
-    s->origin[onward] = s->origin[g] = x;
-    s->origin[back] = b;
-    s->face[onward] = s->face[h];
-    s->face[back] = s->face[g];
-    gproji_edit_link(s, onward, s->next[h]);
-    gproji_edit_link(s, h, onward);
-    gproji_edit_link(s, s->prev[g], back);
-    gproji_edit_link(s, back, g);
-    if (s->face[h] >= 0) s->face_degree[s->face[h]]++;
-    if (s->face[g] >= 0) s->face_degree[s->face[g]]++;
-    if (s->face[g] >= 0 && s->face_halfedge[s->face[g]] == g) s->face_halfedge[s->face[g]] = back;
-    if (s->vertex_halfedge[b] == g) s->vertex_halfedge[b] = back;
-    s->vertex_halfedge[x] = s->face[g] < 0 ? g : onward;
-    gproji_polyline_split(s, a, b, x);
     gproji_edit_publish(object);
     return onward;
 }
 
-/* Cuts a face between the origins of two of its half-edges. Returns the half-edge from the first to the second origin:
-   it is in the part with `to`, its twin in the part with `from`. */
+/* Cuts a face between the origins at two half-edges. Returns the half-edge from the first to the second origin: it is
+   in the part with `to`, the twin in the part with `from`. */
 GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
     gproji_edit_store *s = &object->now;
-    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = gproji_edit_add_face(s, whole);
+    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
     int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
-    bool first = false; /* is the first corner of the whole in the part with `from`? */
-    s->origin[d] = s->origin[from];
-    s->origin[o] = s->origin[to];
-    gproji_edit_link(s, before_from, d);
-    gproji_edit_link(s, d, to);
-    gproji_edit_link(s, before_to, o);
-    gproji_edit_link(s, o, from);
+    bool first = false; /* is the whole's first corner in the part with `from`? */
+    s->face_parent[part] = s->face_parent[whole];
+    s->origin[d] = s->origin[from], s->origin[o] = s->origin[to];
+    gproji_edit_insert(s, before_from, d, to);
+    gproji_edit_insert(s, before_to, o, from);
     for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
     s->face[d] = s->face[o] = whole;
-    start = h = first ? d : o;
+    start = h = first ? d : o; /* the part without the first corner becomes the new face */
     do {
         s->face[h] = part;
         ++count;
         h = s->next[h];
     } while (h != start);
-    s->face_halfedge[part] = start;
-    s->face_degree[part] = count;
+    s->face_halfedge[part] = start, s->face_degree[part] = count;
     s->face_degree[whole] += 2 - count;
     gproji_edit_publish(object);
     return d;
 }
 
-/* Half-edge h takes the place of half-edge `other`, which has the same ends, and their edges become one, that of h. */
+/* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
 GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
     int32_t f = s->face[other];
-    gproji_edit_link(s, s->prev[other], h);
-    gproji_edit_link(s, h, s->next[other]);
+    gproji_edit_insert(s, s->prev[other], h, s->next[other]);
     s->face[h] = f;
     if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
     s->origin[other] = s->origin[other ^ 1] = -1;
     s->edge_into[other / 2] = h / 2;
 }
 
-/* Takes half-edge h, whose edge has been collapsed, out of its face or boundary loop. Of a triangle two half-edges are
-   left, whose edges become one. Returns an outgoing half-edge of the vertex, and at *apex one of the third vertex of
-   the triangle, or -1. */
+/* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at the
+   vertex, and at *apex one at the third vertex of a triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
     int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
     *apex = -1;
-    gproji_edit_link(s, y, x);
+    s->next[y] = x, s->prev[x] = y;
     if (f < 0) return x;
     if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
     if (--s->face_degree[f] > 2) return x;
-    s->face_halfedge[f] = -1;
+    s->face_halfedge[f] = -1; /* a triangle: the two edges that are left merge into the lower number */
     if (x < y) {
         gproji_edit_replace(s, x, y ^ 1);
         *apex = x ^ 1;
@@ -15503,7 +15425,7 @@ GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int3
     return y ^ 1;
 }
 
-/* Collapses the edge of half-edge h to parameter t from its origin, after gproji_check_collapse. Returns the vertex. */
+/* Collapses half-edge h's edge to parameter t from the origin, after gproji_check_collapse. Returns the vertex. */
 GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
@@ -15515,24 +15437,23 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     } while (i != start);
     gproji_edit_unlink(s, h, &apex[0]);
     outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
-    s->origin[h] = s->origin[h ^ 1] = -1;
-    s->edge_into[h / 2] = -1;
-    s->vertex_into[gone] = kept;
-    s->vertex_halfedge[gone] = -1;
+    s->origin[h] = s->origin[h ^ 1] = -1, s->edge_into[h / 2] = -1;
+    s->vertex_into[gone] = kept, s->vertex_halfedge[gone] = -1;
     gproji_edit_anchor(object, outgoing);
     for (i = 0; i < 2; ++i)
         if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
-    gproji_polyline_merge(s, gone, kept);
+    if (!s->on_polyline[gone]) return kept;
+    s->on_polyline[kept] = 1;
+    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+        if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
     return kept;
 }
-
-/* -- may an edge be collapsed? -- */
 
 GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
 }
 
-/* A triangle at half-edge h would become an edge without a face. */
+/* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
 GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
     int32_t x, y;
     if (!gproji_is_triangle(s, h)) return GPROJ_OK;
@@ -15543,80 +15464,51 @@ GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, in
                        h / 2, s->face[h]);
 }
 
-/* Marks the neighbours of the origin of h, and its faces. */
-GPROJI_INTERNAL int32_t gproji_edit_mark_star(gproji_edit_object *object, int32_t h) {
-    gproji_edit_store *s = &object->now;
-    int32_t stamp = gproji_edit_stamp(object), i = h;
-    do {
-        s->vertex_mark[s->origin[i ^ 1]] = stamp;
-        if (s->face[i] >= 0) s->face_mark[s->face[i]] = stamp;
-        i = gproji_rotate(&object->view, i);
-    } while (i != h);
-    return stamp;
-}
-
-/* The ends of h have no neighbour in common but the third vertices of triangles at h, and no face but those at h. */
-GPROJI_INTERNAL gproj_code gproji_check_link(gproji_edit_object *object, int32_t h, gproj_error *error) {
-    const gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, stamp = gproji_edit_mark_star(object, h), i;
-    int32_t left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
-    int32_t right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
-    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
-        int32_t v = s->origin[i ^ 1], f = s->face[i];
-        if (s->vertex_mark[v] == stamp && v != left && v != right) {
-            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
-                               "triangle is between",
-                               h / 2, s->origin[h], s->origin[g], v);
-        }
-        if (f >= 0 && s->face_mark[f] == stamp && f != s->face[h] && f != s->face[g]) {
-            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2,
-                               s->origin[h], s->origin[g], f);
-        }
-    }
-    return GPROJ_OK;
-}
-
 GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
-    const gproji_edit_store *s = &object->now;
-    int32_t a = s->origin[h], b = s->origin[h ^ 1];
+    gproji_edit_store *s = &object->now;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], left, right, i;
     gproj_code code = gproji_check_vanishing(s, h, error);
-    if (!code) code = gproji_check_vanishing(s, h ^ 1, error);
+    if (!code) code = gproji_check_vanishing(s, g, error);
     if (code) return code;
-    if (s->face[h] >= 0 && s->face[h ^ 1] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
-        gproj_mesh_is_boundary_vertex(&object->view, b)) {
+    if (s->face[h] >= 0 && s->face[g] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
+        gproj_mesh_is_boundary_vertex(&object->view, b))
         return gproji_fail(
             error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
             "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
             "and the mesh would be pinched there",
             h / 2, a, b);
+    /* The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
+       only be those at triangles on the edge and at its faces. */
+    if (object->stamp == INT32_MAX) {
+        gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
+        gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
+        object->stamp = 0;
     }
-    return gproji_check_link(object, h, error);
+    ++object->stamp;
+    i = h;
+    do {
+        s->vertex_mark[s->origin[i ^ 1]] = object->stamp;
+        if (s->face[i] >= 0) s->face_mark[s->face[i]] = object->stamp;
+        i = gproji_rotate(&object->view, i);
+    } while (i != h);
+    left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
+    right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
+        int32_t v = s->origin[i ^ 1], f = s->face[i];
+        if (s->vertex_mark[v] == object->stamp && v != left && v != right)
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
+                               "triangle is between",
+                               h / 2, a, b, v);
+        if (f >= 0 && s->face_mark[f] == object->stamp && f != s->face[h] && f != s->face[g])
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2, a,
+                               b, f);
+    }
+    return GPROJ_OK;
 }
 
 /* -- life -- */
-
-GPROJI_INTERNAL void gproji_edit_load(gproji_edit_object *object, const gproj_mesh *mesh) {
-    gproji_edit_store *s = &object->now;
-    size_t vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count,
-           faces = (size_t)mesh->face_count;
-    int32_t i;
-    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
-    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
-    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
-    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
-    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
-    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
-    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
-    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
-    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
-    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
-    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
-    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
-}
 
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
@@ -15631,7 +15523,8 @@ GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
 GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object;
     gproji_edit_store *s;
-    int32_t kind;
+    size_t vertices, halfedges, faces;
+    int32_t kind, i;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
@@ -15653,8 +15546,22 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
         gproj_edit_destroy(&object->edit);
         return NULL;
     }
-    gproji_edit_load(object, mesh);
     gproji_edit_publish(object);
+    vertices = (size_t)mesh->vertex_count, halfedges = (size_t)mesh->halfedge_count, faces = (size_t)mesh->face_count;
+    memcpy(s->position, mesh->position, vertices * 3 * sizeof(double));
+    memcpy(s->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
+    memcpy(s->next, mesh->next, halfedges * sizeof(int32_t));
+    memcpy(s->prev, mesh->prev, halfedges * sizeof(int32_t));
+    memcpy(s->origin, mesh->origin, halfedges * sizeof(int32_t));
+    memcpy(s->face, mesh->face, halfedges * sizeof(int32_t));
+    memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
+    memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
+    memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
+    for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
+    for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
+    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
     return &object->edit;
 }
 
@@ -15664,128 +15571,96 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* What gproj_edit_mesh works with: all arrays as large as they can become. */
+/* The polygons and polylines for gproj_edit_mesh. */
 typedef struct gproji_edit_out {
-    int32_t *number[GPROJI_EDIT_KINDS];
+    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
     gproji_soup soup;
-    double *position;
-    int32_t *degree, *corner;
     int32_t polyline_count, *start, *vertex;
 } gproji_edit_out;
 
-/* False when there is no memory. The numbers stay with the edit if all goes well: see gproji_edit_keep_numbers. */
-GPROJI_INTERNAL bool gproji_edit_out_take(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
+/* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
+GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
     const gproji_edit_store *s = &object->now;
+    gproji_soup *soup = &out->soup;
+    double *position;
+    int32_t *degree, *corner, *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
     bool complete = true;
-    int32_t kind;
     memset(out, 0, sizeof *out);
+    /* 1. Room, as large as can be needed. */
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
         if (kind == GPROJI_EDIT_HALFEDGE) continue;
         out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
         complete = complete && out->number[kind];
     }
-    out->position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    out->degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    out->corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
+    position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
+    degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
+    corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
     out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
     out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
-    return complete && out->position && out->degree && out->corner && out->start && out->vertex;
-}
-
-/* Numbers the vertices and faces that are left, and writes them down as polygons. */
-GPROJI_INTERNAL void gproji_edit_write_soup(const gproji_edit_store *s, gproji_edit_out *out) {
-    gproji_soup *soup = &out->soup;
-    int32_t *vertex = out->number[GPROJI_EDIT_VERTEX], *face = out->number[GPROJI_EDIT_FACE];
-    int32_t v, f, h, k, corners = 0;
+    if (!(complete && position && degree && corner && out->start && out->vertex)) return false;
+    /* 2. Vertices; a merged one gets the number that the lower one has already. */
+    vertex = out->number[GPROJI_EDIT_VERTEX], face = out->number[GPROJI_EDIT_FACE];
     for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
         if (s->vertex_into[v] != v) continue;
-        memcpy(out->position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+        memcpy(position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
     }
+    /* 3. Faces. */
     for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         h = s->face_halfedge[f];
         face[f] = h < 0 ? -1 : soup->face_count;
         if (h < 0) continue;
-        out->degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) out->corner[corners++] = vertex[s->origin[h]];
+        degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) corner[corners++] = vertex[s->origin[h]];
     }
-    soup->position = out->position;
-    soup->face_degree = out->degree;
-    soup->face_vertex = out->corner;
-}
-
-/* Writes down the polylines in new numbers, without repeated vertices, and those with at least two. */
-GPROJI_INTERNAL void gproji_edit_write_polylines(const gproji_edit_store *s, gproji_edit_out *out) {
-    int32_t p, i, begin, end = 0;
+    soup->position = position, soup->face_degree = degree, soup->face_vertex = corner;
+    /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
     out->start[0] = 0;
     for (p = 0; p < s->polyline_count; ++p) {
         begin = end;
         for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
-            int32_t v = out->number[GPROJI_EDIT_VERTEX][s->polyline_vertex[i]];
+            v = vertex[s->polyline_vertex[i]];
             if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
         }
-        if (end < begin + 2) {
-            end = begin;
-            continue;
-        }
-        out->start[++out->polyline_count] = end;
+        if (end < begin + 2) end = begin;
+        if (end > begin) out->start[++out->polyline_count] = end;
     }
-}
-
-/* Edges have the numbers that the mesh gave them. */
-GPROJI_INTERNAL void gproji_edit_number_edges(const gproji_edit_store *s, const gproj_mesh *mesh,
-                                              gproji_edit_out *out) {
-    int32_t *edge = out->number[GPROJI_EDIT_EDGE], f, e, h, k, i;
-    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
-        if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = mesh->face_halfedge[out->number[GPROJI_EDIT_FACE][f]];
-        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = mesh->next[k]) edge[h / 2] = k / 2;
-    }
-    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
-        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-}
-
-/* The new maps of numbers for the old ones. */
-GPROJI_INTERNAL void gproji_edit_keep_numbers(gproji_edit_object *object, gproji_edit_out *out) {
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
-        object->number[kind] = out->number[kind];
-        object->number_count[kind] = object->now.count[kind];
-        out->number[kind] = NULL;
-    }
-    gproji_edit_publish(object);
+    return true;
 }
 
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
+    const gproji_edit_store *s = object ? &object->now : NULL;
     gproji_mesh_object *made;
     gproji_edit_out out;
     gproji_pool pool;
     gproj_code code;
-    int32_t kind;
+    int32_t kind, f, e, h, k, i, *edge;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_out_take(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
-    if (!code) {
-        gproji_edit_write_soup(&object->now, &out);
-        gproji_edit_write_polylines(&object->now, &out);
-        code = gproji_mesh_build(made, &out.soup, error);
-    }
+    code = gproji_edit_write(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
+    if (!code) code = gproji_mesh_build(made, &out.soup, error);
     if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
-    if (!code) {
-        gproji_edit_number_edges(&object->now, &made->mesh, &out);
-        gproji_edit_keep_numbers(object, &out);
+    /* The mesh has numbered the edges: both are walked side by side. */
+    edge = out.number[GPROJI_EDIT_EDGE];
+    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        if (s->face_halfedge[f] < 0) continue;
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[out.number[GPROJI_EDIT_FACE][f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(&object->heap, out.number[kind], (size_t)object->now.count[kind], sizeof(int32_t));
+    for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
+        if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
+        int32_t *other = code ? out.number[kind] : object->number[kind];
+        gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
+        if (!code) object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
+    }
+    gproji_edit_publish(object);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
-
-/* -- edges and faces -- */
 
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
     gproji_edit_object *object = gproji_edit_owner(edit, NULL);
@@ -15804,31 +15679,30 @@ GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
     if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
-        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error)) {
+        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error))
         return -1;
-    }
     return object->now.origin[gproji_edit_split(object, h, t)];
 }
 
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproj_code code;
     int32_t from, to;
     if (!object || !gproji_edit_given_face(object, face, error)) return -1;
     from = gproji_edit_given_corner(object, face, vertex, error);
     to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
     if (to < 0) return -1;
-    if (from == to) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
-                    "face %d cannot be cut from vertex %d to itself", face, vertex);
-        return -1;
-    }
-    if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0) {
-        gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                    "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex, other);
-        return -1;
-    }
-    return gproji_edit_reserve(object, 0, 1, 1, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
+    if (from == to)
+        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut from vertex %d to itself", face, vertex);
+    else if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
+        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
+                           other);
+    else
+        code = gproji_edit_reserve(object, 0, 1, 1, error);
+    return code ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
@@ -15840,45 +15714,28 @@ GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, doubl
 /* -- triangles -- */
 
 enum {
-    GPROJI_KLINCSEK_MAX = 128 /* corners of a polygon for which all triangulations are compared: O(n^3) */
+    GPROJI_KLINCSEK_MAX = 128 /* corners for which all triangulations are compared: O(n^3) */
 };
 
-/* The work of cutting faces into triangles. */
+/* Work arrays for cutting faces into triangles. */
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
-    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part of the face that is left */
-    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order of cutting */
+    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part that is left */
+    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order they are cut */
     int32_t ear_count;
-    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners that are left for the comparison */
+    int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
-    double *least; /* ring_count^2: the least sum for the part of the ring from i to j */
-    int32_t *apex; /* ring_count^2: the third corner of the triangle at i and j for which it is least */
+    double *least; /* ring_count^2: the least sum for the ring from i to j */
+    int32_t *apex; /* ring_count^2: the third corner with which the triangle at i and j attains it */
 } gproji_triangulation;
-
-/* For faces of at most `degree` corners. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_triangulation_take(gproji_pool *pool, gproji_triangulation *work, int32_t degree) {
-    int64_t side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    memset(work, 0, sizeof *work);
-    work->polygon.capacity = degree;
-    work->polygon.xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
-    work->polygon.vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->polygon.next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->polygon.prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->halfedge = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    work->ear = (int32_t *)gproji_pool_take(pool, degree, 2 * sizeof(int32_t));
-    work->least = (double *)gproji_pool_take(pool, side * side, sizeof(double));
-    work->apex = (int32_t *)gproji_pool_take(pool, side * side, sizeof(int32_t));
-    return work->polygon.xy && work->polygon.vertex && work->polygon.next && work->polygon.prev && work->halfedge &&
-           work->ear && work->least && work->apex;
-}
 
 GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
                                          int32_t b) {
     return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
 }
 
-/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Where no corner is an ear any
-   more, any whose neighbours have no edge yet is taken; false where there is none. */
+/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Without ears, takes any corner whose
+   neighbours have no edge yet; false without such a corner. */
 GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
     gproji_polygon *polygon = &work->polygon;
     int64_t budget = 512 * (int64_t)polygon->count;
@@ -15890,15 +15747,13 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
         any = any || refused >= left || budget <= 0;
         if (refused >= 2 * left) return false;
         if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
-            ++refused;
-            b = c;
+            ++refused, b = c;
             continue;
         }
         work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
         ++work->ear_count;
         polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0;
-        any = false;
+        --left, refused = 0, any = false;
         b = c;
     }
     for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
@@ -15906,8 +15761,7 @@ GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_t
     return true;
 }
 
-/* What a triangle costs: 1 / x with x = 2 area / (a^2 + b^2 + c^2), which is sqrt(1/12) where all sides are equal; for
-   x near 0 and for triangles that are turned over, the tangent of that at 1e-6. */
+/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-6 to triangles turned over. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     const double least = 1e-6;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
@@ -15918,8 +15772,7 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
 
-/* The triangulation of the ring with the least sum of costs, from small parts to the whole (Klincsek 1980). False where
-   each needs a diagonal that is an edge already. */
+/* Finds the ring's cheapest triangulation (Klincsek 1980). False if each needs a diagonal that is an edge already. */
 GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
@@ -15943,25 +15796,22 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
     return work->apex[n - 1] >= 0;
 }
 
-/* Decides on the diagonals of a face. Nothing is changed. */
-GPROJI_INTERNAL gproj_code gproji_plan_triangles(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
-                                                 gproj_error *error) {
-    int32_t h = object->now.face_halfedge[face], i;
+/* Cuts one face into triangles; there is room. Nothing is changed after an error. */
+GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
+                                                   gproj_error *error) {
+    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i, h, n;
     gproji_polygon_set(&work->polygon, &object->view, face);
-    for (i = 0; i < work->polygon.count; ++i, h = object->now.next[h]) work->halfedge[i] = h;
-    if (gproji_plan_ears(object, work) && gproji_plan_ring(object, work)) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                       "face %d cannot be cut into triangles: its diagonals are edges already", face);
-}
-
-/* Cuts a face as planned; there is room. */
-GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_triangulation *work) {
-    int32_t *halfedge = work->halfedge, n = work->ring_count, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i;
+    for (i = 0, h = object->now.face_halfedge[face]; i < work->polygon.count; ++i, h = object->now.next[h])
+        halfedge[i] = h;
+    if (!gproji_plan_ears(object, work) || !gproji_plan_ring(object, work))
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                           "face %d cannot be cut into triangles: its diagonals are edges already", face);
     for (i = 0; i < work->ear_count; ++i) {
         int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
         halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
     }
-    stack[depth++] = 0, stack[depth++] = n - 1; /* parts of the ring, from a corner to a corner, one face each */
+    n = work->ring_count;
+    stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
         int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]],
@@ -15975,36 +15825,18 @@ GPROJI_INTERNAL void gproji_cut_triangles(gproji_edit_object *object, gproji_tri
             stack[depth++] = apex, stack[depth++] = last;
         }
     }
-}
-
-/* Cuts one face. */
-GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
-                                                   gproj_error *error) {
-    gproj_code code = gproji_plan_triangles(object, work, face, error);
-    if (!code) gproji_cut_triangles(object, work);
-    return code;
-}
-
-/* Cuts all faces, or none where one cannot be cut. */
-GPROJI_INTERNAL gproj_code gproji_triangulate_all(gproji_edit_object *object, gproji_triangulation *work,
-                                                  gproj_error *error) {
-    gproji_edit_store copy;
-    gproj_code code = GPROJ_OK;
-    int32_t f, count = object->now.count[GPROJI_EDIT_FACE];
-    if (!gproji_edit_save(object, &copy)) return gproji_fail_memory(error);
-    for (f = 0; f < count && !code; ++f)
-        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
-            code = gproji_triangulate_face(object, work, f, error);
-    return gproji_edit_settle(object, &copy, code);
+    return GPROJ_OK;
 }
 
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     gproji_triangulation work;
+    gproji_edit_store copy;
     gproji_pool pool;
     gproj_code code;
-    int64_t cuts = 0;
-    int32_t f, first = face, last = face, degree = 3;
+    int64_t cuts = 0, side;
+    int32_t f, first = face, last = face, degree = 3, *ints;
+    bool saved = false;
     if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
     if (face == -1) first = 0, last = edit->face_count - 1;
     for (f = first; f <= last; ++f) {
@@ -16015,95 +15847,85 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     if (!cuts) return 0;
     gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, error);
-    if (!code && !gproji_triangulation_take(&pool, &work, degree)) code = gproji_fail_memory(error);
-    if (!code)
-        code = face == -1 ? gproji_triangulate_all(object, &work, error)
-                          : gproji_triangulate_face(object, &work, face, error);
+    side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
+    memset(&work, 0, sizeof work);
+    work.polygon.capacity = degree;
+    work.polygon.xy = (double *)gproji_pool_take(&pool, degree, 2 * sizeof(double));
+    ints = (int32_t *)gproji_pool_take(&pool, degree, 6 * sizeof *ints);
+    work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
+    work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
+    if (!code && !(work.polygon.xy && ints && work.least && work.apex)) code = gproji_fail_memory(error);
+    if (!code) {
+        work.polygon.vertex = ints, work.polygon.next = ints + degree, work.polygon.prev = ints + 2 * (size_t)degree;
+        work.halfedge = ints + 3 * (size_t)degree, work.ear = ints + 4 * (size_t)degree;
+    }
+    if (!code && face == -1) { /* all faces or none: a later one may be refused */
+        saved = gproji_edit_save(object, &copy);
+        if (!saved) code = gproji_fail_memory(error);
+    }
+    for (f = first; f <= last && !code; ++f)
+        if (object->now.face_halfedge[f] >= 0 && object->now.face_degree[f] > 3)
+            code = gproji_triangulate_face(object, &work, f, error);
+    if (saved) code = gproji_edit_settle(object, &copy, code);
     gproji_pool_give_all(&pool);
     return code ? -1 : (int32_t)cuts;
 }
 
 /* -- strips -- */
 
-/* The rungs of a strip, as half-edges of one direction, in order. */
+/* A strip's rungs, as half-edges in one direction, in order. */
 typedef struct gproji_strip {
     int32_t count;
-    int32_t given; /* the place of the half-edge that the walk began with */
+    int32_t given; /* the rung that the walk began with */
     bool closed;   /* is there a quad between the last and the first? */
     int32_t *rung; /* count */
-    int32_t *side; /* count: the origins of the rungs */
+    int32_t *side; /* count: the rungs' origins */
 } gproji_strip;
 
 GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
 }
 
-/* The rung after h, across the quad at its left; -1 where there is none. */
+/* The rung after h, across the quad at its left; -1 after the last. */
 GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
     return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
 }
 
-/* The first rung of the strip of half-edge h: h itself where the strip is closed. */
-GPROJI_INTERNAL int32_t gproji_strip_first(const gproji_edit_store *s, int32_t h) {
-    int32_t g = h;
-    while (gproji_is_quad(s, g ^ 1)) {
-        g = s->next[s->next[g ^ 1]];
-        if (g == h) break;
-    }
-    return g;
-}
-
-/* Walks along the strip of half-edge h. */
+/* Walks along half-edge h's strip. */
 GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
                                              gproji_strip *strip, gproj_error *error) {
-    int32_t first = gproji_strip_first(s, h), g, i;
+    int32_t first = h, g, i;
     memset(strip, 0, sizeof *strip);
+    while (gproji_is_quad(s, first ^ 1)) { /* back to the first rung: h itself if the strip is closed */
+        first = s->next[s->next[first ^ 1]];
+        if (first == h) break;
+    }
     g = first;
     do {
         ++strip->count;
         g = gproji_strip_next(s, g);
     } while (g >= 0 && g != first);
     strip->closed = g == first;
-    if (strip->count == 1) {
+    if (strip->count == 1)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
                            h / 2);
-    }
     strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
     for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
         if (g == h) strip->given = i;
-        strip->rung[i] = g;
-        strip->side[i] = s->origin[g];
+        strip->rung[i] = g, strip->side[i] = s->origin[g];
     }
     return GPROJ_OK;
 }
 
-/* Checks, and room for gproji_strip_insert: all rungs are split, all quads cut, and each quad that is crossed twice has
-   one more vertex, edge, and cut. */
-GPROJI_INTERNAL gproj_code gproji_strip_reserve(gproji_edit_object *object, const gproji_strip *strip,
-                                                gproj_error *error) {
-    int64_t count = strip->count, runs = 0;
-    int32_t i, e = strip->rung[0] / 2;
-    gproj_code code;
-    if (strip->closed && count == 2) {
-        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, e,
-                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
-                           "would be two edges between the new vertices",
-                           e, strip->rung[1] / 2);
-    }
-    code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
-    for (i = 0; i < strip->count; ++i) runs += gproji_polyline_count_runs(&object->now, strip->rung[i]);
-    return code ? code : gproji_polyline_reserve(object, runs, error);
-}
-
-/* Cuts a quad from the origin x of half-edge `from` to vertex y of the opposite rung. Where it has been cut by the
-   strip already, from side to side, that cut is split at t and met there. */
+/* Cuts a quad from the origin x of half-edge `from` to vertex y on the opposite rung. If the strip has cut it already,
+   from side to side, that cut is split at t and met there. */
 GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
     gproji_edit_store *s = &object->now;
     int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
     if (to < 0) {
-        cut = s->next[s->next[from]]; /* from x: to the end of the rung, to the cut, along it */
+        cut = s->next[s->next[from]]; /* from x: to the rung's end, to the cut, along it */
         gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
         from = cut ^ 1;
         to = gproji_edit_corner(s, s->face[from], y);
@@ -16111,70 +15933,62 @@ GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from
     gproji_edit_cut(object, from, to);
 }
 
-/* Where a strip ends at a triangle, which has got a fourth corner at the origin of half-edge h, it is cut into two: as a
-   quad it would lead on. */
+/* Cuts the triangle at which a strip ends, with a new corner at half-edge h's origin: as a quad it would lead on. */
 GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
     const gproji_edit_store *s = &object->now;
     if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
 }
 
-/* Splits the rungs and cuts the quads of a strip; there is room. Rungs become the half-edges from new vertices on. */
-GPROJI_INTERNAL void gproji_strip_insert(gproji_edit_object *object, gproji_strip *strip, double t) {
-    const gproji_edit_store *s = &object->now;
-    int32_t i, last = strip->count - 1;
-    for (i = 0; i <= last; ++i) strip->rung[i] = gproji_edit_split(object, strip->rung[i], t);
-    if (!strip->closed) {
-        gproji_strip_end(object, s->next[strip->rung[0] ^ 1]);
-        gproji_strip_end(object, strip->rung[last]);
-    }
-    for (i = 0; i < last; ++i) gproji_strip_cross(object, strip->rung[i], s->origin[strip->rung[i + 1]], t);
-    if (strip->closed) gproji_strip_cross(object, strip->rung[last], s->origin[strip->rung[0]], t);
-}
-
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    const gproji_edit_store *s = object ? &object->now : NULL;
+    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, i, last;
+    int64_t count, runs = 0;
     gproji_strip strip;
     gproji_pool pool;
     gproj_code code;
     if (h < 0) return -1;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
-    if (!code) code = gproji_strip_reserve(object, &strip, error);
+    code = gproji_strip_take(s, &pool, h, &strip, error);
+    count = strip.count, last = strip.count - 1;
+    if (!code && strip.closed && count == 2)
+        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, strip.rung[0] / 2,
+                           "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
+                           "would be two edges between the new vertices",
+                           strip.rung[0] / 2, strip.rung[1] / 2);
+    /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
+    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
+    for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
+    if (!code) code = gproji_polyline_reserve(object, runs, error);
     if (!code) {
-        gproji_strip_insert(object, &strip, t);
+        for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
+        if (!strip.closed) {
+            gproji_strip_end(object, s->next[strip.rung[0] ^ 1]);
+            gproji_strip_end(object, strip.rung[last]);
+        }
+        for (i = 0; i < last; ++i) gproji_strip_cross(object, strip.rung[i], s->origin[strip.rung[i + 1]], t);
+        if (strip.closed) gproji_strip_cross(object, strip.rung[last], s->origin[strip.rung[0]], t);
         h = strip.rung[strip.given];
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : h / 2;
 }
 
-/* Collapses the rung in place i of a strip, if that may be. One that was merged into another, where the strip crosses
-   itself, is gone with that. */
-GPROJI_INTERNAL gproj_code gproji_strip_collapse_rung(gproji_edit_object *object, const gproji_strip *strip, int32_t i,
-                                                      double t, gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
-    gproj_code code;
-    if (e < 0) return GPROJ_OK;
-    h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
-    code = gproji_check_collapse(object, h, error);
-    if (!code) gproji_edit_collapse(object, h, t);
-    return code;
-}
-
-/* Collapses the rungs of a strip one by one; those that are refused again, after the others, as long as that helps. */
+/* Collapses a strip's rungs one by one; those that are refused again, after the others, as long as that helps. */
 GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
                                                  gproj_error *error) {
+    gproji_edit_store *s = &object->now;
     int32_t left = strip->count, tried, i;
     gproj_code code, refusal;
     do {
-        tried = left;
-        left = 0;
-        refusal = GPROJ_OK;
+        tried = left, left = 0, refusal = GPROJ_OK;
         gproji_error_clear(error);
         for (i = 0; i < tried; ++i) {
-            code = gproji_strip_collapse_rung(object, strip, i, t, error);
+            int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+            if (e < 0) continue; /* merged into another rung, if the strip crosses itself, and gone with that */
+            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+            code = gproji_check_collapse(object, h, error);
+            if (!code) gproji_edit_collapse(object, h, t);
             if (!code) continue;
             refusal = code;
             strip->rung[left] = strip->rung[i];
@@ -16184,17 +15998,10 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
     return refusal;
 }
 
-/* Says why a strip stays: `error` has why one of its rungs does. */
-GPROJI_INTERNAL void gproji_tell_strip(int32_t edge, gproj_error *error) {
-    char message[GPROJ_MESSAGE_SIZE];
-    if (!error) return;
-    gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
-    memcpy(error->message, message, sizeof message);
-}
-
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    char message[GPROJ_MESSAGE_SIZE];
     gproji_edit_store copy;
     gproji_strip strip;
     gproji_pool pool;
@@ -16205,7 +16012,10 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
     if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
     if (!code) {
         code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
-        if (code) gproji_tell_strip(edge, error);
+        if (code && error) { /* the rung's reason, in a sentence about the strip */
+            gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+            memcpy(error->message, message, sizeof message);
+        }
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : strip.count;
@@ -16213,54 +16023,18 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* The work of gproj_mesh_dual, with room for all that a dual can have: each half-edge of a face gives a corner, each
-   vertex of the boundary two or three more. */
+/* Work arrays for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
 typedef struct gproji_dual {
     gproji_soup soup;
     double *position;
     int32_t *degree, *corner;
-    int32_t *vertex;   /* vertex_count: the number of a vertex that is in the dual, too, or -1 */
-    int32_t *midpoint; /* edge_count: the vertex in the middle of a boundary edge, or -1 */
+    int32_t *vertex;   /* vertex_count: a vertex's number in the dual, or -1 */
+    int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
     int32_t *seen;     /* face_count: the last face that met it as a neighbour */
     int32_t *start, *polyline;
-    int32_t polyline_count;
 } gproji_dual;
 
-/* False when there is no memory. */
-GPROJI_INTERNAL bool gproji_dual_take(gproji_pool *pool, const gproj_mesh *mesh, gproji_dual *dual) {
-    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    memset(dual, 0, sizeof *dual);
-    dual->position = (double *)gproji_pool_take(pool, faces + edges + vertices, 3 * sizeof(double));
-    dual->corner = (int32_t *)gproji_pool_take(pool, 2 * edges + 3 * vertices, sizeof(int32_t));
-    dual->degree = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
-    dual->vertex = (int32_t *)gproji_pool_take(pool, vertices, sizeof(int32_t));
-    dual->midpoint = (int32_t *)gproji_pool_take(pool, edges, sizeof(int32_t));
-    dual->seen = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
-    dual->start = (int32_t *)gproji_pool_take(pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    dual->polyline = (int32_t *)gproji_pool_take(pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
-    return dual->position && dual->corner && dual->degree && dual->vertex && dual->midpoint && dual->seen &&
-           dual->start && dual->polyline;
-}
-
-/* No two faces have two edges in common. */
-GPROJI_INTERNAL gproj_code gproji_check_dual(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
-    int32_t f, k, h, g;
-    gproji_fill(dual->seen, mesh->face_count, -1);
-    for (f = 0; f < mesh->face_count; ++f) {
-        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            g = mesh->face[h ^ 1];
-            if (g < 0) continue;
-            if (dual->seen[g] == f) {
-                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
-            }
-            dual->seen[g] = f;
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* A new vertex of the dual, at the mean of the origins of `count` half-edges, h and those that follow it. */
+/* Adds a vertex at the mean over `count` half-edges' origins, h and those that follow it. */
 GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
     int32_t number = dual->soup.vertex_count++, k;
     double *x = dual->position + 3 * (size_t)number;
@@ -16270,15 +16044,29 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* A vertex that is in the dual, too, gets its number there. */
+/* Numbers a vertex that is in the dual, too. */
 GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
     int32_t number = dual->soup.vertex_count++;
     gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
     dual->vertex[vertex] = number;
 }
 
-GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual *dual) {
-    int32_t f, e, v;
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproji_mesh_object *made, gproj_error *error) {
+    gproji_soup *soup = &dual->soup;
+    int32_t f, e, v, k, h, g, p, i, begin, end = 0, polylines = 0;
+    gproj_code code;
+    /* 1. No two faces may have two edges in common. */
+    gproji_fill(dual->seen, mesh->face_count, -1);
+    for (f = 0; f < mesh->face_count; ++f)
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            g = mesh->face[h ^ 1];
+            if (g >= 0 && dual->seen[g] == f)
+                return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                                   "there is no dual: faces %d and %d have more than one edge in common", f, g);
+            if (g >= 0) dual->seen[g] = f;
+        }
+    /* 2. Vertices: faces, boundary edges, corners, isolated vertices. */
     for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
     for (e = 0; e < mesh->edge_count; ++e)
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
@@ -16287,61 +16075,37 @@ GPROJI_INTERNAL void gproji_dual_vertices_of(const gproj_mesh *mesh, gproji_dual
         if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
     for (v = 0; v < mesh->vertex_count; ++v)
         if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
-}
-
-/* The face of a vertex that has faces: those around it; at the boundary the middle of an edge, the faces, the middle of
-   the other edge, and the vertex if it is a corner. */
-GPROJI_INTERNAL void gproji_dual_face(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    gproji_soup *soup = &dual->soup;
-    int32_t last = mesh->vertex_halfedge[vertex], h, begin = soup->corner_count;
-    bool boundary = mesh->face[last] < 0;
-    h = boundary ? gproji_rotate(mesh, last) : last;
-    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
-    do {
-        dual->corner[soup->corner_count++] = mesh->face[h];
-        h = gproji_rotate(mesh, h);
-    } while (h != last);
-    if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
-    if (dual->vertex[vertex] >= 0) dual->corner[soup->corner_count++] = dual->vertex[vertex];
-    dual->degree[soup->face_count++] = soup->corner_count - begin;
-}
-
-/* Polylines all of whose vertices are in the dual. */
-GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *dual) {
-    int32_t p, i, begin, end = 0;
+    /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a corner. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t last = mesh->vertex_halfedge[v];
+        bool boundary = last >= 0 && mesh->face[last] < 0;
+        if (vertex_face) vertex_face[v] = last < 0 ? -1 : soup->face_count;
+        if (last < 0) continue;
+        begin = soup->corner_count;
+        h = boundary ? gproji_rotate(mesh, last) : last;
+        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+        do {
+            dual->corner[soup->corner_count++] = mesh->face[h];
+            h = gproji_rotate(mesh, h);
+        } while (h != last);
+        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
+        if (dual->vertex[v] >= 0) dual->corner[soup->corner_count++] = dual->vertex[v];
+        dual->degree[soup->face_count++] = soup->corner_count - begin;
+    }
+    /* 4. Polylines that are in the dual as a whole. */
     dual->start[0] = 0;
     for (p = 0; p < mesh->polyline_count; ++p) {
-        bool whole = true;
-        begin = end;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            int32_t v = dual->vertex[mesh->polyline_vertex[i]];
-            whole = whole && v >= 0;
+            v = dual->vertex[mesh->polyline_vertex[i]];
+            if (v < 0) break;
             dual->polyline[end++] = v;
         }
-        if (whole)
-            dual->start[++dual->polyline_count] = end;
-        else
-            end = begin;
+        if (i == mesh->polyline_start[p + 1]) dual->start[++polylines] = end;
+        end = dual->start[polylines];
     }
-}
-
-GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
-                                             gproji_mesh_object *made, gproj_error *error) {
-    gproj_code code = gproji_check_dual(mesh, dual, error);
-    int32_t v;
-    if (code) return code;
-    gproji_dual_vertices_of(mesh, dual);
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        bool isolated = mesh->vertex_halfedge[v] < 0;
-        if (vertex_face) vertex_face[v] = isolated ? -1 : dual->soup.face_count;
-        if (!isolated) gproji_dual_face(mesh, dual, v);
-    }
-    gproji_dual_polylines(mesh, dual);
-    dual->soup.position = dual->position;
-    dual->soup.face_degree = dual->degree;
-    dual->soup.face_vertex = dual->corner;
-    code = gproji_mesh_build(made, &dual->soup, error);
-    return code ? code : gproji_mesh_set_polylines(made, dual->polyline_count, dual->start, dual->polyline, error);
+    soup->position = dual->position, soup->face_degree = dual->degree, soup->face_vertex = dual->corner;
+    code = gproji_mesh_build(made, soup, error);
+    return code ? code : gproji_mesh_set_polylines(made, polylines, dual->start, dual->polyline, error);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
@@ -16350,6 +16114,7 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     gproji_dual dual;
     gproji_pool pool;
     gproj_code code;
+    int64_t vertices, edges, faces;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
@@ -16358,55 +16123,68 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
-    code = gproji_dual_take(&pool, mesh, &dual) ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
-                                                : gproji_fail_memory(error);
+    vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
+    memset(&dual, 0, sizeof dual);
+    dual.position = (double *)gproji_pool_take(&pool, faces + edges + vertices, 3 * sizeof(double));
+    dual.corner = (int32_t *)gproji_pool_take(&pool, 2 * edges + 3 * vertices, sizeof(int32_t));
+    dual.degree = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
+    dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
+    dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
+    dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
+    dual.start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    dual.polyline = (int32_t *)gproji_pool_take(&pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
+    code = dual.position && dual.corner && dual.degree && dual.vertex && dual.midpoint && dual.seen && dual.start &&
+                   dual.polyline
+               ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
+               : gproji_fail_memory(error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
 }
 
 /* ============================================================================================================
-   >>measure   What a mesh is like: planarity, folds, deviation, statistics. Uses platform, vector, mesh.
+   >>measure   Planarity, folds, deviation, damage, statistics. Uses platform, vector, mesh.
 
-   The least-squares plane of a face is the plane through the mean of its vertices that is orthogonal to the direction
-   in which they scatter least; eigenvectors by Jacobi's method (1846). */
+   A face's least-squares plane goes through the mean over its vertices, orthogonal to the direction in which they
+   scatter least; eigenvectors by Jacobi's method (1846). Nothing here takes memory, and all is near-linear in a face's
+   corners, though vertices ask for normals and sides for crossings: see gproji_normals, gproji_is_bow_tie. */
+enum {
+    GPROJI_LARGE_FACE = 32,   /* corners: beyond, quadratic work is avoided */
+    GPROJI_NORMALS = 8,       /* large faces remembered */
+    GPROJI_CHAIN = 8,         /* sides in chains that are compared one by one */
+    GPROJI_CHAIN_DEPTH = 128, /* pairs at once: two more at each of 28 halvings in either chain */
+    GPROJI_SWEEPS = 12
+};
 
-/* Rotates rows and columns p, q of the symmetric matrix m so that m[p][q] = 0, and the columns of v along. */
-GPROJI_INTERNAL void gproji_jacobi_rotate(double m[3][3], double v[3][3], int32_t p, int32_t q) {
-    double theta, t, c, s;
-    int32_t k;
-    if (m[p][q] == 0) return;
-    theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-    t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1));
-    c = 1 / sqrt(t * t + 1);
-    s = t * c;
-    for (k = 0; k < 3; ++k) {
-        double kp = m[k][p], kq = m[k][q];
-        m[k][p] = c * kp - s * kq;
-        m[k][q] = s * kp + c * kq;
-    }
-    for (k = 0; k < 3; ++k) {
-        double pk = m[p][k], qk = m[q][k];
-        m[p][k] = c * pk - s * qk;
-        m[q][k] = s * pk + c * qk;
-    }
-    for (k = 0; k < 3; ++k) {
-        double kp = v[k][p], kq = v[k][q];
-        v[k][p] = c * kp - s * kq;
-        v[k][q] = s * kp + c * kq;
+/* Rotates rows and columns p, q in the symmetric matrix m so that m[p][q] = 0, and v's columns along, for each pair. */
+GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
+    int32_t pair, k;
+    for (pair = 0; pair < 3; ++pair) {
+        int32_t p = pair / 2, q = pair == 0 ? 1 : 2;
+        double theta, t, c, s;
+        if (m[p][q] == 0) continue;
+        theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+        t = (theta < 0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(theta * theta + 1));
+        c = 1 / sqrt(t * t + 1), s = t * c;
+        for (k = 0; k < 3; ++k) {
+            double mp = m[k][p], mq = m[k][q], vp = v[k][p], vq = v[k][q];
+            m[k][p] = c * mp - s * mq, m[k][q] = s * mp + c * mq;
+            v[k][p] = c * vp - s * vq, v[k][q] = s * vp + c * vq;
+        }
+        for (k = 0; k < 3; ++k) {
+            double mp = m[p][k], mq = m[q][k];
+            m[p][k] = c * mp - s * mq, m[q][k] = s * mp + c * mq;
+        }
     }
 }
 
-/* The unit eigenvector of the largest eigenvalue of a symmetric 3x3 matrix (destroyed). Sweeps square what is left beside the
-   diagonal, so 4 or 5 are usual until it is below all rounding. */
+/* Finds the unit eigenvector for the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
 GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
     int32_t sweep, largest = 0, k;
-    for (sweep = 0; sweep < 12; ++sweep) {
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
         double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
         if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
-        gproji_jacobi_rotate(m, v, 0, 1);
-        gproji_jacobi_rotate(m, v, 0, 2);
-        gproji_jacobi_rotate(m, v, 1, 2);
+        gproji_jacobi_sweep(m, v);
     }
     for (k = 1; k < 3; ++k)
         if (m[k][k] > m[largest][largest]) largest = k;
@@ -16417,26 +16195,20 @@ GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int
     return mesh->position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* The same with other positions. */
 GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-GPROJI_INTERNAL void gproji_face_mean(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3]) {
-    int32_t h = mesh->face_halfedge[face], k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_at(mesh, position, h), mean);
-}
-
-/* The least-squares plane of a face: the mean of its vertices and a unit normal. Its directions are found one after the
-   other, the longest first and then, from the points without their part along it, the one across: so a narrow face has
-   its normal to rounding, too, where the eigenvectors of its scatter matrix would have half the digits. */
+/* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
                                        double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
-    gproji_face_mean(mesh, position, face, mean);
+    gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < degree; ++k, h = mesh->next[h])
+        gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
+    /* The longest direction first and then, from points without their part along it, the one across: so a narrow face
+       has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         for (i = 0; i < 3; ++i)
@@ -16450,11 +16222,11 @@ GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *pos
         uv += gproji_dot3(d, u) * gproji_dot3(d, v);
         vv += gproji_dot3(d, v) * gproji_dot3(d, v);
     }
-    angle = 0.5 * atan2(2 * uv, uu - vv); /* of the direction across, in the basis u, v */
+    angle = 0.5 * atan2(2 * uv, uu - vv); /* from u to the direction across */
     for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
 }
 
-/* The largest distance of a face's vertices from its least-squares plane, in the mesh's units. */
+/* The largest distance between a face's vertices and the least-squares plane, in the mesh's units. */
 GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                              const double normal[3]) {
     double d[3], worst = 0;
@@ -16466,21 +16238,18 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     return worst;
 }
 
-/* The point in the plane of a face that is, in the least-squares sense, on the perpendicular bisectors of all its
-   edges: with d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e, in the plane's coordinates. False
-   where the face has no such point (its edges are parallel). */
+/* Finds the point c in a face's plane that is on all edges' perpendicular bisectors in the least-squares sense: with
+   d = c - mean, sum e e'd = sum e e'(midpoint - mean) over the edges e. False if all edges are parallel. */
 GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *position, int32_t face,
                                          const double mean[3], const double normal[3], double out[3]) {
     double u[3], v[3], e[3], m[3], uu = 0, uv = 0, vv = 0, bu = 0, bv = 0, determinant, along, eu, ev;
     int32_t h = mesh->face_halfedge[face], k, i;
     gproji_tangents3(normal, u, v);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        const double *a = position + 3 * (size_t)mesh->origin[h],
-                     *b = position + 3 * (size_t)mesh->origin[mesh->next[h]];
+        const double *a = gproji_corner_at(mesh, position, h), *b = gproji_corner_at(mesh, position, mesh->next[h]);
         gproji_sub3(b, a, e);
         for (i = 0; i < 3; ++i) m[i] = (a[i] + b[i]) / 2 - mean[i];
-        eu = gproji_dot3(e, u);
-        ev = gproji_dot3(e, v);
+        eu = gproji_dot3(e, u), ev = gproji_dot3(e, v);
         along = eu * gproji_dot3(m, u) + ev * gproji_dot3(m, v);
         uu += eu * eu, uv += eu * ev, vv += ev * ev;
         bu += eu * along, bv += ev * along;
@@ -16493,49 +16262,68 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
     return true;
 }
 
-/* The largest difference of the distances of a face's vertices from its circumcentre; infinite without one. */
+GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
+    *least = gproji_fmin(*least, value), *most = gproji_fmax(*most, value);
+}
+
+/* The largest difference between a face's vertices in distance from the circumcentre; infinite without one. */
 GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
                                                const double normal[3]) {
     double centre[3], least = HUGE_VAL, most = 0;
     int32_t h = mesh->face_halfedge[face], k;
     if (mesh->face_degree[face] == 3) return 0;
     if (!gproji_circumcentre(mesh, mesh->position, face, mean, normal, centre)) return HUGE_VAL;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        double distance = gproji_distance3(gproji_corner_position(mesh, h), centre);
-        least = gproji_fmin(least, distance);
-        most = gproji_fmax(most, distance);
-    }
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+        gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
     return most - least;
 }
 
-/* The unit normal of a face with other positions, along its vectorial area; 0 where that is 0. */
+/* -- normals and vertices -- */
+
+/* A face's unit normal along the vectorial area; 0 without area. */
 GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_area_vector(mesh, position, face, out);
     gproji_normalise3(out, none);
 }
 
-/* The bisecting plane of the two faces at a half-edge: its unit normal b is along e x (n_f + n_g), e the unit vector of
-   the edge, n the unit normals. False at the boundary. */
-GPROJI_INTERNAL bool gproji_bisecting_plane(const gproj_mesh *mesh, const double *position, int32_t halfedge,
-                                            double b[3]) {
-    static const double none[3] = {0, 0, 0};
-    double e[3], other[3];
-    if (mesh->face[halfedge] < 0 || mesh->face[halfedge ^ 1] < 0) return false;
-    gproji_sub3(position + 3 * (size_t)mesh->origin[halfedge ^ 1], position + 3 * (size_t)mesh->origin[halfedge], e);
-    gproji_normalise3(e, none);
-    gproji_unit_normal(mesh, position, mesh->face[halfedge], b);
-    gproji_unit_normal(mesh, position, mesh->face[halfedge ^ 1], other);
-    gproji_add_scaled3(1, other, b);
-    gproji_cross3(e, b, b);
-    gproji_normalise3(b, none);
-    return true;
+/* Unit normals on demand. Each vertex around a large face asks for that face's, so the last few are remembered. */
+typedef struct gproji_normals {
+    const gproj_mesh *mesh;
+    const double *position;
+    int32_t oldest;               /* the place that is replaced next */
+    int32_t face[GPROJI_NORMALS]; /* -1: free */
+    double normal[GPROJI_NORMALS][3];
+} gproji_normals;
+
+GPROJI_INTERNAL gproji_normals gproji_normals_of(const gproj_mesh *mesh, const double *position) {
+    gproji_normals normals;
+    memset(&normals, 0, sizeof normals);
+    normals.mesh = mesh, normals.position = position;
+    memset(normals.face, -1, sizeof normals.face);
+    return normals;
 }
 
-/* The mean unit normal of the faces around a vertex; e_z where they have none. Returns the number of faces. */
-GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                           double out[3]) {
+GPROJI_INTERNAL void gproji_recall_normal(gproji_normals *normals, int32_t face, double out[3]) {
+    int32_t i;
+    if (normals->mesh->face_degree[face] <= GPROJI_LARGE_FACE) {
+        gproji_unit_normal(normals->mesh, normals->position, face, out);
+        return;
+    }
+    for (i = 0; i < GPROJI_NORMALS && normals->face[i] != face; ++i) continue;
+    if (i == GPROJI_NORMALS) {
+        i = normals->oldest;
+        normals->oldest = (i + 1) % GPROJI_NORMALS;
+        normals->face[i] = face;
+        gproji_unit_normal(normals->mesh, normals->position, face, normals->normal[i]);
+    }
+    gproji_copy3(normals->normal[i], out);
+}
+
+/* Finds the mean unit normal over the faces around a vertex; e_z without faces. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
+    const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
     double n[3];
     gproji_copy3(up, out);
@@ -16543,7 +16331,7 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double 
     gproji_set3(0, 0, 0, out);
     do {
         if (mesh->face[h] >= 0) {
-            gproji_unit_normal(mesh, position, mesh->face[h], n);
+            gproji_recall_normal(normals, mesh->face[h], n);
             gproji_add_scaled3(1, n, out);
             ++count;
         }
@@ -16553,18 +16341,28 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(const gproj_mesh *mesh, const double 
     return count;
 }
 
-/* The axis of the cone that the planes around a vertex touch: it is in the bisecting planes of all edges. The unit
-   vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
-   to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
-GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                         double axis[3]) {
-    int32_t count = gproji_mean_normal(mesh, position, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
-    double b[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant, t[2];
+/* Finds the axis of the cone that the planes around a vertex touch; it is in all edges' bisecting planes. The unit vector
+   along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal to it
+   and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
+GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex, double axis[3]) {
+    static const double none[3] = {0, 0, 0};
+    const gproj_mesh *mesh = normals->mesh;
+    int32_t count = gproji_mean_normal(normals, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
+    double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant;
     if (count < 3) return count;
     gproji_tangents3(axis, u, v);
     do {
-        if (gproji_bisecting_plane(mesh, position, h, b)) {
-            double bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
+        if (mesh->face[h] >= 0 && mesh->face[h ^ 1] >= 0) { /* b along e x (n_f + n_g), e the edge's unit vector */
+            double bu, bv, bm;
+            gproji_sub3(gproji_corner_at(mesh, normals->position, h ^ 1), gproji_corner_at(mesh, normals->position, h),
+                        e);
+            gproji_normalise3(e, none);
+            gproji_recall_normal(normals, mesh->face[h], b);
+            gproji_recall_normal(normals, mesh->face[h ^ 1], n);
+            gproji_add_scaled3(1, n, b);
+            gproji_cross3(e, b, b);
+            gproji_normalise3(b, none);
+            bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
             uu += bu * bu, uv += bu * bv, vv += bv * bv;
             um -= bu * bm, vm -= bv * bm;
         }
@@ -16574,36 +16372,38 @@ GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *p
     uu += ridge, vv += ridge;
     determinant = uu * vv - uv * uv;
     if (!(determinant > 0)) return count;
-    t[0] = (um * vv - vm * uv) / determinant;
-    t[1] = (vm * uu - um * uv) / determinant;
-    gproji_add_scaled3(t[0], u, axis);
-    gproji_add_scaled3(t[1], v, axis);
+    gproji_add_scaled3((um * vv - vm * uv) / determinant, u, axis);
+    gproji_add_scaled3((vm * uu - um * uv) / determinant, v, axis);
     gproji_normalise3(axis, axis);
     return count;
 }
 
-/* The largest difference of the angles between the normals of the faces around a vertex and their best axis; 0 where
-   fewer than four meet. */
-GPROJI_INTERNAL double gproji_vertex_conicality(const gproj_mesh *mesh, int32_t vertex) {
+/* Finds the axis at a single vertex. */
+GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
+                                         double axis[3]) {
+    gproji_normals normals = gproji_normals_of(mesh, position);
+    return gproji_find_axis(&normals, vertex, axis);
+}
+
+/* The largest difference between the normals around a vertex in angle to their axis; 0 with fewer than four faces. */
+GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t vertex) {
+    const gproj_mesh *mesh = normals->mesh;
     double axis[3], n[3], cross[3], least = HUGE_VAL, most = 0;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    if (gproji_cone_axis(mesh, mesh->position, vertex, axis) < 4) return 0;
+    if (gproji_find_axis(normals, vertex, axis) < 4) return 0;
     do {
         if (mesh->face[h] >= 0) {
-            double angle;
-            gproji_unit_normal(mesh, mesh->position, mesh->face[h], n);
+            gproji_recall_normal(normals, mesh->face[h], n);
             gproji_cross3(n, axis, cross);
-            angle = atan2(gproji_length3(cross), gproji_dot3(n, axis));
-            least = gproji_fmin(least, angle);
-            most = gproji_fmax(most, angle);
+            gproji_widen(atan2(gproji_length3(cross), gproji_dot3(n, axis)), &least, &most);
         }
         h = gproji_rotate(mesh, h);
     } while (h != start);
     return most - least;
 }
 
-/* |w1 - w2 + w3 - w4| for the angles of the four faces around an interior vertex: 0 where they touch a cone, but anything
-   where the vertex is flat, though its normals say nothing of it. 0 at other vertices. */
+/* |w1 - w2 + w3 - w4| for the four faces' angles around an interior vertex: 0 if they touch a cone, but anything where
+   the vertex is flat, though its normals do not show it. 0 at other vertices. */
 GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
     double a[3], b[3], cross[3], sum = 0;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
@@ -16614,24 +16414,37 @@ GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t ve
         gproji_sub3(gproji_corner_position(mesh, next ^ 1), gproji_corner_position(mesh, h), b);
         gproji_cross3(a, b, cross);
         sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
-        sign = -sign;
-        h = next;
+        sign = -sign, h = next;
     } while (h != start);
     return fabs(sum);
 }
 
-/* The distance of the two lines through the diagonals of a quad, in the mesh's units: the volume of the diagonals and
-   the vector that joins them over the area they span. */
-GPROJI_INTERNAL double gproji_diagonal_distance(const gproj_mesh *mesh, int32_t face) {
-    int32_t a = mesh->face_halfedge[face], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
-    double first[3], second[3], joining[3], normal[3], length;
-    gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
-    gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
-    gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
-    gproji_cross3(first, second, normal);
-    length = gproji_length3(normal);
-    return length > 0 ? fabs(gproji_dot3(normal, joining)) / length : 0;
+/* The area enclosed by the normals around an interior vertex, as a fan about their mean; 0 at the boundary. */
+GPROJI_INTERNAL double gproji_gauss_area(gproji_normals *normals, int32_t vertex) {
+    const gproj_mesh *mesh = normals->mesh;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
+    double mean[3] = {0, 0, 0}, previous[3], n[3], a[3], b[3], area[3], sum = 0;
+    if (start < 0 || mesh->face[start] < 0) return 0;
+    do {
+        gproji_recall_normal(normals, mesh->face[h], previous);
+        gproji_add_scaled3(1, previous, mean);
+        count++;
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    mean[0] /= count, mean[1] /= count, mean[2] /= count;
+    do { /* `previous` begins as the last face's normal */
+        gproji_recall_normal(normals, mesh->face[h], n);
+        gproji_sub3(previous, mean, a);
+        gproji_sub3(n, mean, b);
+        gproji_cross3(a, b, area);
+        sum += 0.5 * gproji_length3(area);
+        gproji_copy3(n, previous);
+        h = mesh->twin[mesh->prev[h]];
+    } while (h != start);
+    return sum;
 }
+
+/* -- crossings and folds -- */
 
 /* Twice the signed area of the triangle a b c seen along `axis`. */
 GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], const double c[3], const double axis[3]) {
@@ -16642,12 +16455,12 @@ GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], co
     return gproji_dot3(n, axis);
 }
 
-/* Are a and b of different signs, both clear of rounding? */
+/* Have a and b different signs, both clear of rounding? */
 GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
     return (a > rounding && b < -rounding) || (a < -rounding && b > rounding);
 }
 
-/* Do the segments of half-edges g and h cross properly, seen along the unit vector `axis`? */
+/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`? */
 GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *position, int32_t g, int32_t h,
                                         const double axis[3]) {
     const double *a = gproji_corner_at(mesh, position, g), *b = gproji_corner_at(mesh, position, mesh->next[g]);
@@ -16657,41 +16470,138 @@ GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *po
            gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
 }
 
-/* Does a side of the face cross another, seen along the normal of its least-squares plane? Its vectorial area would not
-   do: a symmetric bow-tie has none. */
+/* Consecutive sides, from a half-edge on. */
+typedef struct gproji_chain {
+    int32_t first, count;
+    double low[2], high[2]; /* the box around it in the coordinates u and v */
+} gproji_chain;
+
+/* Describes a chain; the box is relative to the point basis[0]. Returns the half-edge after the last. */
+GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double *position, double basis[3][3],
+                                           int32_t first, int32_t count, gproji_chain *chain) {
+    int32_t h = first, k, i;
+    chain->first = first, chain->count = count;
+    for (k = 0;; ++k, h = mesh->next[h]) {
+        double d[3];
+        gproji_sub3(gproji_corner_at(mesh, position, h), basis[0], d);
+        for (i = 0; i < 2; ++i) {
+            double x = gproji_dot3(d, basis[i + 1]);
+            if (k == 0 || x < chain->low[i]) chain->low[i] = x;
+            if (k == 0 || x > chain->high[i]) chain->high[i] = x;
+        }
+        if (k == count) return h;
+    }
+}
+
+/* Does a side cross another, seen along the normal to the face's least-squares plane? The vectorial area would not
+   do: a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
+   out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
                                        const double axis[3]) {
-    int32_t degree = mesh->face_degree[face], g = mesh->face_halfedge[face], h, i, j;
-    for (i = 0; i + 2 < degree; ++i, g = mesh->next[g]) {
-        h = mesh->next[mesh->next[g]];
-        for (j = i + 2; j < degree; ++j, h = mesh->next[h])
-            if (mesh->next[h] != g && gproji_sides_cross(mesh, position, g, h, axis)) return true;
+    gproji_chain stack[GPROJI_CHAIN_DEPTH][2], part[2];
+    int32_t degree = mesh->face_degree[face], most = degree > GPROJI_LARGE_FACE ? GPROJI_CHAIN : degree, depth = 0;
+    int32_t g, h, i, j;
+    double basis[3][3];
+    part[0].first = mesh->face_halfedge[face], part[0].count = degree;
+    if (degree > most) {
+        gproji_copy3(gproji_corner_at(mesh, position, part[0].first), basis[0]);
+        gproji_tangents3(axis, basis[1], basis[2]);
+    }
+    stack[depth][0] = part[0], stack[depth++][1] = part[0];
+    while (depth > 0) {
+        const gproji_chain a = stack[--depth][0], b = stack[depth][1];
+        bool same = a.first == b.first;
+        if (!same && (a.low[0] > b.high[0] || a.high[0] < b.low[0] || a.low[1] > b.high[1] || a.high[1] < b.low[1]))
+            continue;
+        if (a.count > most || b.count > most) {
+            const gproji_chain *whole = a.count >= b.count ? &a : &b;
+            h = gproji_bound_chain(mesh, position, basis, whole->first, whole->count / 2, &part[0]);
+            gproji_bound_chain(mesh, position, basis, h, whole->count - whole->count / 2, &part[1]);
+            for (i = 0; i < 2; ++i, ++depth)
+                stack[depth][0] = same || whole == &a ? part[i] : a,
+                stack[depth][1] = same || whole == &b ? part[i] : b;
+            if (same) stack[depth][0] = part[0], stack[depth++][1] = part[1];
+            continue;
+        }
+        for (i = 0, g = a.first; i < a.count; ++i, g = mesh->next[g]) { /* sides that are not neighbours */
+            h = same ? mesh->next[g] : b.first;
+            for (j = same ? i + 1 : 0; j < b.count; ++j, h = mesh->next[h])
+                if (mesh->next[g] != h && mesh->next[h] != g && gproji_sides_cross(mesh, position, g, h, axis))
+                    return true;
+        }
     }
     return false;
 }
 
-/* Do the normals of an edge's two faces make more than 120 degrees? */
-GPROJI_INTERNAL bool gproji_is_folded(const gproj_mesh *mesh, const double *position, int32_t edge) {
-    static const double none[3] = {0, 0, 0};
-    int32_t left = mesh->face[2 * edge], right = mesh->face[2 * edge + 1];
+/* Do the normals at an edge's two faces make more than 120 degrees? */
+GPROJI_INTERNAL bool gproji_is_folded(gproji_normals *normals, int32_t edge) {
+    int32_t left = normals->mesh->face[2 * edge], right = normals->mesh->face[2 * edge + 1];
     double a[3], b[3];
     if (left < 0 || right < 0) return false;
-    gproji_area_vector(mesh, position, left, a);
-    gproji_area_vector(mesh, position, right, b);
-    return gproji_normalise3(a, none) && gproji_normalise3(b, none) && gproji_dot3(a, b) < -0.5;
+    gproji_recall_normal(normals, left, a);
+    gproji_recall_normal(normals, right, b);
+    return gproji_dot3(a, b) < -0.5;
 }
 
-GPROJI_INTERNAL void gproji_measure_edges(const gproj_mesh *mesh, gproj_measures *m) {
-    int32_t e;
-    m->mean_edge = gproji_mean_edge(mesh, mesh->position);
-    for (e = 0; e < mesh->edge_count; ++e) {
-        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
-        if (e == 0 || length < m->min_edge) m->min_edge = length;
-        if (length > m->max_edge) m->max_edge = length;
-        m->length += length;
-        m->collapsed_edges += length <= 1e-6 * m->mean_edge;
-        m->folded_edges += gproji_is_folded(mesh, mesh->position, e);
+/* -- volume -- */
+
+/* Computes the volume (see gproj_add_volume) down to the plane z = -height, and the sum of the faces' areas; `gradient`
+   becomes six times the volume's derivatives, 3 numbers a vertex. `gradient` and `area` may be NULL. */
+GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
+                                     double *area) {
+    double sum = 0, all = 0, apex[3], a[3], b[3], cross[3];
+    int32_t f, i;
+    gproji_set3(position[0], position[1], -height, apex);
+    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    /* 1. Tetrahedra between the apex and the triangles at each face's first corner. `before` sums both triangles at a
+       corner, which give the derivative there as far as the mesh is closed. */
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
+        const double *first = gproji_corner_at(mesh, position, start);
+        double face[3] = {0, 0, 0}, before[3] = {0, 0, 0};
+        gproji_sub3(gproji_corner_at(mesh, position, h), first, a);
+        for (; (next = mesh->next[h]) != start; h = next) {
+            gproji_sub3(gproji_corner_at(mesh, position, next), first, b);
+            gproji_cross3(a, b, cross);
+            gproji_add_scaled3(1, cross, face);
+            gproji_add_scaled3(1, cross, before);
+            if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
+            gproji_copy3(cross, before);
+            gproji_copy3(b, a);
+        }
+        if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
+        if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
+        gproji_sub3(first, apex, a);
+        sum += gproji_dot3(a, face);
+        all += gproji_length3(face);
     }
+    /* 2. Walls from boundary edges pq, in the faces' direction, down to the plane: (p x q)_z (p_z + q_z) from the apex,
+       and to the derivatives the part - p x q that the faces lack there. */
+    for (i = 0; i < mesh->loop_count; ++i) {
+        int32_t start = mesh->loop_halfedge[i], h = start;
+        do {
+            int32_t p = mesh->origin[mesh->next[h]], q = mesh->origin[h];
+            double rise;
+            gproji_sub3(position + 3 * (size_t)p, apex, a);
+            gproji_sub3(position + 3 * (size_t)q, apex, b);
+            gproji_cross3(a, b, cross);
+            rise = a[2] + b[2];
+            if (gradient) {
+                gradient[3 * (size_t)p] += rise * b[1] - cross[0];
+                gradient[3 * (size_t)p + 1] -= rise * b[0] + cross[1];
+                gradient[3 * (size_t)q] -= rise * a[1] + cross[0];
+                gradient[3 * (size_t)q + 1] += rise * a[0] - cross[1];
+            }
+            sum += cross[2] * rise;
+            h = mesh->next[h];
+        } while (h != start);
+    }
+    if (area) *area = all / 2;
+    return sum / 6;
+}
+
+GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
+    return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
 }
 
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
@@ -16704,20 +16614,25 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         gproji_face_plane(mesh, mesh->position, f, mean, normal);
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
-        m->area += area;
-        squares += area * area;
+        m->area += area, squares += area * area;
         m->circularity_max = gproji_fmax(m->circularity_max, gproji_face_circularity(mesh, f, mean, normal) / unit);
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
         m->bow_tie_faces += gproji_is_bow_tie(mesh, mesh->position, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
-        if (flatness > m->planarity_max) {
-            m->planarity_max = flatness;
-            m->planarity_face = f;
+        if (flatness > m->planarity_max) m->planarity_max = flatness, m->planarity_face = f;
+        if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
+            int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
+            double first[3], second[3], joining[3], across[3], length;
+            gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
+            gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
+            gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
+            gproji_cross3(first, second, across);
+            length = gproji_length3(across);
+            if (length > 0)
+                m->diagonal_max = gproji_fmax(m->diagonal_max, fabs(gproji_dot3(across, joining)) / length / unit);
         }
-        if (mesh->face_degree[f] == 4)
-            m->diagonal_max = gproji_fmax(m->diagonal_max, gproji_diagonal_distance(mesh, f) / unit);
         if (planarity) planarity[f] = flatness;
     }
     mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
@@ -16725,136 +16640,22 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
 }
 
-/* The area of the spherical polygon of the normals around an interior vertex, as a fan of plane triangles about their
-   mean; 0 at the boundary. */
-GPROJI_INTERNAL double gproji_gauss_area(const gproj_mesh *mesh, int32_t vertex) {
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
-    double mean[3] = {0, 0, 0}, previous[3], n[3], a[3], b[3], area[3], sum = 0;
-    static const double none[3] = {0, 0, 0};
-    if (start < 0 || mesh->face[start] < 0) return 0;
-    do {
-        gproji_area_vector(mesh, mesh->position, mesh->face[h], previous);
-        gproji_normalise3(previous, none);
-        gproji_add_scaled3(1, previous, mean);
-        count++;
-        h = mesh->twin[mesh->prev[h]];
-    } while (h != start);
-    mean[0] /= count, mean[1] /= count, mean[2] /= count;
-    do { /* `previous` begins as the normal of the last face */
-        gproji_area_vector(mesh, mesh->position, mesh->face[h], n);
-        gproji_normalise3(n, none);
-        gproji_sub3(previous, mean, a);
-        gproji_sub3(n, mean, b);
-        gproji_cross3(a, b, area);
-        sum += 0.5 * gproji_length3(area);
-        gproji_copy3(n, previous);
-        h = mesh->twin[mesh->prev[h]];
-    } while (h != start);
-    return sum;
-}
-
-/* What a face adds to six times the volume between the mesh and `apex`, by tetrahedra of that and the triangles from the
-   face's first corner, and to the derivatives of the volume where the mesh is closed; `face`: twice its vectorial area. */
-GPROJI_INTERNAL double gproji_face_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
-                                          int32_t f, double *gradient, double face[3]) {
-    int32_t start = mesh->face_halfedge[f], h = mesh->next[start], next;
-    const double *first = position + 3 * (size_t)mesh->origin[start];
-    double b[3], c[3], area[3], before[3] = {0, 0, 0};
-    gproji_sub3(position + 3 * (size_t)mesh->origin[h], first, b);
-    for (; (next = mesh->next[h]) != start; h = next) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[next], first, c);
-        gproji_cross3(b, c, area);
-        gproji_add_scaled3(1, area, face);
-        gproji_add_scaled3(1, area, before); /* both triangles at this corner */
-        if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
-        gproji_copy3(area, before);
-        gproji_copy3(c, b);
-    }
-    if (gradient) gproji_add_scaled3(1, before, gradient + 3 * (size_t)mesh->origin[h]);
-    if (gradient) gproji_add_scaled3(1, face, gradient + 3 * (size_t)mesh->origin[start]);
-    gproji_sub3(first, apex, b);
-    return gproji_dot3(b, face);
-}
-
-/* The same of all faces; `area`: the sum of their areas. */
-GPROJI_INTERNAL double gproji_faces_volume(const gproj_mesh *mesh, const double *position, const double apex[3],
-                                           double *gradient, double *area) {
-    double sum = 0, all = 0;
-    int32_t f;
-    for (f = 0; f < mesh->face_count; ++f) {
-        double face[3] = {0, 0, 0};
-        sum += gproji_face_volume(mesh, position, apex, f, gradient, face);
-        all += gproji_length3(face);
-    }
-    *area = all / 2;
-    return sum;
-}
-
-/* What the wall from a face's edge pq at the boundary down to the plane through `apex` adds to six times the volume, in
-   coordinates from there (p x q)_z (p_z + q_z), and to its derivatives with what the faces' lack there, - p x q. */
-GPROJI_INTERNAL double gproji_wall_volume(const double *position, const double apex[3], int32_t p, int32_t q,
-                                          double *gradient) {
-    double a[3], b[3], area[3], height;
-    gproji_sub3(position + 3 * (size_t)p, apex, a);
-    gproji_sub3(position + 3 * (size_t)q, apex, b);
-    gproji_cross3(a, b, area);
-    height = a[2] + b[2];
-    if (gradient) {
-        gradient[3 * (size_t)p] += height * b[1] - area[0];
-        gradient[3 * (size_t)p + 1] -= height * b[0] + area[1];
-        gradient[3 * (size_t)q] -= height * a[1] + area[0];
-        gradient[3 * (size_t)q + 1] += height * a[0] - area[1];
-    }
-    return area[2] * height;
-}
-
-/* The volume of a mesh with other positions (see gproj_add_volume), the plane at z = -height, and the sum of the faces'
-   areas; `gradient` becomes six times the volume's derivatives, 3 numbers a vertex, unless it is NULL. */
-GPROJI_INTERNAL double gproji_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient,
-                                     double *area) {
-    double sum, all, apex[3];
-    int32_t i;
-    gproji_set3(position[0], position[1], -height, apex);
-    if (gradient) memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
-    sum = gproji_faces_volume(mesh, position, apex, gradient, &all);
-    for (i = 0; i < mesh->loop_count; ++i) {
-        int32_t start = mesh->loop_halfedge[i], h = start;
-        do { /* against the faces' direction */
-            sum += gproji_wall_volume(position, apex, mesh->origin[mesh->next[h]], mesh->origin[h], gradient);
-            h = mesh->next[h];
-        } while (h != start);
-    }
-    if (area) *area = all;
-    return sum / 6;
-}
-
-GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
-    return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
-}
-
-GPROJI_INTERNAL double gproji_box_diagonal(const double *position, int32_t count) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    int32_t v, k;
-    for (v = 0; v < count; ++v) {
+GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge = gproji_mean_edge(mesh, original);
+    double sum = 0, squares = 0, before[3], now[3];
+    int32_t v, f, k;
+    for (v = 0; v < mesh->vertex_count; ++v)
         for (k = 0; k < 3; ++k) {
-            double x = position[3 * (size_t)v + (size_t)k];
+            double x = original[3 * (size_t)v + (size_t)k];
             if (v == 0 || x < low[k]) low[k] = x;
             if (v == 0 || x > high[k]) high[k] = x;
         }
-    }
-    return gproji_distance3(low, high);
-}
-
-GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
-    double diagonal = gproji_box_diagonal(original, mesh->vertex_count), edge = gproji_mean_edge(mesh, original);
-    double sum = 0, squares = 0, before[3], now[3];
-    int32_t v, f;
+    diagonal = gproji_distance3(low, high);
     if (!(diagonal > 0)) diagonal = 1;
     if (!(edge > 0)) edge = 1;
     for (v = 0; v < mesh->vertex_count; ++v) {
         double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
-        sum += d;
-        squares += d * d;
+        sum += d, squares += d * d;
         m->deviation_max = gproji_fmax(m->deviation_max, d / diagonal);
     }
     if (mesh->vertex_count) {
@@ -16887,22 +16688,32 @@ GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planari
 }
 
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
+    gproji_normals normals;
     gproj_measures m;
-    int32_t v;
+    int32_t v, e;
     memset(&m, 0, sizeof m);
     m.planarity_face = -1;
     if (!mesh) return m;
-    gproji_measure_edges(mesh, &m);
+    normals = gproji_normals_of(mesh, mesh->position);
+    m.mean_edge = gproji_mean_edge(mesh, mesh->position);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
+        if (e == 0 || length < m.min_edge) m.min_edge = length;
+        if (length > m.max_edge) m.max_edge = length;
+        m.length += length;
+        m.collapsed_edges += length <= 1e-6 * m.mean_edge;
+        m.folded_edges += gproji_is_folded(&normals, e);
+    }
     gproji_measure_faces(mesh, planarity, &m);
     for (v = 0; v < mesh->vertex_count; ++v) {
-        m.gauss_variation += gproji_gauss_area(mesh, v);
-        m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(mesh, v));
+        m.gauss_variation += gproji_gauss_area(&normals, v);
+        m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(&normals, v));
     }
     if (original) gproji_measure_change(mesh, original, &m);
     return m;
 }
 
-/* -- what is spoiled -- */
+/* -- damage -- */
 
 /* Kinds of damage, in the order in which sentences tell them. */
 typedef enum gproji_damage {
@@ -16917,7 +16728,7 @@ typedef enum gproji_damage {
 
 typedef struct gproji_damages {
     int32_t count[GPROJI_DAMAGE_COUNT];
-    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge of each kind; -1: none */
+    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge with each kind, or -1 */
 } gproji_damages;
 
 GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, int32_t element, bool spoiled) {
@@ -16925,13 +16736,11 @@ GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, 
     if (d->count[kind]++ == 0) d->first[kind] = element;
 }
 
-/* Is a quad with this vectorial area clearly convex, and nearly flat? Then it does not cross itself, and needs no plane of
-   least squares to say so. */
+/* Is a quad with this vectorial area clearly convex, and nearly flat? Then no plane is needed to see no crossing. */
 GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double *position, int32_t face,
                                            const double area[3]) {
-    /* Height over least altitude: the plane's normal then leans by at most 1.5 flat, which takes at most 3 flat^2 of a
-       corner's area. */
-    static const double flat = 0.1;
+    static const double flat = 0.1; /* height over least altitude: the least-squares normal leans by at most 1.5 flat,
+                                       which takes at most 3 flat^2 from a corner's area */
     double side[4][3], cross[3], longest = 0, least = HUGE_VAL;
     int32_t h = mesh->face_halfedge[face], k;
     if (mesh->face_degree[face] != 4) return false;
@@ -16939,11 +16748,11 @@ GPROJI_INTERNAL bool gproji_is_convex_quad(const gproj_mesh *mesh, const double 
         gproji_sub3(gproji_corner_at(mesh, position, mesh->next[h]), gproji_corner_at(mesh, position, h), side[k]);
         longest = gproji_fmax(longest, gproji_length3(side[k]));
     }
-    for (k = 0; k < 4; ++k) { /* twice the areas of the corners' triangles, times that of the quad */
+    for (k = 0; k < 4; ++k) { /* twice the corner triangles' areas, times the quad's */
         gproji_cross3(side[k], side[(k + 1) % 4], cross);
         least = gproji_fmin(least, gproji_dot3(cross, area));
     }
-    /* Both diagonals are orthogonal to the vectorial area: each side rises by the height between them. */
+    /* The diagonals are orthogonal to the vectorial area: each side rises by the height between them. */
     return fabs(gproji_dot3(side[0], area)) * longest < flat * least;
 }
 
@@ -16953,27 +16762,24 @@ GPROJI_INTERNAL bool gproji_crosses_itself(const gproj_mesh *mesh, const double 
     return gproji_is_bow_tie(mesh, position, face, normal);
 }
 
-/* The least factor by which edges have grown, and at least 1: a mesh that is scaled up as a whole has no spikes. */
-GPROJI_INTERNAL double gproji_least_growth(const gproj_mesh *mesh, const double *position, const double *original) {
-    double least = HUGE_VAL;
-    int32_t e;
-    for (e = 0; e < mesh->edge_count && least > 1; ++e) {
-        int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
-        double before = gproji_distance3(original + 3 * (size_t)i, original + 3 * (size_t)j);
-        double now = gproji_distance3(position + 3 * (size_t)i, position + 3 * (size_t)j);
-        if (before > 0) least = gproji_fmin(least, now / before);
-    }
-    return least > 1 && least < HUGE_VAL ? least : 1;
-}
-
-/* Counts what is spoiled at these positions. Folds and crossings at the original are looked at only where there is one
-   now: nearly never. */
+/* Counts damage. The original is asked for folds and crossings only if there is one now: nearly never. */
 GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *position, const double *original,
                                          gproji_damages *d) {
-    double grown = gproji_least_growth(mesh, position, original), mean = grown * gproji_mean_edge(mesh, original);
+    gproji_normals was = gproji_normals_of(mesh, original), is = gproji_normals_of(mesh, position);
+    double grown = HUGE_VAL, mean;
     int32_t i;
     memset(d->count, 0, sizeof d->count);
     for (i = 0; i < GPROJI_DAMAGE_COUNT; ++i) d->first[i] = -1;
+    /* 1. The least factor by which edges have grown, and at least 1: a mesh scaled up as a whole has no spikes. */
+    for (i = 0; i < mesh->edge_count && grown > 1; ++i) {
+        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
+        double before = gproji_distance3(original + a, original + b),
+               now = gproji_distance3(position + a, position + b);
+        if (before > 0) grown = gproji_fmin(grown, now / before);
+    }
+    if (!(grown > 1 && grown < HUGE_VAL)) grown = 1;
+    mean = grown * gproji_mean_edge(mesh, original);
+    /* 2. Faces. */
     for (i = 0; i < mesh->face_count; ++i) {
         double before[3], now[3];
         gproji_area_vector(mesh, original, i, before);
@@ -16985,18 +16791,18 @@ GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *p
                             mesh->face_degree[i] > 3 && !gproji_is_convex_quad(mesh, position, i, now) &&
                                 gproji_crosses_itself(mesh, position, i) && !gproji_crosses_itself(mesh, original, i));
     }
+    /* 3. Edges. */
     for (i = 0; i < mesh->edge_count; ++i) {
-        int32_t a = mesh->origin[2 * i], b = mesh->origin[2 * i + 1];
-        double before = grown * gproji_distance3(original + 3 * (size_t)a, original + 3 * (size_t)b);
-        double now = gproji_distance3(position + 3 * (size_t)a, position + 3 * (size_t)b);
+        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
+        double before = grown * gproji_distance3(original + a, original + b);
+        double now = gproji_distance3(position + a, position + b);
         gproji_count_damage(d, GPROJI_DAMAGE_EDGE, i, now < 0.1 * before && now < 0.1 * mean);
         gproji_count_damage(d, GPROJI_DAMAGE_SPIKE, i, before > 0 && now > 5 * before && now > 3 * mean);
-        gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i,
-                            gproji_is_folded(mesh, position, i) && !gproji_is_folded(mesh, original, i));
+        gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i, gproji_is_folded(&is, i) && !gproji_is_folded(&was, i));
     }
 }
 
-/* Where damage of a kind is. */
+/* The kind of element that this damage counts. */
 GPROJI_INTERNAL gproj_place gproji_damage_place(int32_t kind) {
     bool edge = kind == GPROJI_DAMAGE_FOLDED || kind == GPROJI_DAMAGE_EDGE || kind == GPROJI_DAMAGE_SPIKE;
     return edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_FACE;
@@ -17011,14 +16817,11 @@ GPROJI_INTERNAL gproj_spoiled gproji_spoiled_of(const gproji_damages *d) {
     spoiled.collapsed_edges = d->count[GPROJI_DAMAGE_EDGE];
     spoiled.collapsed_faces = d->count[GPROJI_DAMAGE_FACE];
     spoiled.spikes = d->count[GPROJI_DAMAGE_SPIKE];
-    spoiled.total = 0;
-    spoiled.place = GPROJ_PLACE_NONE;
-    spoiled.element = -1;
+    spoiled.total = 0, spoiled.place = GPROJ_PLACE_NONE, spoiled.element = -1;
     for (kind = GPROJI_DAMAGE_COUNT - 1; kind >= 0; --kind) {
         if (d->count[kind] == 0) continue;
         spoiled.total += d->count[kind];
-        spoiled.place = gproji_damage_place(kind);
-        spoiled.element = d->first[kind];
+        spoiled.place = gproji_damage_place(kind), spoiled.element = d->first[kind];
     }
     return spoiled;
 }
@@ -17031,31 +16834,31 @@ GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const doub
 }
 
 /* ============================================================================================================
-   >>offset   Parallel meshes at constant distance, and what is between them. Uses platform, memory, error, vector, mesh,
+   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector, mesh,
    measure.
 
    Based on Pottmann, Liu, Wallner, Bobenko, Wang: Geometry of multi-layer freeform structures for architecture (2007),
    and Liu, Pottmann, Wallner, Yang, Wang: Geometric modeling with conical meshes and developable surfaces (2006).
    An offset is the mesh with vertices v + distance * x; a first part finds the field x, 3 numbers a vertex. */
 
-/* -- the field of a vertex offset -- */
+/* -- the field for a vertex offset -- */
 
-/* The work of gproji_vertex_field: all arrays 9 numbers or 1 entry a vertex. */
+/* Work arrays for gproji_vertex_field: 9 numbers or 1 entry a vertex. */
 typedef struct gproji_mirrors {
-    double *image;  /* 3x3, by rows: the product of reflections that leads from the first vertex of the component */
-    int32_t *queue; /* the vertices of the component, in the order in which they are reached */
+    double *image;  /* 3x3, by rows: the product of reflections on the way from the component's first vertex */
+    int32_t *queue; /* the component's vertices, breadth first */
     bool *reached;
-    int32_t first, last; /* the component's part of the queue */
+    int32_t first, last; /* the component's part in the queue */
 } gproji_mirrors;
 
-/* The unit vector of an edge from the origin of a half-edge; 0 without length. */
+/* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
     gproji_normalise3(out, none);
 }
 
-/* `out` = the 3x3 matrix `in`, mirrored in the plane orthogonal to the half-edge: (I - 2 e e') in. */
+/* Mirrors the 3x3 matrix `in` in the plane orthogonal to the half-edge: out = (I - 2 e e') in. */
 GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, const double in[9], double out[9]) {
     double e[3];
     int32_t i, j;
@@ -17066,69 +16869,35 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
     }
 }
 
-/* Reaches the component of a vertex, breadth first. */
-GPROJI_INTERNAL void gproji_reach(const gproj_mesh *mesh, int32_t vertex, gproji_mirrors *work) {
-    double *image = work->image + 9 * (size_t)vertex;
-    int32_t at;
-    memset(image, 0, 9 * sizeof *image);
-    image[0] = image[4] = image[8] = 1;
-    work->first = work->last;
-    work->queue[work->last++] = vertex;
-    work->reached[vertex] = true;
-    for (at = work->first; at < work->last; ++at) {
-        int32_t start = mesh->vertex_halfedge[work->queue[at]], h = start;
-        do {
-            int32_t next = mesh->origin[h ^ 1];
-            if (!work->reached[next]) {
-                gproji_mirror(mesh, h, work->image + 9 * (size_t)work->queue[at], work->image + 9 * (size_t)next);
-                work->reached[next] = true;
-                work->queue[work->last++] = next;
-            }
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
-    }
-}
-
-/* The mean of D'D over the edges of the component, D = image_j - mirror(image_i): m at the first vertex closes along an
-   edge where D m = 0. And the sum of image'n over its vertices, n the unit normal there: m goes along it best. */
-GPROJI_INTERNAL void gproji_closing(const gproj_mesh *mesh, const gproji_mirrors *work, double closing[3][3],
-                                    double wanted[3]) {
-    int32_t at, edges = 0, i, j, k;
-    memset(closing, 0, 9 * sizeof closing[0][0]);
-    gproji_set3(0, 0, 0, wanted);
+/* Chooses the unit vector m at the component's first vertex: along the vertex normals, as far as edges stay parallel. */
+GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
+                                       double m[3]) {
+    static const double up[3] = {0, 0, 1};
+    double closing[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
+    int32_t at, edges = 0, sweep, best = 0, i, j, k;
+    /* 1. `closing`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
+       the sum over image'n, n the unit normal at the vertex; m goes along it best. */
     for (at = work->first; at < work->last; ++at) {
         int32_t vertex = work->queue[at], start = mesh->vertex_halfedge[vertex], h = start;
         const double *image = work->image + 9 * (size_t)vertex;
         double normal[3];
-        gproji_mean_normal(mesh, mesh->position, vertex, normal);
+        gproji_mean_normal(normals, vertex, normal);
         for (i = 0; i < 3; ++i) gproji_add_scaled3(normal[i], image + 3 * i, wanted);
         do {
             const double *other = work->image + 9 * (size_t)mesh->origin[h ^ 1];
             double d[9];
             gproji_mirror(mesh, h, image, d);
             for (i = 0; i < 9; ++i) d[i] = other[i] - d[i];
-            for (i = 0; i < 3; ++i)
-                for (j = 0; j < 3; ++j)
-                    for (k = 0; k < 3; ++k) closing[i][j] += d[3 * k + i] * d[3 * k + j];
+            for (i = 0; i < 9; ++i)
+                for (k = 0; k < 3; ++k) closing[i / 3][i % 3] += d[3 * k + i / 3] * d[3 * k + i % 3];
             ++edges;
             h = gproji_rotate(mesh, h);
         } while (h != start);
     }
     for (i = 0; i < 3; ++i)
         for (j = 0; j < 3; ++j) closing[i][j] /= edges;
-}
-
-/* The unit vector m for the first vertex: `wanted` without its parts in principal directions of `closing` (destroyed)
-   in which the mesh does not close as well as it can; all of it where hardly half would be left. */
-GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted[3], double m[3]) {
-    static const double up[3] = {0, 0, 1};
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, least, column[3];
-    int32_t sweep, k, best = 0;
-    for (sweep = 0; sweep < 12; ++sweep) {
-        gproji_jacobi_rotate(closing, v, 0, 1);
-        gproji_jacobi_rotate(closing, v, 0, 2);
-        gproji_jacobi_rotate(closing, v, 1, 2);
-    }
+    /* 2. `wanted` in the principal directions that close as well as any; all directions if hardly half is left. */
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) gproji_jacobi_sweep(closing, v);
     for (k = 1; k < 3; ++k)
         if (closing[k][k] < closing[best][best]) best = k;
     least = gproji_fmax(closing[best][best], 0);
@@ -17144,19 +16913,36 @@ GPROJI_INTERNAL void gproji_best_start(double closing[3][3], const double wanted
 
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
     static const double none[3] = {0, 0, 0};
-    size_t vertices = (size_t)mesh->vertex_count;
+    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
+    gproji_pool pool;
     int32_t v, at;
+    gproji_pool_start(&pool, heap);
     work.first = work.last = 0;
-    work.image = (double *)gproji_take(heap, 9 * vertices, sizeof *work.image);
-    work.queue = (int32_t *)gproji_take(heap, vertices, sizeof *work.queue);
-    work.reached = (bool *)gproji_take_zeroed(heap, vertices, sizeof *work.reached);
+    work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
+    work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
+    work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
     for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
-        double closing[3][3], wanted[3], m[3];
+        double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
-        gproji_reach(mesh, v, &work);
-        gproji_closing(mesh, &work, closing, wanted);
-        gproji_best_start(closing, wanted, m);
+        /* 1. Reflections along a breadth-first tree, which keeps their products short. */
+        memset(identity, 0, 9 * sizeof *identity);
+        identity[0] = identity[4] = identity[8] = 1;
+        work.first = work.last;
+        work.queue[work.last++] = v, work.reached[v] = true;
+        for (at = work.first; at < work.last; ++at) {
+            int32_t from = work.queue[at], start = mesh->vertex_halfedge[from], h = start;
+            do {
+                int32_t next = mesh->origin[h ^ 1];
+                if (!work.reached[next]) {
+                    gproji_mirror(mesh, h, work.image + 9 * (size_t)from, work.image + 9 * (size_t)next);
+                    work.reached[next] = true, work.queue[work.last++] = next;
+                }
+                h = gproji_rotate(mesh, h);
+            } while (h != start);
+        }
+        /* 2. Images of the best vector. */
+        gproji_best_start(mesh, &normals, &work, m);
         for (at = work.first; at < work.last; ++at) {
             const double *image = work.image + 9 * (size_t)work.queue[at];
             double *out = x + 3 * (size_t)work.queue[at];
@@ -17164,20 +16950,17 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
             gproji_normalise3(out, none);
         }
     }
-    gproji_give(heap, work.image, 9 * vertices, sizeof *work.image);
-    gproji_give(heap, work.queue, vertices, sizeof *work.queue);
-    gproji_give(heap, work.reached, vertices, sizeof *work.reached);
+    gproji_pool_give_all(&pool);
     return work.image && work.queue && work.reached;
 }
 
-/* -- the field of a face offset -- */
+/* -- the field for a face offset -- */
 
-/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the minimum that is nearest to it; in two
-   stages. First sum (n_k'x_v - 1)^2 over the corners v of the faces k + sum |P (x_j - x_i)|^2 over the edges between
-   two faces, P the projection across the edge: for a conical mesh the minimum is 0, and x is there already but for
-   edges between faces that are nearly coplanar. Then sum |P (x_j - x_i)|^2 over the edges of the boundary, where x
-   moves only as the distances of the faces allow: along the one edge between two faces, or in the plane of the only
-   face. */
+/* Conjugate gradients (Hestenes, Stiefel 1952) on normal equations, from x to the nearest minimum, in two stages. First
+   sum (n_k'x_v - 1)^2 over the corners v on the faces k + sum |P (x_j - x_i)|^2 over the edges between two faces, P the
+   projection across the edge: for a conical mesh the minimum is 0, and x is there already except at edges between
+   nearly coplanar faces. Then sum |P (x_j - x_i)|^2 over boundary edges; x moves only as the faces' distances allow:
+   along the one edge between two faces, or in the only face's plane. */
 typedef struct gproji_parallels {
     const gproj_mesh *mesh;
     bool boundary;     /* the second stage */
@@ -17189,54 +16972,24 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 2,
+    GPROJI_PARALLEL_ROUNDS = 2, /* restarts: the recurrences' rounding ends with them */
     GPROJI_PARALLEL_STEPS = 1000
 };
 
-/* out += n (n'x - distance) for the corners of the faces. */
-GPROJI_INTERNAL void gproji_apply_distances(const gproji_parallels *p, const double *x, double distance, double *out) {
+/* out = A x - distance * b: A the normal equations' matrix, b their right-hand side. */
+GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
     const gproj_mesh *mesh = p->mesh;
-    int32_t f, h, k;
-    for (f = 0; f < mesh->face_count; ++f) {
+    int32_t e, f, v, h, k;
+    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
+    for (f = 0; !p->boundary && f < mesh->face_count; ++f) { /* n (n'x - distance) at each corner */
         const double *n = p->normal + 3 * (size_t)f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            size_t v = 3 * (size_t)mesh->origin[h];
-            gproji_add_scaled3(gproji_dot3(n, x + v) - distance, n, out + v);
+            size_t i = 3 * (size_t)mesh->origin[h];
+            gproji_add_scaled3(gproji_dot3(n, x + i) - distance, n, out + i);
         }
     }
-}
-
-/* What a vertex of the second stage cannot do is taken from `out`. */
-GPROJI_INTERNAL void gproji_keep_distances(const gproji_parallels *p, double *out) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t v;
-    for (v = 0; v < mesh->vertex_count; ++v, out += 3) {
-        int32_t valence = gproj_mesh_valence(mesh, v), h;
-        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
-            gproji_set3(0, 0, 0, out);
-            continue;
-        }
-        h = gproji_rotate(mesh,
-                          mesh->vertex_halfedge[v]); /* with the first face on its left; on its right the second */
-        if (valence == 2) {
-            const double *n = p->normal + 3 * (size_t)mesh->face[h];
-            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
-        } else {
-            const double *e = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
-            double along = gproji_dot3(e, out);
-            gproji_set3(along * e[0], along * e[1], along * e[2], out);
-        }
-    }
-}
-
-/* out = A x - distance * b: A the matrix of the normal equations, b its right-hand side. */
-GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t e;
-    memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
-    if (!p->boundary) gproji_apply_distances(p, x, distance, out);
-    for (e = 0; e < mesh->edge_count; ++e) {
+    for (e = 0; e < mesh->edge_count; ++e) { /* P (x_j - x_i) */
         const double *direction = p->direction + 3 * (size_t)e;
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         double d[3];
@@ -17246,10 +16999,25 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
         gproji_add_scaled3(1, d, out + j);
         gproji_add_scaled3(-1, d, out + i);
     }
-    if (p->boundary) gproji_keep_distances(p, out);
+    for (v = 0; p->boundary && v < mesh->vertex_count; ++v, out += 3) { /* only moves that keep the distances */
+        int32_t valence = gproj_mesh_valence(mesh, v);
+        if (valence > 3 || !gproj_mesh_is_boundary_vertex(mesh, v)) {
+            gproji_set3(0, 0, 0, out);
+            continue;
+        }
+        h = gproji_rotate(mesh, mesh->vertex_halfedge[v]); /* the first face at the left, the second at the right */
+        if (valence == 2) {
+            const double *n = p->normal + 3 * (size_t)mesh->face[h];
+            gproji_add_scaled3(-gproji_dot3(n, out), n, out);
+        } else {
+            const double *d = p->direction + 3 * (size_t)mesh->edge[gproji_rotate(mesh, h)];
+            double along = gproji_dot3(d, out);
+            gproji_set3(along * d[0], along * d[1], along * d[2], out);
+        }
+    }
 }
 
-/* One round, until the slope is a small part of what it was. */
+/* Descends once, until the slope is a small part of that at the start. */
 GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     size_t count = 3 * (size_t)p->mesh->vertex_count, i;
     double square, before, start, curvature;
@@ -17271,51 +17039,41 @@ GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
     }
 }
 
-/* Where it begins: each vertex for itself, x = a / cos(angle) with the axis a of its cone. */
-GPROJI_INTERNAL void gproji_start_parallels(const gproji_parallels *p, double *x) {
-    const gproj_mesh *mesh = p->mesh;
-    int32_t v;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], h = start, count;
+GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
+    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
+    gproji_parallels p;
+    gproji_pool pool;
+    bool taken;
+    int32_t i, stage, v;
+    gproji_pool_start(&pool, heap);
+    p.mesh = mesh;
+    p.normal = (double *)gproji_pool_take(&pool, mesh->face_count, 3 * sizeof *p.normal);
+    p.direction = (double *)gproji_pool_take(&pool, mesh->edge_count, 3 * sizeof *p.direction);
+    p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
+    p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
+    p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
+    taken = p.normal && p.direction && p.slope && p.step && p.image;
+    for (i = 0; taken && i < mesh->face_count; ++i)
+        gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
+    for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
+    /* Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
+    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start;
         double axis[3], cosine = 0;
         gproji_set3(0, 0, 0, x + 3 * (size_t)v);
-        count = gproji_cone_axis(mesh, mesh->position, v, axis);
-        if (count == 0) continue;
+        i = gproji_find_axis(&normals, v, axis);
+        if (i == 0) continue;
         do {
-            if (mesh->face[h] >= 0) cosine += gproji_dot3(p->normal + 3 * (size_t)mesh->face[h], axis) / count;
+            if (mesh->face[h] >= 0) cosine += gproji_dot3(p.normal + 3 * (size_t)mesh->face[h], axis) / i;
             h = gproji_rotate(mesh, h);
         } while (h != start);
         gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
     }
-}
-
-GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
-    size_t faces = 3 * (size_t)mesh->face_count, edges = 3 * (size_t)mesh->edge_count,
-           count = 3 * (size_t)mesh->vertex_count;
-    gproji_parallels p;
-    bool taken;
-    int32_t i;
-    p.mesh = mesh;
-    p.normal = (double *)gproji_take(heap, faces, sizeof *p.normal);
-    p.direction = (double *)gproji_take(heap, edges, sizeof *p.direction);
-    p.slope = (double *)gproji_take(heap, count, sizeof *p.slope);
-    p.step = (double *)gproji_take(heap, count, sizeof *p.step);
-    p.image = (double *)gproji_take(heap, count, sizeof *p.image);
-    taken = p.normal && p.direction && p.slope && p.step && p.image;
-    if (taken) {
-        for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
-        for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
-        gproji_start_parallels(&p, x);
-        p.boundary = false;
-        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
-        p.boundary = true;
+    for (stage = 0; taken && stage < 2; ++stage) {
+        p.boundary = stage == 1;
         for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
     }
-    gproji_give(heap, p.normal, faces, sizeof *p.normal);
-    gproji_give(heap, p.direction, edges, sizeof *p.direction);
-    gproji_give(heap, p.slope, count, sizeof *p.slope);
-    gproji_give(heap, p.step, count, sizeof *p.step);
-    gproji_give(heap, p.image, count, sizeof *p.image);
+    gproji_pool_give_all(&pool);
     return taken;
 }
 
@@ -17323,7 +17081,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
 
 typedef bool (*gproji_field)(gproji_heap *heap, const gproj_mesh *mesh, double *x);
 
-/* The mesh with vertices v + distance * x. */
+/* Makes the mesh with vertices v + distance * x. */
 GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distance, gproji_field field,
                                           const gproj_host *host, gproj_error *error) {
     gproj_mesh *offset;
@@ -17372,22 +17130,13 @@ GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b)
     return memcmp(a->origin, b->origin, bytes) == 0 && memcmp(a->face, b->face, bytes) == 0;
 }
 
-/* The four corners of the panel of an edge: v_i v_j o_j o_i. */
-GPROJI_INTERNAL void gproji_support_quad(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
-                                         double out[12]) {
-    gproji_copy3(gproji_corner_position(mesh, 2 * edge), out);
-    gproji_copy3(gproji_corner_position(mesh, 2 * edge + 1), out + 3);
-    gproji_copy3(gproji_corner_position(offset, 2 * edge + 1), out + 6);
-    gproji_copy3(gproji_corner_position(offset, 2 * edge), out + 9);
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
     gproji_heap heap = gproji_heap_of(host);
     gproj_mesh *support = NULL;
+    gproji_pool pool;
     double *position;
     int32_t *degree, *corner, e;
-    size_t edges;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -17399,13 +17148,17 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    edges = (size_t)mesh->edge_count;
-    position = (double *)gproji_take(&heap, 12 * edges, sizeof *position);
-    degree = (int32_t *)gproji_take(&heap, edges, sizeof *degree);
-    corner = (int32_t *)gproji_take(&heap, 4 * edges, sizeof *corner);
+    gproji_pool_start(&pool, &heap);
+    position = (double *)gproji_pool_take(&pool, mesh->edge_count, 12 * sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, sizeof *degree);
+    corner = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, 4 * sizeof *corner);
     if (position && degree && corner) {
-        for (e = 0; e < mesh->edge_count; ++e) {
-            gproji_support_quad(mesh, offset, e, position + 12 * (size_t)e);
+        for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+            double *out = position + 12 * (size_t)e;
+            gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
+            gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
+            gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
+            gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
             degree[e] = 4;
         }
         for (e = 0; e < 4 * mesh->edge_count; ++e) corner[e] = e;
@@ -17413,38 +17166,12 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     } else {
         gproji_fail_memory(error);
     }
-    gproji_give(&heap, position, 12 * edges, sizeof *position);
-    gproji_give(&heap, degree, edges, sizeof *degree);
-    gproji_give(&heap, corner, 4 * edges, sizeof *corner);
+    gproji_pool_give_all(&pool);
     return support;
 }
 
-/* -- how exact they are -- */
-
-GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
-    *least = gproji_fmin(*least, value);
-    *most = gproji_fmax(*most, value);
-}
-
-/* How far the offset of an edge is from parallel, and its panel from planar: c = o_j - o_i without its part along the
-   edge e, and the part of c along the normal e x (o_i - v_i) of the panel. */
-GPROJI_INTERNAL void gproji_measure_edge_offset(const gproj_mesh *mesh, const gproj_mesh *offset, int32_t edge,
-                                                double unit, gproj_offset_measures *m) {
-    static const double none[3] = {0, 0, 0};
-    double e[3], c[3], normal[3], along;
-    gproji_edge_direction(mesh, 2 * edge, e);
-    gproji_sub3(gproji_corner_position(offset, 2 * edge + 1), gproji_corner_position(offset, 2 * edge), c);
-    along = gproji_dot3(e, c);
-    m->reversed_edges += along < 0;
-    gproji_add_scaled3(-along, e, c);
-    m->parallel_max = gproji_fmax(m->parallel_max, gproji_length3(c) / unit);
-    gproji_sub3(gproji_corner_position(offset, 2 * edge), gproji_corner_position(mesh, 2 * edge), normal);
-    gproji_cross3(e, normal, normal);
-    gproji_normalise3(normal, none);
-    m->support_planarity_max = gproji_fmax(m->support_planarity_max, fabs(gproji_dot3(normal, c)) / unit);
-}
-
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
+    static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
     double unit, d[3], n[3];
     int32_t f, v, e, k, h;
@@ -17469,73 +17196,84 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         if (mesh->vertex_halfedge[v] >= 0)
             gproji_widen(gproji_distance3(offset->position + 3 * (size_t)v, mesh->position + 3 * (size_t)v),
                          &m.vertex_distance_min, &m.vertex_distance_max);
-    for (e = 0; e < mesh->edge_count; ++e) gproji_measure_edge_offset(mesh, offset, e, unit, &m);
+    /* Edges: c = o_j - o_i without the part along the edge's direction, and c's part along the panel's normal. */
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double direction[3], c[3], along;
+        gproji_edge_direction(mesh, 2 * e, direction);
+        gproji_sub3(gproji_corner_position(offset, 2 * e + 1), gproji_corner_position(offset, 2 * e), c);
+        along = gproji_dot3(direction, c);
+        m.reversed_edges += along < 0;
+        gproji_add_scaled3(-along, direction, c);
+        m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
+        gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
+        gproji_cross3(direction, n, n);
+        gproji_normalise3(n, none);
+        m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
+    }
     return m;
 }
 
 /* ============================================================================================================
-   >>fill   Filling a closed curve with quads. Uses platform, memory, error, vector, cholesky, mesh,
+   >>fill   Closed curves filled with quads. Uses platform, memory, error, vector, cholesky, mesh,
    hierarchy.
 
-   A patch has 2 to 6 sides with given numbers of edges. Its combinatorics is built from inside to outside, by
-   patterns in the manner of Takayama, Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Where
-   theirs is a table, our core is one family: a path of n nodes, 1 to 3 corners of the patch at each of its ends and
-   one at each node between, on either side of the path. Edge j of the path stands for e_j >= 1 edges, and the path
-   may be thickened to w rows of quads; a point with all corners is a path, too. A strip along side i adds 1 to the
-   numbers of sides i - 1 and i + 1. So the numbers of edges l_i are linear in e_j, w and the numbers k_i >= 0 of
-   strips:
-       l_i = (edges of the core from corner i to corner i + 1) + k_(i-1) + k_(i+1).
-   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex of valence 3, 4, 5, and a node between of valence 5.
-   For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a solution for
-   nearly all l; where a strip is missing or an end is bare, the patch is put into a ring of quads around its whole
-   boundary, and the strip of quads in such a ring fills any even number of edges.
+   A patch has 2 to 6 sides with given edge numbers l_i and is built from inside to outside by patterns, after Takayama,
+   Panozzo, Sorkine-Hornung (2014): a core, then strips along the sides. Their table becomes one family: the core is a
+   path with n nodes, 1 to 3 patch corners at each end and one at each node between, on either side. Path edge j stands
+   for e_j >= 1 quad edges, and the path may be thickened to w rows; a point with all corners is a path, too. A strip
+   along side i adds 1 to sides i - 1 and i + 1, so edge numbers are linear in e_j, w and the strip numbers k_i >= 0:
+       l_i = (core edges from corner i to corner i + 1) + k_(i-1) + k_(i+1).
+   With all k_i >= 1 an end with 1, 2, 3 corners becomes a vertex with valence 3, 4, 5, and a node between one with
+   valence 5. For up to three e_j all solutions are tried. The path with one corner at each node and w rows has a
+   solution for nearly all l; if a strip is missing or an end is bare, the patch is put into a ring of quads around its
+   whole boundary, and the strip of quads in such a ring fills any even number of edges.
 
-   Positions: patches are filled harmonically, then all inner vertices minimise the shape distortion of the corners of
-   all quads with a regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais,
-   Ray, Sokolov 2021), by Newton steps with the convex part of the Hessian. */
+   Positions: patches are filled harmonically, then all inner vertices minimise the corners' shape distortion with a
+   regularisation that lets inverted corners turn back (Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov 2021),
+   by Newton steps with the convex part of the Hessian. */
 enum {
     GPROJI_PATCH_SIDES = 6,
     GPROJI_PATH_EDGES = 5,
-    GPROJI_CANDIDATES = 40,    /* more than there are kinds of patterns */
-    GPROJI_TRIED_PAIRS = 120,  /* two e_j, or */
-    GPROJI_TRIED_TRIPLES = 24, /* three are tried up to this */
+    GPROJI_CANDIDATES = 40,    /* more than there are kinds */
+    GPROJI_TRIED_PAIRS = 120,  /* largest e_j tried on paths with two edges */
+    GPROJI_TRIED_TRIPLES = 24, /* and with three */
     GPROJI_UNTANGLE_STEPS = 300,
     GPROJI_FILL_TRIES = 8,
     GPROJI_FILL_RINGS = 1 << 10,
-    GPROJI_FILL_EDGES = 1 << 14, /* of the boundary, at most */
+    GPROJI_FILL_EDGES = 1 << 14, /* along the boundary, at most */
     GPROJI_QUAD_ENTRIES = 36     /* the lower triangle of a symmetric 8x8 matrix */
 };
 
 #define GPROJI_REFLEX (195 * GPROJI_PI / 180) /* corners beyond are cut */
 #define GPROJI_FLAT (165 * GPROJI_PI / 180)   /* corners beyond get two faces */
-#define GPROJI_OBTUSE (135 * GPROJI_PI / 180) /* at the ends of a cut, corners below */
+#define GPROJI_OBTUSE (135 * GPROJI_PI / 180) /* cut ends below are corners */
 #define GPROJI_RIGHT (GPROJI_PI / 2)
 
 typedef struct gproji_pattern {
     int32_t sides;
-    int32_t first;                     /* the pattern's corner 0 is the patch's corner `first` */
-    int32_t end[2];                    /* corners at the ends of the path; a point: all at end 0 */
+    int32_t first;                     /* the patch corner at which the pattern's corner 0 is */
+    int32_t end[2];                    /* corners at the path's ends; a point has all at end 0 */
     int32_t edges;                     /* of the path; 0: a point. Nodes between are edges - 1 */
-    int32_t below;                     /* bit j: the corner of node j + 1 is on the right of the path */
+    int32_t below;                     /* bit j: the corner at node j + 1 is on the path's right */
     int32_t edge[GPROJI_PATH_EDGES];   /* e_j */
-    int32_t rows;                      /* w; > 0 only where no corner is on the right of the path */
+    int32_t rows;                      /* w; > 0 only without corners on the path's right */
     int32_t strip[GPROJI_PATCH_SIDES]; /* k_i */
-    int32_t flat;                      /* bit i: corner i of the pattern gets two faces, see gproji_inner_lengths */
+    int32_t flat;                      /* bit i: pattern corner i gets two faces, see gproji_inner_lengths */
     bool ring;                         /* all corners get two faces: a ring of quads around the patch */
-    bool bare;                         /* one strip of quads in a ring, whatever the sides are */
+    bool bare;                         /* one strip of quads in a ring, for any sides */
     double cost;
 } gproji_pattern;
 
-/* A patch under construction. Vertices and quads have local numbers. */
+/* A patch under construction, with local numbers for vertices and quads. */
 typedef struct gproji_patch {
     gproji_heap *heap;
     int32_t sides;
     int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
-    int32_t *side[GPROJI_PATCH_SIDES]; /* length + 1 vertices: of the sides as they are now, both ends included */
-    int32_t *block;                    /* memory of all sides */
+    int32_t *side[GPROJI_PATCH_SIDES]; /* vertices along each side as it is now, both ends included */
+    int32_t *block;                    /* holds all sides */
     size_t block_size;
     gproji_ints quad; /* 4 vertices each */
-    gproji_ints loop; /* the finished boundary from corner 0 of the pattern */
+    gproji_ints loop; /* the finished boundary from the pattern's corner 0 */
     gproji_ints uses; /* faces at each vertex */
     int32_t vertices;
 } gproji_patch;
@@ -17545,24 +17283,24 @@ typedef struct gproji_filling {
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
-    int32_t count; /* of the points */
+    int32_t count; /* points */
     const double *points;
     double *seen; /* 2 * count: the points in the plane */
     double normal[3], across[3], up[3];
     double edge_length; /* wanted */
     int32_t sides;
     gproji_ints corner;  /* points; sides of them */
-    gproji_ints start;   /* sides + 1: the first vertex of each side */
-    int32_t boundary;    /* vertices of the boundary */
+    gproji_ints start;   /* sides + 1: the first vertex on each side */
+    int32_t boundary;    /* boundary vertices */
     double *border;      /* 3 * boundary: their positions */
-    gproji_ints polygon; /* patches, one after the other: 2 * vertex + (is it a corner of the patch) */
-    gproji_ints patch;   /* ends of the patches in `polygon` */
+    gproji_ints polygon; /* patch outlines, one after the other: 2 * vertex + (is it a patch corner) */
+    gproji_ints patch;   /* outline ends in `polygon`; negative: the patch has been cut */
     gproji_ints quad;    /* 4 vertices each */
     double *flat;        /* 2 * vertices, in the plane */
     size_t flat_capacity;
     int32_t vertices;
-    int32_t curve_vertices; /* those of the boundary, and of rings along it, come first */
-    int32_t cut_vertices;   /* then those of cuts */
+    int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
+    int32_t cut_vertices;   /* then those on cuts */
     int32_t leaves;         /* patches that were filled */
 } gproji_filling;
 
@@ -17574,39 +17312,28 @@ GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int3
 
 /* -- patterns: their equations -- */
 
-/* The length of the closed walk around the core, and where on it the corners are: from the first end down the rows,
-   along the right of the path, up the rows, and back along its left. */
-GPROJI_INTERNAL int32_t gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES]) {
+/* Finds the core's corners as places on the closed walk around it, then the walk's length. */
+GPROJI_INTERNAL void gproji_core_corners(const gproji_pattern *p, int32_t at[GPROJI_PATCH_SIDES + 1]) {
     int32_t column[GPROJI_PATH_EDGES + 1], nodes = p->edges + 1, all, i, n = 0;
     column[0] = 0;
     for (i = 0; i < p->edges; ++i) column[i + 1] = column[i] + p->edge[i];
     all = column[nodes - 1];
+    /* From the first end down the rows and along the path's right, up the rows, and back along its left. */
     for (i = 0; i < p->end[0]; ++i) at[n++] = 0;
     for (i = 1; i + 1 < nodes; ++i)
         if (p->below >> (i - 1) & 1) at[n++] = p->rows + column[i];
     for (i = 0; i < p->end[1]; ++i) at[n++] = 2 * p->rows + all;
     for (i = nodes - 2; i > 0; --i)
         if (!(p->below >> (i - 1) & 1)) at[n++] = 2 * p->rows + 2 * all - column[i];
-    return 2 * p->rows + 2 * all;
+    at[n] = 2 * p->rows + 2 * all;
 }
 
-/* The core's vertex at a place of the walk. Vertices are numbered by rows, from below. */
-GPROJI_INTERNAL int32_t gproji_core_vertex(int32_t rows, int32_t all, int32_t place) {
-    int32_t around = 2 * (rows + all);
-    if (around == 0) return 0;
-    place %= around;
-    if (place < rows) return (rows - place) * (all + 1);
-    if (place <= rows + all) return place - rows;
-    if (place <= 2 * rows + all) return (place - rows - all) * (all + 1) + all;
-    return rows * (all + 1) + around - place;
-}
-
-/* The strips k with rest_i = k_(i-1) + k_(i+1): over the cycles of sides i, i + 2, .. False where there are none. */
+/* Solves rest_i = k_(i-1) + k_(i+1) for the strips k, by cycles of sides i, i + 2, .. False without a solution. */
 GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
     int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
     for (first = 0; first < cycles; ++first) {
+        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: a family). */
         for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
-        /* once around, k_first becomes value - k_first (odd) or value + k_first (even) */
         if (length % 2 ? value % 2 != 0 : value != 0) return false;
         start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
         for (n = 0, i = first; n < length; ++n, i = (i + 2) % sides) {
@@ -17618,34 +17345,32 @@ GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int3
     return true;
 }
 
-/* Irregular vertices count most, then the distances between them and from them to the boundary. */
-GPROJI_INTERNAL double gproji_pattern_cost(const gproji_pattern *p) {
+/* Candidates for a patch by ascending cost, at most one for each kind and rotation. */
+typedef struct gproji_candidates {
+    const int32_t *length; /* edges along the patch's sides */
+    int32_t count;
+    gproji_pattern pattern[GPROJI_CANDIDATES];
+} gproji_candidates;
+
+/* Keeps a pattern unless a cheaper one has the same kind and rotation. */
+GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, gproji_pattern *p) {
     double cost = 0;
     int32_t i;
+    /* Irregular vertices cost most, then short distances between them and to the boundary. */
     if (p->edges == 0)
         cost += 4 * (p->sides > 4 ? p->sides - 4 : 4 - p->sides) + (p->sides == 6 ? 8 : 0);
     else
         cost += 4 * ((p->end[0] != 2) + (p->end[1] != 2) + p->edges - 1);
     for (i = 0; i < p->sides; ++i) cost += p->strip[i] > 0 ? 1.0 / p->strip[i] : 3;
     for (i = 0; i < p->edges; ++i) cost += 1.0 / p->edge[i];
-    return cost + (p->rows > 0 ? 1 : 0);
-}
-
-/* Candidates, at most one of each kind and rotation, in the order of their costs. */
-typedef struct gproji_candidates {
-    const int32_t *length; /* of the patch's sides */
-    int32_t count;
-    gproji_pattern pattern[GPROJI_CANDIDATES];
-} gproji_candidates;
-
-GPROJI_INTERNAL bool gproji_same_kind(const gproji_pattern *a, const gproji_pattern *b) {
-    return a->first == b->first && a->end[0] == b->end[0] && a->edges == b->edges && a->below == b->below &&
-           (a->rows > 0) == (b->rows > 0);
-}
-
-GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p) {
-    int32_t i;
-    for (i = 0; i < c->count && !gproji_same_kind(&c->pattern[i], p); ++i) continue;
+    cost += p->rows > 0 ? 1 : 0;
+    p->cost = p->edges == 1 && p->end[0] == 2 ? -1 : cost; /* a grid beats all */
+    for (i = 0; i < c->count; ++i) {
+        const gproji_pattern *q = &c->pattern[i];
+        if (q->first == p->first && q->end[0] == p->end[0] && q->edges == p->edges && q->below == p->below &&
+            (q->rows > 0) == (p->rows > 0))
+            break;
+    }
     if (i < c->count && c->pattern[i].cost <= p->cost) return;
     GPROJ_ASSERT(i < GPROJI_CANDIDATES);
     c->count += i == c->count;
@@ -17653,38 +17378,26 @@ GPROJI_INTERNAL void gproji_offer(gproji_candidates *c, const gproji_pattern *p)
     c->pattern[i] = *p;
 }
 
-/* What the core leaves of the sides for the strips. False where it needs more than there is. */
-GPROJI_INTERNAL bool gproji_rest(const gproji_candidates *c, const gproji_pattern *p, int32_t *rest) {
-    int32_t at[GPROJI_PATCH_SIDES], around = gproji_core_corners(p, at), i;
-    for (i = 0; i < p->sides; ++i) {
-        int32_t to = i + 1 < p->sides ? at[i + 1] : at[0] + around;
-        rest[i] = c->length[(i + p->first) % p->sides] - (to - at[i]);
-        if (rest[i] < 0) return false;
-    }
-    return true;
-}
-
-/* All e_j of one kind of path without rows. */
+/* Tries all e_j up to `most` for one kind of path without rows. */
 GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, int32_t most) {
-    int32_t rest[GPROJI_PATCH_SIDES], i = 0;
+    int32_t at[GPROJI_PATCH_SIDES + 1], rest[GPROJI_PATCH_SIDES], n = p->sides, i;
     for (i = 0; i < p->edges; ++i) p->edge[i] = 1;
     do {
-        if (gproji_rest(c, p, rest) && gproji_find_strips(p->sides, rest, p->strip)) {
-            p->cost = gproji_pattern_cost(p);
-            gproji_offer(c, p);
+        gproji_core_corners(p, at);
+        for (i = 0; i < n; ++i) {
+            rest[i] = c->length[(i + p->first) % n] - (at[i + 1] - at[i]);
+            if (rest[i] < 0) break; /* the core alone is too long */
         }
-        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1;
+        if (i == n && gproji_find_strips(n, rest, p->strip)) gproji_offer(c, p);
+        for (i = 0; i < p->edges && ++p->edge[i] > most; ++i) p->edge[i] = 1; /* the next e, like an odometer */
     } while (i < p->edges);
 }
 
-/* The path with a corner at each node and rows: sides 1, 2, .. have one e_j each, side 0 their sum and 2 w. So
-   e_j = l - k - k, and w = (l_0 - l_1 - l_2 - ..) / 2 + the sum of the k_i but for i = 1 and n - 1 (with two sides:
-   + k_0 - k_1). These strips grow evenly until w >= 0. */
+/* Tries the path with a corner at each node and rows: side 0 has all e_j and 2 w, so e_j = l - k - k on the others, and
+   w = (l_0 - l_1 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (two sides: k_0 - k_1). Strips begin at `least`. */
 GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
     int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
-    p->end[0] = p->end[1] = 1;
-    p->edges = n - 1;
-    p->below = 0;
+    p->end[0] = p->end[1] = 1, p->edges = n - 1, p->below = 0;
     p->rows = c->length[p->first];
     for (i = 1; i < n; ++i) p->rows -= c->length[(i + p->first) % n];
     p->rows /= 2;
@@ -17694,7 +17407,7 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
         rest[i] = c->length[(i + p->first) % n] - 2 * least;
         if (i > 0 && rest[i] < 1) return false;
     }
-    while (p->rows < 0) {
+    while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
             int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
             if (i == 1 || i == n - 1) continue;
@@ -17706,12 +17419,11 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
         --rest[(best + n - 1) % n], --rest[(best + 1) % n];
     }
     for (side = 1; side < n; ++side) p->edge[n - 1 - side] = rest[side];
-    p->cost = gproji_pattern_cost(p);
     gproji_offer(c, p);
     return true;
 }
 
-/* A path with equal ends, seen from its other end, is a path of the same kind: is that one tried instead? */
+/* Is this path, seen from its other end, tried as another pattern? Only paths with equal ends can be. */
 GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
     int32_t below = 0, first = p->first + p->end[0], j, nodes = p->edges - 1;
     for (j = 0; j < nodes; ++j) {
@@ -17723,25 +17435,24 @@ GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
     return p->end[0] == p->end[1] && (below < p->below || (below == p->below && first < p->first));
 }
 
-/* All kinds of patterns for a patch. */
+/* Lists all kinds of patterns for a patch. */
 GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, const int32_t *length) {
     static const int32_t tried[4] = {0, INT32_MAX, GPROJI_TRIED_PAIRS, GPROJI_TRIED_TRIPLES};
     int32_t most = length[0], a, b, below, i;
     gproji_pattern p;
     memset(&p, 0, sizeof p);
-    c->length = length;
-    c->count = 0;
+    c->length = length, c->count = 0;
     for (i = 1; i < sides; ++i) most = gproji_max(most, length[i]);
-    p.sides = sides;
-    p.end[0] = sides;
+    /* 1. A point, and the grid: a path along one side. */
+    p.sides = sides, p.end[0] = sides;
     gproji_try_edges(c, &p, 0);
-    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) { /* a grid: a path along one side */
+    if (sides == 4 && length[0] == length[2] && length[1] == length[3]) {
         p.end[0] = p.end[1] = 2, p.edges = 1, p.edge[0] = length[1], p.strip[1] = length[0];
         p.strip[0] = p.strip[2] = p.strip[3] = 0;
-        p.cost = -1;
         gproji_offer(c, &p);
     }
     for (p.first = 0; p.first < sides; ++p.first) {
+        /* 2. Paths with 1 or 3 corners at the ends (2 would be regular), all distributions of the others. */
         for (a = 1; a <= 3; a += 2)
             for (b = a; b <= 3; b += 2) {
                 p.edges = sides - a - b + 1;
@@ -17753,27 +17464,13 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
                     gproji_try_edges(c, &p, gproji_min(most, tried[p.edges]));
                 }
             }
-        if (sides == 2 && length[p.first] < most) continue; /* seen from the other side it is of the same kind */
+        /* 3. Rows; strips that are missing cost a ring, so they come second. */
+        if (sides == 2 && length[p.first] < most) continue; /* the same kind, seen from the other side */
         if (!gproji_try_rows(c, &p, 1)) gproji_try_rows(c, &p, 0);
     }
 }
 
 /* -- patterns: their quads -- */
-
-GPROJI_INTERNAL bool gproji_patch_take(gproji_patch *patch, gproji_heap *heap, int32_t sides, const int32_t *length) {
-    size_t at = 0;
-    int32_t i;
-    memset(patch, 0, sizeof *patch);
-    patch->heap = heap;
-    patch->sides = sides;
-    for (i = 0; i < sides; ++i) patch->block_size += (size_t)length[i] + 1;
-    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
-    for (i = 0; patch->block && i < sides; ++i) {
-        patch->side[i] = patch->block + at;
-        at += (size_t)length[i] + 1;
-    }
-    return patch->block != NULL;
-}
 
 GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
     gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
@@ -17782,30 +17479,9 @@ GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
     gproji_ints_give(patch->heap, &patch->uses);
 }
 
-/* The core and its sides. */
-GPROJI_INTERNAL bool gproji_build_core(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
-    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, i, j, rows = p->rows;
-    for (i = 0; i < p->edges; ++i) all += p->edge[i];
-    if (p->bare)
-        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
-    else
-        at[p->sides] = gproji_core_corners(p, at) + at[0];
-    for (i = 0; i < p->sides; ++i) {
-        patch->edges[i] = at[i + 1] - at[i];
-        for (j = 0; j <= patch->edges[i]; ++j) patch->side[i][j] = gproji_core_vertex(rows, all, at[i] + j);
-    }
-    patch->vertices = (rows + 1) * (all + 1);
-    for (i = 0; i < rows; ++i)
-        for (j = 0; j < all; ++j) {
-            int32_t v = i * (all + 1) + j;
-            if (!gproji_ints_add4(patch->heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
-        }
-    return true;
-}
-
 GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
 
-/* Does a strip run from corner i to the next corner that is not flat, over flat ones between? Sets that corner. */
+/* Does a strip run from corner i over flat corners to another, *to, that is not flat? */
 GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t i, int32_t *to) {
     *to = i + 1;
     if (gproji_is_flat(flat, sides, i) || !gproji_is_flat(flat, sides, i + 1)) return false;
@@ -17813,8 +17489,8 @@ GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t 
     return true;
 }
 
-/* The numbers of edges inside of the outermost strips, which cover the flat corners: each from one corner that is not
-   flat to the next. False where there are not two such corners, or a side is too short. */
+/* Counts the edges inside the outermost strips, which cover the flat corners: each from one corner that is not flat to
+   the next. False with fewer than two such corners, or a side that is too short. */
 GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
     int32_t i, to, sharp = 0;
     for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
@@ -17826,8 +17502,7 @@ GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int
     return true;
 }
 
-/* A strip of quads along sides i to to - 1 (numbers may go on beyond the last): new sides outside of them, and one edge
-   more for both neighbours. */
+/* Adds a strip of quads along sides i to to - 1 (counted on beyond the last). */
 GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
     int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
     int32_t outer = patch->vertices;
@@ -17837,6 +17512,7 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
             if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
         outer += n;
     }
+    /* One edge more on the side before and on the side after; then the new sides outside. */
     patch->side[before][++patch->edges[before]] = patch->vertices;
     memmove(patch->side[after] + 1, patch->side[after], (size_t)(++patch->edges[after]) * sizeof(int32_t));
     patch->side[after][0] = outer;
@@ -17849,33 +17525,63 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
     return true;
 }
 
-/* The boundary as a loop, in a ring of quads if so wanted. */
-GPROJI_INTERNAL bool gproji_close_patch(gproji_patch *patch, bool ring) {
-    int32_t i, j, n;
-    for (i = 0; i < patch->sides; ++i)
-        for (j = 0; j < patch->edges[i]; ++j)
-            if (!gproji_ints_add(patch->heap, &patch->loop, patch->side[i][j])) return false;
-    n = (int32_t)patch->loop.count;
-    for (i = 0; ring && i < n; ++i) {
-        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        if (!gproji_ints_add4(patch->heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
-    }
-    for (i = 0; ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, const gproji_pattern *p, const int32_t *length) {
-    int32_t i, k;
+/* Builds a patch whose sides have these lengths. False without memory; give the patch back in any case. */
+GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, const gproji_pattern *p,
+                                        const int32_t *length) {
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n = 0;
     size_t q;
-    if (!gproji_build_core(patch, p, length)) return false;
+    /* 1. Room for sides as long as they become. */
+    memset(patch, 0, sizeof *patch);
+    patch->heap = heap, patch->sides = p->sides;
+    for (i = 0; i < p->sides; ++i) patch->block_size += (size_t)length[i] + 1;
+    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
+    if (!patch->block) return false;
+    for (i = 0; i < p->sides; ++i) {
+        patch->side[i] = patch->block + n;
+        n += length[(i + p->first) % p->sides] + 1;
+    }
+    /* 2. The core, numbered by rows from below, and its sides along the walk around it. */
+    for (i = 0; i < p->edges; ++i) all += p->edge[i];
+    around = 2 * (rows + all);
+    if (p->bare)
+        for (at[0] = i = 0; i < p->sides; ++i) at[i + 1] = at[i] + length[(i + p->first) % p->sides];
+    else
+        gproji_core_corners(p, at);
+    for (i = 0; i < p->sides; ++i) {
+        patch->edges[i] = at[i + 1] - at[i];
+        for (j = 0; j <= patch->edges[i]; ++j) {
+            int32_t place = around ? (at[i] + j) % around : 0;
+            patch->side[i][j] = place < rows              ? (rows - place) * (all + 1)
+                                : place <= rows + all     ? place - rows
+                                : place <= 2 * rows + all ? (place - rows - all) * (all + 1) + all
+                                                          : rows * (all + 1) + around - place;
+        }
+    }
+    patch->vertices = (rows + 1) * (all + 1);
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < all; ++j) {
+            int32_t v = i * (all + 1) + j;
+            if (!gproji_ints_add4(heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+        }
+    /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
         for (k = 0; k < p->strip[i]; ++k)
             if (!gproji_add_strip(patch, i, i + 1)) return false;
     for (i = 0; i < p->sides && p->flat; ++i)
         if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
-    if (!gproji_close_patch(patch, p->ring)) return false;
+    /* 4. The boundary as a loop, in a ring if one is wanted. */
+    for (i = 0; i < p->sides; ++i)
+        for (j = 0; j < patch->edges[i]; ++j)
+            if (!gproji_ints_add(heap, &patch->loop, patch->side[i][j])) return false;
+    n = (int32_t)patch->loop.count;
+    for (i = 0; p->ring && i < n; ++i) {
+        int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
+        if (!gproji_ints_add4(heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+    }
+    for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
+    /* 5. Faces at each vertex. */
     for (i = 0; i < patch->vertices; ++i)
-        if (!gproji_ints_add(patch->heap, &patch->uses, 0)) return false;
+        if (!gproji_ints_add(heap, &patch->uses, 0)) return false;
     for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
     return true;
 }
@@ -17900,10 +17606,10 @@ GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b
     return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) || (cda < 0 && cdb < 0));
 }
 
-/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet where they should not? Neighbours: do they fold back? */
+/* Do the sides i, i + 1 and j, j + 1 of a closed polygon meet, other than neighbours at their common point? */
 GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32_t i, int32_t j) {
     int32_t b = (i + 1) % count, d = (j + 1) % count;
-    if (b == j || d == i) {
+    if (b == j || d == i) { /* neighbours meet if they fold back */
         int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
         const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
         double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
@@ -17925,39 +17631,32 @@ GPROJI_INTERNAL void gproji_ring_box(const void *user, int32_t item, double low[
     gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
 }
 
-/* The lowest side after side i that meets it; the number of sides where there is none. */
-GPROJI_INTERNAL int32_t gproji_find_meeting(const gproji_ring2 *ring, const gproji_hierarchy *tree, int32_t i) {
-    int32_t stack[GPROJI_TREE_DEPTH], depth = 1, found = ring->count, k;
-    double low[3], high[3];
-    gproji_ring_box(ring, i, low, high);
-    stack[0] = 0;
-    while (depth > 0) {
-        int32_t at = stack[--depth];
-        const gproji_node *node = &tree->node[at];
-        if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
-            continue;
-        if (node->right >= 0) {
-            stack[depth++] = node->right;
-            stack[depth++] = at + 1;
-            continue;
-        }
-        for (k = node->begin; k < node->end; ++k) {
-            int32_t j = tree->item[k];
-            if (j > i && j < found && gproji_polygon_meets(ring->xy, ring->count, i, j)) found = j;
-        }
-    }
-    return found;
-}
-
-/* The first two sides of a closed polygon that meet; first = count where it is simple. False: no memory. */
+/* Finds the first two sides of a closed polygon that meet; first = count if it is simple. False without memory. */
 GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
                                           int32_t *second) {
     gproji_hierarchy tree;
     gproji_ring2 ring;
     ring.xy = xy, ring.count = count;
     if (!gproji_hierarchy_build(heap, &tree, count, gproji_ring_box, &ring)) return false;
-    for (*first = 0; *first < count; ++*first) {
-        *second = gproji_find_meeting(&ring, &tree, *first);
+    for (*first = 0, *second = count; *first < count; ++*first) {
+        int32_t stack[GPROJI_TREE_DEPTH], depth = 1, k;
+        double low[3], high[3];
+        gproji_ring_box(&ring, *first, low, high);
+        stack[0] = 0;
+        while (depth > 0) {
+            int32_t at = stack[--depth];
+            const gproji_node *node = &tree.node[at];
+            if (node->low[0] > high[0] || node->high[0] < low[0] || node->low[1] > high[1] || node->high[1] < low[1])
+                continue;
+            if (node->right >= 0) {
+                stack[depth++] = node->right, stack[depth++] = at + 1;
+                continue;
+            }
+            for (k = node->begin; k < node->end; ++k) {
+                int32_t j = tree.item[k];
+                if (j > *first && j < *second && gproji_polygon_meets(xy, count, *first, j)) *second = j;
+            }
+        }
         if (*second < count) break;
     }
     gproji_hierarchy_give(heap, &tree);
@@ -17975,11 +17674,31 @@ GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q
 
 /* -- the curve -- */
 
-/* The plane of the vectorial area, with which the curve runs counter-clockwise. Writes the points as seen there. */
-GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
+/* Checks the curve and the options that stand alone, and projects the points into the curve's plane. */
+GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     static const double none[3] = {0, 0, 0};
+    const gproj_fill_options *o = &f->options;
     double a[3], b[3], cross[3], extent = 0;
-    int32_t i;
+    int32_t i, j;
+    gproj_code code;
+    /* 1. Points are finite, and no two neighbours coincide. */
+    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           f->points ? "a closed curve of %d points; it needs at least 3"
+                                     : "the points of the curve are NULL",
+                           f->count);
+    code = gproji_check_positions(f->count, f->points, "point", f->error);
+    if (code) return code;
+    for (i = 0; i < f->count; ++i) {
+        j = i + 1 < f->count ? i + 1 : 0;
+        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
+            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                               "points %d and %d of the curve are the same; leave one out%s", i, j,
+                               j == 0 ? " (the curve is closed without it)" : "");
+    }
+    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    if (!f->seen) return gproji_fail_memory(f->error);
+    /* 2. The plane orthogonal to the vectorial area: the curve runs counter-clockwise in it. */
     gproji_set3(0, 0, 0, f->normal);
     for (i = 1; i < f->count; ++i) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
@@ -17997,45 +17716,27 @@ GPROJI_INTERNAL gproj_code gproji_see_curve(gproji_filling *f) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
         f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
     }
+    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (i < f->count)
+        return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
+                           "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
+                           "simple curves can be filled",
+                           i, j);
+    /* 3. Options. */
+    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
+                           (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
+                           o->variant);
+    if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
+        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
+                           o->edge_length);
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
-    gproj_code code;
-    int32_t i, j;
-    if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           f->points ? "a closed curve of %d points; it needs at least 3"
-                                     : "the points of the curve are NULL",
-                           f->count);
-    code = gproji_check_positions(f->count, f->points, "point", f->error);
-    if (code) return code;
-    for (i = 0; i < f->count; ++i) {
-        j = i + 1 < f->count ? i + 1 : 0;
-        if (!(gproji_distance3(f->points + 3 * (size_t)i, f->points + 3 * (size_t)j) > 0))
-            return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                               "points %d and %d of the curve are the same; leave one out%s", i, j,
-                               j == 0 ? " (the curve is closed without it)" : "");
-    }
-    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
-    if (!f->seen) return gproji_fail_memory(f->error);
-    code = gproji_see_curve(f);
-    if (code) return code;
-    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
-    if (i == f->count) return GPROJ_OK;
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
-                       "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
-                       "simple curves can be filled",
-                       i, j);
-}
-
-/* Is a point of the curve a corner, as gproj_form_is_corner says of vertices? */
-GPROJI_INTERNAL bool gproji_is_curve_corner(const gproji_filling *f, int32_t i) {
-    int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
-    return gproji_turns(f->points + 3 * (size_t)before, f->points + 3 * (size_t)i, f->points + 3 * (size_t)after);
-}
-
-/* The length of the curve from point i to point j > i (modulo the number of points). */
+/* The curve's length from point i to point j > i (modulo the number of points). */
 GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i, int32_t j) {
     double sum = 0;
     for (; i < j; ++i)
@@ -18043,37 +17744,16 @@ GPROJI_INTERNAL double gproji_length_between(const gproji_filling *f, int32_t i,
     return sum;
 }
 
-/* Four corners at about equal distances, the first one where the only corner is, or the first point. */
-GPROJI_INTERNAL bool gproji_make_corners(gproji_filling *f) {
-    int32_t from = f->corner.count ? f->corner.data[0] : 0, n = 1, i;
-    double all = gproji_length_between(f, from, from + f->count), at = 0;
-    f->corner.count = 0;
-    if (!gproji_ints_add(f->heap, &f->corner, from)) return false;
-    for (i = from; i + 1 < from + f->count && n < 4; ++i) {
-        double step = gproji_length_between(f, i, i + 1);
-        at += step;
-        if (at + step / 2 >= all * n / 4 || from + f->count - 2 - i < 4 - n) {
-            if (!gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count)) return false;
-            ++n;
-        }
-    }
-    return true;
-}
-
-/* The options, but for what depends on the corners and sides that are found. */
-GPROJI_INTERNAL gproj_code gproji_check_fill_options(const gproji_filling *f) {
+/* Chooses corners: the caller's, else detected, else four evenly spaced. Each begins a side. */
+GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     const gproj_fill_options *o = &f->options;
-    int32_t i;
+    const double *p = f->points;
+    int32_t i, n;
+    bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                            o->corner_count > 1 ? " in an array that is NULL" : "");
-    if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
-                           (int32_t)GPROJI_FILL_RINGS);
-    if (o->variant < 0)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
-                           o->variant);
     for (i = 0; i < o->corner_count; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -18083,23 +17763,26 @@ GPROJI_INTERNAL gproj_code gproji_check_fill_options(const gproji_filling *f) {
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
                                "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
                                c, before);
+        taken = taken && gproji_ints_add(f->heap, &f->corner, c);
     }
-    if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
-        return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
-                           o->edge_length);
-    return GPROJ_OK;
-}
-
-/* The corners given, or found, or made; as many are the sides. */
-GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
-    const gproj_fill_options *o = &f->options;
-    int32_t i;
-    bool taken = true;
-    for (i = 0; i < o->corner_count && taken; ++i) taken = gproji_ints_add(f->heap, &f->corner, o->corners[i]);
-    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i)
-        if (gproji_is_curve_corner(f, i)) taken = gproji_ints_add(f->heap, &f->corner, i);
-    if (taken && f->corner.count < 2) taken = gproji_make_corners(f);
+    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i) { /* as gproj_form_is_corner does with vertices */
+        int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
+        if (gproji_turns(p + 3 * (size_t)before, p + 3 * (size_t)i, p + 3 * (size_t)after))
+            taken = gproji_ints_add(f->heap, &f->corner, i);
+    }
+    if (taken && f->corner.count < 2) { /* from the only corner, or the first point */
+        int32_t from = f->corner.count ? f->corner.data[0] : 0;
+        double all = gproji_length_between(f, from, from + f->count), at = 0;
+        f->corner.count = 0;
+        taken = gproji_ints_add(f->heap, &f->corner, from);
+        for (n = 1, i = from; taken && i + 1 < from + f->count && n < 4; ++i) {
+            double step = gproji_length_between(f, i, i + 1);
+            at += step;
+            if (at + step / 2 < all * n / 4 && from + f->count - 2 - i >= 4 - n) continue;
+            taken = gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count);
+            ++n;
+        }
+    }
     f->sides = (int32_t)f->corner.count;
     if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -18108,7 +17791,7 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     return taken ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
-/* The points of side j: from the first to the last, counted on beyond the end of the array. */
+/* The points along a side, from the first to the last, counted on beyond the array's end. */
 GPROJI_INTERNAL void gproji_side_points(const gproji_filling *f, int32_t side, int32_t *from, int32_t *to) {
     *from = f->corner.data[side];
     *to = side + 1 < f->sides ? f->corner.data[side + 1] : f->corner.data[0];
@@ -18121,7 +17804,7 @@ GPROJI_INTERNAL double gproji_side_length(const gproji_filling *f, int32_t side)
     return gproji_length_between(f, from, to);
 }
 
-/* Which side bears one edge more (+1) or less (-1) best, by its edge length? */
+/* Finds the side that bears one edge more (+1) or less (-1) best, by the edge length it then has. */
 GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_t *edges, int32_t *change) {
     int32_t side, best = 0;
     double least = HUGE_VAL;
@@ -18134,29 +17817,24 @@ GPROJI_INTERNAL int32_t gproji_best_change(const gproji_filling *f, const int32_
     return best;
 }
 
-/* The edges that strips over nearly flat corners take from the sides: see gproji_inner_lengths. */
-GPROJI_INTERNAL void gproji_strip_edges(const gproji_filling *f, int32_t *taken) {
-    int32_t side, flat = 0, many[GPROJI_PATCH_SIDES];
-    for (side = 0; side < f->sides; ++side) {
-        int32_t c = f->corner.data[side];
-        bool is_flat = gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT;
-        if (is_flat) flat |= 1 << side;
-        many[side] = 3; /* more than are taken */
-    }
-    if (!gproji_inner_lengths(f->sides, flat, many, taken)) memcpy(taken, many, sizeof many);
-    for (side = 0; side < f->sides; ++side) taken[side] = many[side] - taken[side];
-}
-
-/* Numbers of edges by the wanted edge length: such that a grid fits inside of 4 sides if opposite ones are of about
-   the same length. */
+/* Chooses edge numbers by the wanted edge length, with an even sum of at least 4. */
 GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges) {
-    int32_t side, sum = 0, change = 0, longest = 0, taken[GPROJI_PATCH_SIDES] = {0};
-    if (f->sides == 4 && f->options.rings == 0) gproji_strip_edges(f, taken);
+    int32_t side, sum = 0, change = 0, longest = 0, flat = 0, many[GPROJI_PATCH_SIDES], taken[GPROJI_PATCH_SIDES] = {0};
+    if (f->sides == 4 && f->options.rings == 0) { /* edges that strips over flat corners take from the sides */
+        for (side = 0; side < 4; ++side) {
+            int32_t c = f->corner.data[side];
+            if (gproji_inner_angle(f->seen, c, (c + 1) % f->count, (c + f->count - 1) % f->count) > GPROJI_FLAT)
+                flat |= 1 << side;
+            many[side] = 3; /* more than are taken */
+        }
+        if (!gproji_inner_lengths(4, flat, many, taken)) memcpy(taken, many, sizeof many);
+        for (side = 0; side < 4; ++side) taken[side] = many[side] - taken[side];
+    }
     for (side = 0; side < f->sides; ++side) {
         double length = gproji_fmin(gproji_side_length(f, side) / f->edge_length, GPROJI_FILL_EDGES), other;
         int32_t opposite = (side + 2) % 4;
         edges[side] = gproji_max(1, (int32_t)(length + 0.5));
-        if (f->sides == 4) {
+        if (f->sides == 4) { /* a grid fits inside opposite sides with equal numbers: if they are about equally long */
             other = gproji_fmin(gproji_side_length(f, opposite) / f->edge_length, GPROJI_FILL_EDGES);
             if (length < 1.7 * other && other < 1.7 * length)
                 edges[side] = gproji_max(1, (int32_t)(0.5 * (length + other - (taken[side] + taken[opposite])) + 0.5)) +
@@ -18173,36 +17851,9 @@ GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges
     if (sum < 4) edges[longest] += 4 - sum;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_edges(gproji_filling *f, const int32_t *edges) {
-    int32_t side, sum = 0, change = 0;
-    for (side = 0; side < f->sides; ++side) {
-        if (edges[side] < 1)
-            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
-        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
-            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
-                               "the sides up to side %d have more than %d edges; use longer edges", side,
-                               (int32_t)GPROJI_FILL_EDGES);
-    }
-    if (sum % 2) {
-        side = gproji_best_change(f, edges, &change);
-        return gproji_fail(
-            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
-            "of %d%s",
-            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
-    }
-    if (sum < 4)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
-                           "the sides have %d edges together; quads need at least 4", sum);
-    f->boundary = sum;
-    return GPROJ_OK;
-}
-
-/* The number of edges of each side, checked, into `start`, summed up. */
+/* Finds each side's number of edges, checks them, and sums them up into `start`. */
 GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
-    int32_t side, from, to, *edges;
-    gproj_code code;
+    int32_t side, from, to, *edges, sum = 0, change = 0;
     f->edge_length = f->options.edge_length;
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
     if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
@@ -18214,62 +17865,67 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     }
     edges = f->start.data + 1;
     if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
-    code = gproji_check_edges(f, edges);
-    for (side = 0; side < f->sides && !code; ++side) f->start.data[side + 1] += f->start.data[side];
-    return code;
-}
-
-/* The vertices of a side but its last: `edges` equal pieces of its length, or its points. */
-GPROJI_INTERNAL void gproji_divide_side(const gproji_filling *f, int32_t side, double *out) {
-    int32_t edges = f->start.data[side + 1] - f->start.data[side], from, to, i, j;
-    double all, before = 0, step;
-    gproji_side_points(f, side, &from, &to);
-    all = gproji_length_between(f, from, to);
-    step = gproji_length_between(f, from, from + 1);
-    for (i = from, j = 0; j < edges; ++j, out += 3) {
-        const double *p, *q;
-        double at = all * j / edges, t, d[3];
-        while (i + 1 < to && at >= before + step) {
-            before += step, ++i;
-            step = gproji_length_between(f, i, i + 1);
-        }
-        if (f->options.keep_points) i = from + j, at = before;
-        p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
-        t = (at - before) / step;
-        gproji_copy3(t > 1 - 1e-9 ? q : p, out);
-        if (t <= 1e-9 || t > 1 - 1e-9) continue; /* a point of the curve */
-        gproji_sub3(q, p, d);
-        gproji_add_scaled3(t, d, out);
+    for (side = 0; side < f->sides; ++side) {
+        if (edges[side] < 1)
+            return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "side %d is to have %d edges; each side needs at least 1", side, edges[side]);
+        if (edges[side] > GPROJI_FILL_EDGES || (sum += edges[side]) > GPROJI_FILL_EDGES)
+            return gproji_fail(f->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                               "the sides up to side %d have more than %d edges; use longer edges", side,
+                               (int32_t)GPROJI_FILL_EDGES);
     }
+    if (sum % 2) { /* names the side that would bear it best */
+        side = gproji_best_change(f, edges, &change);
+        return gproji_fail(
+            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
+            "of %d%s",
+            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+    }
+    if (sum < 4)
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
+                           "the sides have %d edges together; quads need at least 4", sum);
+    f->boundary = sum;
+    for (side = 0; side < f->sides; ++side) edges[side] += f->start.data[side];
+    return GPROJ_OK;
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
     void *block = f->flat;
     if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
     f->flat = (double *)block;
-    f->flat[2 * (size_t)f->vertices] = x;
-    f->flat[2 * (size_t)f->vertices + 1] = y;
+    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
 }
 
-/* The side of the edge that begins at a vertex of the boundary. */
-GPROJI_INTERNAL int32_t gproji_side_of(const gproji_filling *f, int32_t vertex) {
-    int32_t side = 0;
-    while (f->start.data[side + 1] <= vertex) ++side;
-    return side;
-}
-
-/* The vertices of the boundary, and the first patch: all of it. */
+/* Places the boundary's vertices and makes the first outline, which follows it all. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
-    gproj_code code = gproji_check_fill_options(f);
-    int32_t side, i, j;
-    if (!code) code = gproji_find_corners(f);
-    if (!code) code = gproji_divide_sides(f);
-    if (code) return code;
+    int32_t side, from, to, i, j;
     f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
     if (!f->border) return gproji_fail_memory(f->error);
-    for (side = 0; side < f->sides; ++side) gproji_divide_side(f, side, f->border + 3 * (size_t)f->start.data[side]);
+    for (side = 0; side < f->sides; ++side) {
+        int32_t edges = f->start.data[side + 1] - f->start.data[side];
+        double *out = f->border + 3 * (size_t)f->start.data[side], all, before = 0, step, d[3];
+        gproji_side_points(f, side, &from, &to);
+        all = gproji_length_between(f, from, to);
+        step = gproji_length_between(f, from, from + 1);
+        for (i = from, j = 0; j < edges; ++j, out += 3) {
+            const double *p, *q;
+            double at = all * j / edges, t; /* equal lengths along the side */
+            while (i + 1 < to && at >= before + step) {
+                before += step, ++i;
+                step = gproji_length_between(f, i, i + 1);
+            }
+            if (f->options.keep_points) i = from + j, at = before;
+            p = f->points + 3 * (size_t)(i % f->count), q = f->points + 3 * (size_t)((i + 1) % f->count);
+            t = (at - before) / step;
+            gproji_copy3(t > 1 - 1e-9 ? q : p, out);
+            if (t <= 1e-9 || t > 1 - 1e-9) continue; /* exactly a point */
+            gproji_sub3(q, p, d);
+            gproji_add_scaled3(t, d, out);
+        }
+    }
     for (side = 0, i = 0; i < f->boundary; ++i) {
         double d[3];
         bool corner = i == f->start.data[side];
@@ -18280,28 +17936,30 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
             return gproji_fail_memory(f->error);
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    /* A simple curve may have chords that cross. */
     if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
-    i = gproji_side_of(f, i), j = gproji_side_of(f, j);
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[i],
-                       "with so few edges side %d meets side %d; divide them finer", i, j);
+    for (from = 0; f->start.data[from + 1] <= i;) ++from;
+    for (to = 0; f->start.data[to + 1] <= j;) ++to;
+    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, f->corner.data[from],
+                       "with so few edges side %d meets side %d; divide them finer", from, to);
 }
 
 /* -- cuts -- */
 
-/* A cut through a polygon of the filling: from its place i to its place j. */
+/* A cut through a patch outline, from place i to place j. */
 typedef struct gproji_cut_line {
     int32_t i, j;
     int32_t edges;
     double cost;
 } gproji_cut_line;
 
-/* A patch: `count` entries of f->polygon. */
+/* A patch's outline: `count` entries in f->polygon. */
 typedef struct gproji_outline {
     const gproji_filling *f;
     int32_t *entry;
     int32_t count;
-    double edge; /* mean edge length */
+    double edge; /* mean edge length, for cuts */
 } gproji_outline;
 
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
@@ -18317,89 +17975,74 @@ GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t 
     return n;
 }
 
-/* How far the angle is from 1, 2 or 3 right angles, as a part of it, squared. */
-GPROJI_INTERNAL double gproji_angle_cost(double angle) {
-    int32_t n = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
-    double off = angle / n / GPROJI_RIGHT - 1;
-    return off * off;
+/* Predicts the cost of the part from place i to place j closed by a cut, whose ends are corners if `first`, `last`. */
+GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
+                                        bool last) {
+    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
+    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
+    int32_t strip[GPROJI_PATCH_SIDES], least, off, reflex = 0;
+    if (j - i + edges < 4) return HUGE_VAL;
+    /* 1. A part that is cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
+    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
+    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
+    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
+    /* 2. A patch, by the lengths it gets; side 0 is before the first corner and after the last. */
+    for (k = i; n >= 2 && k < j; ++k) {
+        side += k == i ? first : o->entry[k % o->count] & 1;
+        ++length[side % n];
+    }
+    if (n >= 2) length[(side + last) % n] += edges;
+    least = length[0];
+    for (k = 1; k < n; ++k) least = gproji_min(least, length[k]);
+    if (n == 4) { /* a grid costs nothing */
+        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
+        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
+    }
+    if (n % 2 && n > 1 && gproji_find_strips(n, length, strip)) { /* one irregular vertex */
+        for (k = 0; k < n && strip[k] > 0; ++k) continue;
+        if (k == n) return 0.2;
+    }
+    return cost[n] + (least < 3 ? 0.6 : 0); /* short sides leave no room for irregular vertices */
 }
 
-/* Is the cut inside, and how near does it pass other vertices? Its cost for that, or infinity. */
-GPROJI_INTERNAL double gproji_clearance_cost(const gproji_outline *o, int32_t i, int32_t j) {
+/* Tries cuts from place i to place j, over edge numbers with the right parity; a cheaper one replaces `best`. */
+GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
     const double *xy = o->f->flat;
-    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), k;
-    double length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge;
+    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end, k;
+    double at[2][2], length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge, cost = 0;
+    bool corner[2][2];
+    /* 1. Angles at both ends, in the part from i to j and in the other, best at multiples of a right angle. */
+    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b);
+    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
+    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
+    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
+    for (end = 0; end < 4; ++end) {
+        double angle = at[end / 2][end % 2], off;
+        if (!(angle > 0.1)) return;
+        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
+        k = gproji_max(1, (int32_t)(angle / GPROJI_RIGHT + 0.5));
+        off = angle / k / GPROJI_RIGHT - 1;
+        cost += off * off;
+    }
+    cost += 0.02 * length / o->edge;
+    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
+    if (cost >= best->cost) return;
+    /* 2. The cut stays inside, and clear of other vertices. */
     for (k = 0; k < o->count; ++k) {
         int32_t p = gproji_outline_vertex(o, k), q = gproji_outline_vertex(o, k + 1);
         double along, off;
         if (p == a || p == b) continue;
-        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return HUGE_VAL;
+        if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return;
         along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
                  (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
                 length;
         off = fabs(gproji_turn2(xy, a, b, p)) / length;
         if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
     }
-    return nearest > 1e-6 * o->edge ? 1 - nearest / (0.7 * o->edge) : HUGE_VAL;
-}
-
-/* What is to be expected of a patch with these sides: least for grids, and for one irregular vertex; more where short
-   sides leave no room for others. */
-GPROJI_INTERNAL double gproji_sides_cost(int32_t sides, const int32_t *length) {
-    static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
-    int32_t strip[GPROJI_PATCH_SIDES], i, least = length[0], off;
-    for (i = 1; i < sides; ++i) least = gproji_min(least, length[i]);
-    if (sides == 4) {
-        off = abs(length[0] - length[2]) + abs(length[1] - length[3]);
-        return off == 0 ? 0 : 0.3 + 0.03 * off + (least < 3 ? 0.6 : 0);
-    }
-    if (sides % 2 && sides > 1 && gproji_find_strips(sides, length, strip)) {
-        for (i = 0; i < sides && strip[i] > 0; ++i) continue;
-        if (i == sides) return 0.2;
-    }
-    return cost[sides] + (least < 3 ? 0.6 : 0);
-}
-
-/* The same of a part of the outline from place i to place j, closed by a cut whose ends are corners or not. Parts
-   that are to be cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
-GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
-                                        bool last) {
-    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
-    int32_t reflex = 0;
-    if (j - i + edges < 4) return HUGE_VAL;
-    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
-    if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
-    if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
-    if (n < 2) return gproji_sides_cost(n, length);
-    for (k = i; k < j; ++k) { /* side 0 is the one before the first corner, and after the last */
-        side += k == i ? first : o->entry[k % o->count] & 1;
-        ++length[side % n];
-    }
-    length[(side + last) % n] += edges;
-    return gproji_sides_cost(n, length);
-}
-
-/* Costs of cuts from place i to place j, with numbers of edges of the right parity. */
-GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
-    const double *xy = o->f->flat;
-    int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end;
-    double at[2][2], length = gproji_distance2(xy, a, b), cost = 0;
-    bool corner[2][2];
-    at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b); /* in the part from i to j */
-    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
-    at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
-    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
-    for (end = 0; end < 4; ++end) {
-        double angle = at[end / 2][end % 2];
-        if (!(angle > 0.1)) return;
-        corner[end / 2][end % 2] = angle < GPROJI_OBTUSE;
-        cost += gproji_angle_cost(angle);
-    }
-    cost += 0.02 * length / o->edge;
-    if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
-    if (cost >= best->cost) return;
-    cost += gproji_clearance_cost(o, i, j);
+    if (!(nearest > 1e-6 * o->edge)) return;
+    cost += 1 - nearest / (0.7 * o->edge);
     if (!(cost < best->cost)) return;
+    /* 3. Edge numbers: each part needs an even boundary. */
     wanted = (int32_t)(length / o->edge + 0.5);
     for (edges = gproji_max(1, wanted - 3); edges <= wanted + 3; ++edges) {
         double off = log(edges * o->edge / length), all;
@@ -18410,14 +18053,14 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
     }
 }
 
-/* The best cut from a corner that is reflex, or from any where there are more than 6; cost infinite: none. */
+/* Finds the best cut from a reflex corner, or from any if there are more than 6; cost infinite: none. */
 GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     gproji_cut_line best = {0, 0, 0, HUGE_VAL};
     bool many = gproji_outline_corners(o, 0, o->count) > GPROJI_PATCH_SIDES, reflex = false;
     int32_t i, j, pass;
     for (i = 0; i < o->count; ++i) reflex |= (o->entry[i] & 1) && gproji_outline_angle(o, i) > GPROJI_REFLEX;
     if (!reflex && !many) return best;
-    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass)
+    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* other corners only if no reflex one has a cut */
         for (i = 0; i < o->count; ++i) {
             if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
             for (j = 0; j < o->count; ++j) {
@@ -18428,7 +18071,7 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     return best;
 }
 
-/* Appends one side of a cut: places i to j, then the cut's inner vertices, first + 0, .., forward or backward. */
+/* Appends the outline on one side of a cut: places i to j, then the cut's inner vertices, forward or backward. */
 GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
@@ -18438,7 +18081,7 @@ GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t c
     for (k = 0; k < inner; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
     if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
-    for (end = 0; end < 2; ++end) { /* corners of the part by their angles */
+    for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
         int32_t at = end ? to : from;
         gproji_outline o;
         o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
@@ -18448,25 +18091,94 @@ GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t c
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_make_cut(gproji_filling *f, int32_t start, int32_t count, const gproji_cut_line *cut) {
-    int32_t a = f->polygon.data[start + cut->i] >> 1, b = f->polygon.data[start + cut->j] >> 1, first = f->vertices, k;
-    for (k = 1; k < cut->edges; ++k) { /* from j to i */
-        double t = (double)k / cut->edges;
-        if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
-                             (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. False without memory. */
+GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
+    size_t at;
+    int32_t start, k;
+    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+        gproji_outline o;
+        gproji_cut_line cut;
+        int32_t a, b, first = f->vertices;
+        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+        for (k = 0; k < o.count; ++k)
+            o.edge +=
+                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+        cut = gproji_find_cut(&o);
+        if (!(cut.cost < HUGE_VAL)) continue;
+        a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
+        for (k = 1; k < cut.edges; ++k) { /* from j to i */
+            double t = (double)k / cut.edges;
+            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+                return false;
+        }
+        if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
+            !gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false))
             return false;
+        f->patch.data[at] = -f->patch.data[at];
     }
-    return gproji_add_part(f, start, count, cut->i, cut->j, first, cut->edges - 1, true) &&
-           gproji_add_part(f, start, count, cut->j, cut->i + count, first, cut->edges - 1, false);
+    f->cut_vertices = f->vertices;
+    return true;
 }
 
 /* -- patches -- */
 
-/* The patch's corners as places in its outline, at most 6 of them: where there are more, those that turn least are
-   left out; where there are fewer than 2, places in between are taken. `flat`: the bits of those that are flat. */
-GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GPROJI_PATCH_SIDES], int32_t *flat) {
-    int32_t n = gproji_outline_corners(o, 0, o->count), i, k;
-    for (; n > GPROJI_PATCH_SIDES; --n) {
+/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other boundary vertices,
+   or 3 on the curve or a ring along it? `at`: the outline place at the pattern's first corner. Destroys `uses`. */
+GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
+    int32_t i, side, from = at, *uses = patch->uses.data;
+    for (side = 0; side < patch->sides; ++side)
+        for (i = 0; i < patch->edges[side]; ++i, ++at) {
+            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
+            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
+            uses[v] = -1; /* a second visit to the vertex fails */
+        }
+    for (i = 0; i < patch->vertices; ++i)
+        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
+    return true;
+}
+
+/* Chooses the `variant`-th good pattern: under long strips, or in a ring; at last one strip in a ring. */
+GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, const gproji_outline *o, int32_t sides,
+                                           const int32_t *place, const int32_t *length, int32_t flat,
+                                           gproji_pattern *chosen) {
+    gproji_candidates c;
+    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
+    memset(chosen, 0, sizeof *chosen);
+    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
+        gproji_find_patterns(&c, sides, ring ? length : inner);
+        for (i = 0; i < c.count && good <= f->options.variant; ++i) {
+            gproji_pattern *p = &c.pattern[i];
+            gproji_patch patch;
+            bool done;
+            p->ring = ring != 0;
+            for (k = 0; k < sides && !ring; ++k)
+                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
+            done = gproji_build_patch(&patch, f->heap, p, length);
+            if (done && gproji_patch_is_good(&patch, o, place[p->first])) *chosen = *p, ++good;
+            gproji_patch_give(&patch);
+            if (!done) return false;
+        }
+    }
+    if (good > 0) return true; /* the last good one if there are fewer than wanted */
+    for (i = 0; i < sides; ++i) sum += length[i];
+    chosen->sides = sides;
+    chosen->edges = chosen->rows = 1;
+    chosen->edge[0] = sum / 2 - 1;
+    chosen->bare = chosen->ring = true;
+    return true;
+}
+
+/* Fills an outline that is not cut. False without memory. */
+GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
+    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat = 0, sides, i, k, n, *number;
+    gproji_pattern p;
+    gproji_patch patch;
+    double x = 0, y = 0;
+    size_t q;
+    bool done;
+    /* 1. At most 6 corners, without those that turn least; at least 2, with places between. */
+    for (n = gproji_outline_corners(o, 0, o->count); n > GPROJI_PATCH_SIDES; --n) {
         int32_t flattest = -1;
         for (i = 0; i < o->count; ++i)
             if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
@@ -18476,148 +18188,33 @@ GPROJI_INTERNAL int32_t gproji_patch_corners(gproji_outline *o, int32_t place[GP
     for (i = 0; n < 2 && i < o->count; ++i)
         if (o->entry[i] & 1) break;
     for (k = 0; n < 2 && k < 4; ++k) o->entry[(i + o->count * k / 4) % o->count] |= 1;
-    for (*flat = 0, k = 0, i = 0; i < o->count; ++i) {
+    for (sides = 0, i = 0; i < o->count; ++i) {
         if (!(o->entry[i] & 1)) continue;
-        if (o->f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) *flat |= 1 << k;
-        place[k++] = i;
+        if (f->options.rings == 0 && gproji_outline_angle(o, i) > GPROJI_FLAT) flat |= 1 << sides;
+        place[sides++] = i;
     }
-    return k;
-}
-
-/* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other vertices of the
-   boundary, or 3 where these are on the curve or a ring along it? `at`: the place of the pattern's first corner.
-   Destroys `uses`. */
-GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
-    int32_t i, side, from = at, *uses = patch->uses.data;
-    for (side = 0; side < patch->sides; ++side)
-        for (i = 0; i < patch->edges[side]; ++i, ++at) {
-            int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
-            if (uses[v] < (i > 0 ? 2 : 1) || uses[v] > (i > 0 ? most : 2)) return false;
-            uses[v] = -1; /* twice on the boundary is not good */
-        }
-    for (i = 0; i < patch->vertices; ++i)
-        if (uses[i] >= 0 && (uses[i] < 3 || uses[i] > 5)) return false;
-    return true;
-}
-
-/* Copies a finished patch into the filling. */
-GPROJI_INTERNAL bool gproji_join_patch(gproji_filling *f, const gproji_outline *o, int32_t from, gproji_patch *patch) {
-    int32_t *number = patch->uses.data, i, n = (int32_t)patch->loop.count;
-    size_t q;
-    double x = 0, y = 0;
-    for (i = 0; i < patch->vertices; ++i) number[i] = -1;
-    for (i = 0; i < n; ++i) {
-        int32_t v = gproji_outline_vertex(o, from + i);
-        number[patch->loop.data[i]] = v;
+    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
+    /* 2. The pattern. */
+    if (!gproji_choose_pattern(f, o, sides, place, length, flat, &p)) return false;
+    done = gproji_build_patch(&patch, f->heap, &p, length);
+    /* 3. Global numbers: from the outline along the boundary, new ones inside, at the boundary's mean as yet. */
+    number = patch.uses.data, n = (int32_t)patch.loop.count;
+    for (i = 0; done && i < patch.vertices; ++i) number[i] = -1;
+    for (i = 0; done && i < n; ++i) {
+        int32_t v = gproji_outline_vertex(o, place[p.first] + i);
+        number[patch.loop.data[i]] = v;
         x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
     }
-    for (i = 0; i < patch->vertices; ++i) {
+    for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
         number[i] = f->vertices;
-        if (!gproji_add_flat(f, x, y)) return false;
+        done = gproji_add_flat(f, x, y);
     }
-    for (q = 0; q < patch->quad.count; ++q)
-        if (!gproji_ints_add(f->heap, &f->quad, number[patch->quad.data[q]])) return false;
-    return true;
-}
-
-/* Tries a pattern. 1: the patch is built and good; 0: it is not; -1: no memory. Give the patch back in any case. */
-GPROJI_INTERNAL int32_t gproji_try_pattern(gproji_filling *f, gproji_patch *patch, const gproji_outline *o,
-                                           const int32_t *place, const gproji_pattern *p, const int32_t *length) {
-    int32_t turned[GPROJI_PATCH_SIDES], i;
-    for (i = 0; i < p->sides; ++i) turned[i] = length[(i + p->first) % p->sides];
-    if (!gproji_patch_take(patch, f->heap, p->sides, turned) || !gproji_build_patch(patch, p, length)) return -1;
-    return gproji_patch_is_good(patch, o, place[p->first]);
-}
-
-/* The pattern wanted: of those that are good the `variant`-th, with flat corners under long strips, or else in a
-   ring; at last a ring around one strip. -1: no memory. */
-GPROJI_INTERNAL int32_t gproji_choose_pattern(gproji_filling *f, gproji_candidates *c, const gproji_outline *o,
-                                              int32_t sides, const int32_t *place, const int32_t *length, int32_t flat,
-                                              gproji_pattern *chosen) {
-    int32_t inner[GPROJI_PATCH_SIDES], good = 0, i, k, ring, sum = 0;
-    memset(chosen, 0, sizeof *chosen);
-    for (ring = !gproji_inner_lengths(sides, flat, length, inner); ring < 2; ++ring) {
-        gproji_find_patterns(c, sides, ring ? length : inner);
-        for (i = 0; i < c->count && good <= f->options.variant; ++i) {
-            gproji_pattern *p = &c->pattern[i];
-            gproji_patch patch;
-            int32_t outcome;
-            p->ring = ring != 0;
-            for (k = 0; k < sides && !ring; ++k)
-                if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
-            outcome = gproji_try_pattern(f, &patch, o, place, p, length);
-            gproji_patch_give(&patch);
-            if (outcome < 0) return -1;
-            if (outcome > 0) *chosen = *p, ++good;
-        }
-    }
-    if (good > 0) return 1;
-    for (i = 0; i < sides; ++i) sum += length[i];
-    chosen->sides = sides;
-    chosen->edges = chosen->rows = 1;
-    chosen->edge[0] = sum / 2 - 1;
-    chosen->bare = chosen->ring = true;
-    return 1;
-}
-
-GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o, gproji_candidates *c) {
-    int32_t place[GPROJI_PATCH_SIDES], length[GPROJI_PATCH_SIDES], flat, i;
-    int32_t sides = gproji_patch_corners(o, place, &flat);
-    gproji_pattern p;
-    gproji_patch patch;
-    bool done;
-    for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
-    if (gproji_choose_pattern(f, c, o, sides, place, length, flat, &p) < 0) return false;
-    done = gproji_try_pattern(f, &patch, o, place, &p, length) >= 0 && gproji_join_patch(f, o, place[p.first], &patch);
+    for (q = 0; done && q < patch.quad.count; ++q)
+        done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
     gproji_patch_give(&patch);
     ++f->leaves;
     return done;
-}
-
-/* The rings wanted, and what they leave as the first patch. Its outline is near the boundary as yet. */
-GPROJI_INTERNAL bool gproji_add_rings(gproji_filling *f) {
-    int32_t n = f->boundary, ring, i;
-    for (ring = 1; ring <= f->options.rings; ++ring)
-        for (i = 0; i < n; ++i) {
-            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
-            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
-            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
-            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
-            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
-                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
-                return false;
-        }
-    f->curve_vertices = f->vertices;
-    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
-    return true;
-}
-
-/* Cuts the outline into patches, then fills them: vertices of cuts come before those inside of patches. */
-GPROJI_INTERNAL gproj_code gproji_fill_patches(gproji_filling *f, gproji_candidates *c) {
-    size_t at;
-    int32_t stage, start, k;
-    for (stage = 0; stage < 2; ++stage) {
-        for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-            gproji_outline o;
-            gproji_cut_line cut;
-            if (stage == 1 && f->patch.data[at] < 0) continue; /* it has been cut */
-            o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
-            for (k = 0; k < o.count; ++k)
-                o.edge +=
-                    gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
-            if (stage == 1) {
-                if (!gproji_fill_patch(f, &o, c)) return gproji_fail_memory(f->error);
-                continue;
-            }
-            cut = gproji_find_cut(&o);
-            if (!(cut.cost < HUGE_VAL)) continue;
-            if (!gproji_make_cut(f, start, o.count, &cut)) return gproji_fail_memory(f->error);
-            f->patch.data[at] = -f->patch.data[at];
-        }
-        if (stage == 0) f->cut_vertices = f->vertices;
-    }
-    return GPROJ_OK;
 }
 
 /* -- positions -- */
@@ -18628,18 +18225,17 @@ typedef struct gproji_pairs {
     gproj_cholesky *cholesky;
     int32_t unknowns;
     int64_t count;
-    int32_t *pair;  /* 2 * count: unknowns, negative: there is none */
-    int64_t *start; /* unknowns + 1 */
+    int32_t *pair;  /* 2 * count: unknowns, negative if fixed */
+    int64_t *start; /* unknowns + 2: where columns begin */
     int32_t *row;
-    int64_t *place; /* count: of each pair in `row` and `value`; -1: nowhere */
+    int64_t *place; /* count: each pair's entry in `row` and `value`, or -1 */
     double *value;
 } gproji_pairs;
 
 GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
     memset(m, 0, sizeof *m);
     gproji_pool_start(&m->pool, f->heap);
-    m->unknowns = unknowns;
-    m->count = count;
+    m->unknowns = unknowns, m->count = count;
     m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
     m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
@@ -18676,39 +18272,34 @@ GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
 GPROJI_INLINE int32_t gproji_quad_next(int32_t corner) { return corner % 4 == 3 ? corner - 3 : corner + 1; }
 GPROJI_INLINE int32_t gproji_quad_previous(int32_t corner) { return corner % 4 == 0 ? corner + 3 : corner - 1; }
 
-/* The Laplace equation: each vertex from `fixed` on is the mean of its neighbours. `field` has `fields` numbers a
-   vertex; `side` first the right-hand sides, then the solutions, one after the other. */
-GPROJI_INTERNAL bool gproji_harmonic_system(const gproji_filling *f, gproji_pairs *m, int32_t fixed, int32_t fields,
-                                            const double *field, double *side) {
-    int32_t n = (int32_t)f->quad.count, i, k, end;
-    for (i = 0; i < n; ++i) {
-        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m->pair + 6 * (size_t)i;
+/* Solves Laplace's equation: each vertex from `fixed` on gets the mean over its neighbours in all `fields` numbers. */
+GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
+    int32_t unknowns = f->vertices - fixed, n = (int32_t)f->quad.count, i, k, end;
+    gproji_pairs m;
+    double *side = NULL;
+    bool done;
+    if (unknowns == 0) return GPROJ_OK;
+    /* 1. An edge counts once from each quad: 1 on the diagonal, -1 beside, fixed ends on the right-hand side. */
+    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)n);
+    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
+    done = side != NULL;
+    for (i = 0; done && i < n; ++i) {
+        int32_t a = f->quad.data[i], b = f->quad.data[gproji_quad_next(i)], *pair = m.pair + 6 * (size_t)i;
         pair[0] = pair[1] = pair[4] = a - fixed;
         pair[2] = pair[3] = pair[5] = b - fixed;
         for (end = 0; end < 2; ++end)
             for (k = 0; k < fields; ++k) {
                 int32_t inner = end ? a : b, outer = end ? b : a;
                 if (inner >= fixed && outer < fixed)
-                    side[(size_t)k * (size_t)m->unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
+                    side[(size_t)k * (size_t)unknowns + (size_t)(inner - fixed)] += field[outer * fields + k];
             }
     }
-    if (!gproji_pairs_analyse(m)) return false;
-    for (i = 0; i < 3 * n; ++i)
-        if (m->place[i] >= 0) m->value[m->place[i]] = i % 3 == 2 ? -1 : 1;
-    return gproj_cholesky_factor(m->cholesky, m->value) == GPROJ_FACTORED &&
-           gproj_cholesky_solve(m->cholesky, fields, side, side) == GPROJ_OK;
-}
-
-/* Sets the fields of the vertices from `fixed` on. */
-GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t fixed, int32_t fields, double *field) {
-    int32_t unknowns = f->vertices - fixed, i, k;
-    gproji_pairs m;
-    double *side = NULL;
-    bool done;
-    if (unknowns == 0) return GPROJ_OK;
-    done = gproji_pairs_take(&m, f, unknowns, 3 * (int64_t)f->quad.count);
-    if (done) side = (double *)gproji_pool_take_zeroed(&m.pool, (int64_t)fields * unknowns, sizeof *side);
-    done = side && gproji_harmonic_system(f, &m, fixed, fields, field, side);
+    done = done && gproji_pairs_analyse(&m);
+    for (i = 0; done && i < 3 * n; ++i)
+        if (m.place[i] >= 0) m.value[m.place[i]] = i % 3 == 2 ? -1 : 1;
+    /* 2. One solve for all fields. */
+    done = done && gproj_cholesky_factor(m.cholesky, m.value) == GPROJ_FACTORED &&
+           gproj_cholesky_solve(m.cholesky, fields, side, side) == GPROJ_OK;
     for (i = 0; done && i < unknowns; ++i)
         for (k = 0; k < fields; ++k)
             field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];
@@ -18716,26 +18307,25 @@ GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t f
     return done ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
-/* The distortion of the mesh in the plane. For a corner at p with neighbours q and r of a quad of wanted edge s, with
+/* Shape distortion in the plane. For a corner at p with neighbours q and r in a quad with wanted edge s, with
    a = (q - p) / s, b = (r - p) / s and D = det(a, b):
        (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X),  X = (D + sqrt(D^2 + epsilon^2)) / 2,
-   least for a square of edge s and, where epsilon = 0, infinite at D = 0. */
+   least for a square with edge s and, for epsilon = 0, infinite at D = 0. */
 typedef struct gproji_untangling {
     gproji_filling *f;
     gproji_pairs m;
-    double *edge;     /* of each quad: s */
-    double *gradient; /* 2 a vertex that moves */
+    double *edge;     /* each quad's s */
+    double *gradient; /* 2 for each vertex that moves */
     double *step;
     double *start; /* flat positions before a step */
     double epsilon;
-    double least; /* D of the worst corner, at the last evaluation */
+    double least; /* the worst corner's D, at the last evaluation */
     bool failed;  /* no memory to factor */
 } gproji_untangling;
 
 #define GPROJI_AREA_WEIGHT 0.3 /* lambda */
 
-/* The corner's derivatives by (a, b): value, gradient[4], and the convex part of the Hessian, that of y'y / (2 X)
-   with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)). */
+/* Computes a corner's distortion at z = (a, b), gradient and the Hessian's convex part; `gradient` may be NULL. */
 GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilon, double gradient[4],
                                                 double hessian[4][4]) {
     double d = z[0] * z[3] - z[1] * z[2], root = sqrt(d * d + epsilon * epsilon), x, bend, square, value, slope;
@@ -18747,8 +18337,9 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
     if (!gradient) return value;
     bend = 1 / root; /* X' / X */
     slope = weight * d / x - value * bend;
-    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0];
+    turn[0] = z[3], turn[1] = -z[2], turn[2] = -z[1], turn[3] = z[0]; /* dD/dz */
     for (i = 0; i < 4; ++i) gradient[i] = z[i] / x + slope * turn[i];
+    /* The Hessian of y'y / (2 X) with X linearised, y = (a, b, sqrt(lambda) D, sqrt(lambda)), is positive definite. */
     for (i = 0; i < 4; ++i)
         for (j = 0; j < 4; ++j) {
             double across = square * bend * bend + weight * ((1 - bend * d) * (1 - bend * d) + bend * bend);
@@ -18766,7 +18357,7 @@ GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t cor
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
 }
 
-/* The sum over all corners, and the worst D. */
+/* Sums the distortion over all corners, and finds the worst D. */
 GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
     int32_t n = (int32_t)u->f->quad.count, c;
     double sum = 0, z[4];
@@ -18779,11 +18370,12 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
     return sum;
 }
 
-/* Adds one quad's gradient and Hessian: 8 numbers, x and y of its vertices. */
+/* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
 GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
-    for (corner = 0; corner < 4; ++corner) { /* z = (q, r - p, p) / s: each of them in two places */
+    for (corner = 0; corner < 4;
+         ++corner) { /* z = (q, r) / s - (p, p) / s: each entry adds to q or r and takes from p */
         int32_t p = corner, ends[2], a, b;
         ends[0] = (corner + 1) % 4, ends[1] = (corner + 3) % 4;
         gproji_corner_edges(u, 4 * quad + corner, z);
@@ -18809,7 +18401,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     }
 }
 
-/* A step of Newton's method, shortened until the distortion is less. False where it gains less than this part of it. */
+/* Takes a Newton step, halved until it gains enough. False if it gains less than `part` of the distortion. */
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
@@ -18825,107 +18417,67 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     before = gproji_distortion(u);
     slope = gproji_dot(u->gradient, u->step, n);
     memcpy(u->start, moving, n * sizeof *moving);
-    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
+    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) { /* Armijo's rule */
         for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
         if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
     }
     memcpy(moving, u->start, n * sizeof *moving);
-    gproji_distortion(u);
+    gproji_distortion(u); /* for `least` */
     return false;
 }
 
-/* The wanted edge of each quad: that of the boundary, harmonic inside. */
-GPROJI_INTERNAL gproj_code gproji_find_sizes(gproji_untangling *u) {
-    gproji_filling *f = u->f;
-    int32_t i, quads = (int32_t)f->quad.count / 4;
-    double *size = u->start; /* has room for it */
-    gproj_code code;
-    for (i = 0; i < f->boundary; ++i)
-        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
-                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
-    code = gproji_fill_harmonically(f, f->boundary, 1, size);
-    for (i = 0; i < quads && !code; ++i) {
-        const int32_t *v = f->quad.data + 4 * (size_t)i;
-        u->edge[i] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
-    }
-    return code;
-}
-
-GPROJI_INTERNAL gproj_code gproji_untangle(gproji_filling *f, gproji_untangling *u) {
-    int32_t quads = (int32_t)f->quad.count / 4, q, i, j, n;
-    gproj_code code = gproji_find_sizes(u);
-    if (code) return code;
-    for (q = 0, n = 0; q < quads; ++q)
-        for (i = 0; i < 8; ++i)
-            for (j = 0; j <= i; ++j, ++n) {
-                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
-                u->m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
-                u->m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
-            }
-    if (!gproji_pairs_analyse(&u->m)) return gproji_fail_memory(f->error);
-    u->epsilon = 1;
-    for (i = 0; i < GPROJI_UNTANGLE_STEPS; ++i) { /* along the minima for ever smaller epsilon */
-        if (gproji_untangle_step(u, u->epsilon > 0 ? 1e-2 : 1e-6)) continue;
-        if (u->failed) return gproji_fail_memory(f->error);
-        if (u->epsilon == 0 || (u->least <= 0 && u->epsilon < 1e-6)) break;
-        u->epsilon = u->least > 10 * u->epsilon ? 0 : 0.3 * u->epsilon;
-    }
-    return GPROJ_OK;
-}
-
-/* Do all corners of all quads turn left? */
-GPROJI_INTERNAL bool gproji_is_untangled(const gproji_filling *f) {
-    int32_t n = (int32_t)f->quad.count, i;
-    for (i = 0; i < n; ++i)
-        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
-                           f->quad.data[gproji_quad_previous(i)]) > 0))
-            return false;
-    return true;
-}
-
+/* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
 GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
-    int32_t unknowns = 2 * (f->vertices - f->boundary);
+    int32_t unknowns = 2 * (f->vertices - f->boundary), quads = (int32_t)f->quad.count / 4, q, i, j, n;
     gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
     gproji_untangling u;
+    double *size;
+    if (code || unknowns == 0) return code;
     memset(&u, 0, sizeof u);
     u.f = f;
-    if (code || unknowns == 0) return code;
-    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)(f->quad.count / 4))) {
-        u.edge = (double *)gproji_pool_take(&u.m.pool, (int64_t)f->quad.count / 4, sizeof *u.edge);
+    if (gproji_pairs_take(&u.m, f, unknowns, GPROJI_QUAD_ENTRIES * (int64_t)quads)) {
+        u.edge = (double *)gproji_pool_take(&u.m.pool, quads, sizeof *u.edge);
         u.gradient = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.gradient);
         u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
         u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
     }
-    code = u.edge && u.gradient && u.step && u.start ? gproji_untangle(f, &u) : gproji_fail_memory(f->error);
+    if (!(u.edge && u.gradient && u.step && u.start)) code = gproji_fail_memory(f->error);
+    /* 1. Wanted edges: the boundary's own, harmonic inside. */
+    size = u.start; /* still free, and large enough */
+    for (i = 0; !code && i < f->boundary; ++i)
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
+    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, size);
+    for (q = 0; !code && q < quads; ++q) {
+        const int32_t *v = f->quad.data + 4 * (size_t)q;
+        u.edge[q] = 0.25 * (size[v[0]] + size[v[1]] + size[v[2]] + size[v[3]]);
+    }
+    /* 2. The Hessian's pattern. */
+    for (q = 0, n = 0; !code && q < quads; ++q)
+        for (i = 0; i < 8; ++i)
+            for (j = 0; j <= i; ++j, ++n) {
+                int32_t a = f->quad.data[4 * q + i / 2] - f->boundary, b = f->quad.data[4 * q + j / 2] - f->boundary;
+                u.m.pair[2 * (int64_t)n] = a < 0 ? -1 : 2 * a + i % 2;
+                u.m.pair[2 * (int64_t)n + 1] = b < 0 ? -1 : 2 * b + j % 2;
+            }
+    if (!code && !gproji_pairs_analyse(&u.m)) code = gproji_fail_memory(f->error);
+    /* 3. Along the minima for ever smaller epsilon, to 0 as soon as no corner is near turning over. */
+    u.epsilon = 1;
+    for (i = 0; !code && i < GPROJI_UNTANGLE_STEPS; ++i) {
+        if (gproji_untangle_step(&u, u.epsilon > 0 ? 1e-2 : 1e-6)) continue;
+        if (u.failed) code = gproji_fail_memory(f->error);
+        if (u.epsilon == 0 || (u.least <= 0 && u.epsilon < 1e-6)) break;
+        u.epsilon = u.least > 10 * u.epsilon ? 0 : 0.3 * u.epsilon;
+    }
     gproji_pairs_give(&u.m);
     return code;
 }
 
 /* -- the mesh -- */
 
-/* Positions in space: the curve at the boundary; inside those of the plane, with harmonic heights. */
-GPROJI_INTERNAL gproj_code gproji_lift_vertices(gproji_filling *f, double *height, double *position) {
-    int32_t v;
-    gproj_code code;
-    for (v = 0; v < f->boundary; ++v) {
-        double d[3];
-        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
-        height[v] = gproji_dot3(d, f->normal);
-    }
-    code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
-    for (v = f->boundary; v < f->vertices && !code; ++v) {
-        double *out = position + 3 * (size_t)v;
-        gproji_copy3(f->points, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
-        gproji_add_scaled3(height[v], f->normal, out);
-    }
-    return code;
-}
-
+/* Makes the mesh: positions in space, faces, and the sides as polylines. */
 GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
-    int32_t faces = (int32_t)f->quad.count / 4, side, i;
+    int32_t faces = (int32_t)f->quad.count / 4, side, i, v;
     gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
     gproji_soup soup;
     gproji_pool pool;
@@ -18943,7 +18495,22 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
             taken = gproji_ints_add(f->heap, &line, i % f->boundary);
         taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
     }
-    code = taken ? gproji_lift_vertices(f, height, position) : gproji_fail_memory(f->error);
+    code = taken ? GPROJ_OK : gproji_fail_memory(f->error);
+    /* Heights over the plane: the curve's, harmonic inside. */
+    for (v = 0; !code && v < f->boundary; ++v) {
+        double d[3];
+        gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
+        height[v] = gproji_dot3(d, f->normal);
+    }
+    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
+    if (!code) memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    for (v = f->boundary; !code && v < f->vertices; ++v) {
+        double *out = position + 3 * (size_t)v;
+        gproji_copy3(f->points, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(height[v], f->normal, out);
+    }
     if (!code) {
         gproji_fill(degree, faces, 4);
         soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
@@ -18959,9 +18526,7 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
 
 GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
     int32_t i, n = (int32_t)f->quad.count;
-    info->boundary_count = f->boundary;
-    info->side_count = f->sides;
-    info->patch_count = f->leaves;
+    info->boundary_count = f->boundary, info->side_count = f->sides, info->patch_count = f->leaves;
     for (i = f->boundary; i < f->vertices; ++i) {
         int32_t valence = gproj_mesh_valence(mesh, i);
         info->irregular_count += valence != 4;
@@ -18977,63 +18542,67 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
     }
 }
 
-/* The largest valence inside. */
-GPROJI_INTERNAL gproj_code gproji_find_valence(gproji_filling *f, int32_t *most) {
-    int32_t *count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
-    size_t i;
-    if (!count) return gproji_fail_memory(f->error);
-    for (*most = 0, i = 0; i < f->quad.count; ++i)
-        if (f->quad.data[i] >= f->boundary) *most = gproji_max(*most, ++count[f->quad.data[i]]);
-    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
-    return GPROJ_OK;
-}
-
-/* The combinatorics wanted, or one of the next where its valences are large, or its quads cannot all be turned the
-   right way up. Sets whether it is good. */
-GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, gproji_candidates *c, int32_t valence, bool *good) {
-    int32_t most = 0;
+/* Fills the outline in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
+    int32_t n = f->boundary, ring, start, i, most = 0, *count;
+    size_t at;
     gproj_code code;
-    f->polygon.count = (size_t)f->boundary;
-    f->patch.count = 1;
-    f->patch.data[0] = f->boundary;
-    f->quad.count = 0;
-    f->vertices = f->boundary;
-    f->leaves = 0;
+    f->polygon.count = (size_t)n, f->patch.count = 1, f->patch.data[0] = n;
+    f->quad.count = 0, f->vertices = n, f->leaves = 0;
     *good = false;
-    code = gproji_add_rings(f) ? gproji_fill_patches(f, c) : gproji_fail_memory(f->error);
-    if (!code) code = gproji_find_valence(f, &most);
-    if (code || most > valence) return code;
+    /* 1. Rings, near the boundary as yet, and the outline inside them. */
+    for (ring = 1; ring <= f->options.rings; ++ring)
+        for (i = 0; i < n; ++i) {
+            int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
+                return gproji_fail_memory(f->error);
+        }
+    f->curve_vertices = f->vertices;
+    for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
+    /* 2. All cuts before the first patch: vertices on cuts are numbered before those inside. */
+    if (!gproji_cut_outlines(f)) return gproji_fail_memory(f->error);
+    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+        gproji_outline o;
+        if (f->patch.data[at] < 0) continue;
+        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
+        if (!gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
+    }
+    /* 3. Valences inside, before the work on positions. */
+    count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    if (!count) return gproji_fail_memory(f->error);
+    for (at = 0; at < f->quad.count; ++at)
+        if (f->quad.data[at] >= f->boundary) most = gproji_max(most, ++count[f->quad.data[at]]);
+    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    if (most > valence) return GPROJ_OK;
+    /* 4. Positions: good if all corners turn left. */
     code = gproji_place_vertices(f);
-    *good = gproji_is_untangled(f);
+    n = (int32_t)f->quad.count;
+    for (i = 0; i < n; ++i)
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+                           f->quad.data[gproji_quad_previous(i)]) > 0))
+            break;
+    *good = i == n;
     return code;
 }
 
-GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f, gproji_candidates *c) {
+/* Tries variants from the wanted one on, with valences up to 5, then 6, then any. */
+GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
     static const int32_t valence[3] = {5, 6, INT32_MAX};
     int32_t variant = f->options.variant, pass, tries;
+    bool good = false;
+    gproj_code code = GPROJ_OK;
     for (pass = 0; pass < 3; ++pass)
-        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries; ++tries) {
-            bool good;
-            gproj_code code;
+        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries && !code && !good; ++tries) {
             f->options.variant = variant + tries;
-            code = gproji_try_filling(f, c, valence[pass], &good);
-            if (code || good) return code;
+            code = gproji_try_filling(f, valence[pass], &good);
         }
+    if (code || good) return code;
     return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                        "no filling without a quad turned over was found; divide the sides finer or mark other corners");
-}
-
-GPROJI_INTERNAL gproj_code gproji_fill_curve(gproji_filling *f, gproji_mesh_object *object, gproj_fill_info *info) {
-    gproji_candidates *c;
-    gproj_code code = gproji_check_curve(f);
-    if (!code) code = gproji_divide_curve(f);
-    if (code) return code;
-    c = (gproji_candidates *)gproji_take(f->heap, 1, sizeof *c);
-    code = c ? gproji_fill_outline(f, c) : gproji_fail_memory(f->error);
-    gproji_give(f->heap, c, 1, sizeof *c);
-    if (!code) code = gproji_build_filling(f, object);
-    if (!code) gproji_describe_filling(f, &object->mesh, info);
-    return code;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
@@ -19048,7 +18617,13 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
-    code = gproji_fill_curve(&f, object, &found);
+    code = gproji_check_curve(&f);
+    if (!code) code = gproji_find_corners(&f);
+    if (!code) code = gproji_divide_sides(&f);
+    if (!code) code = gproji_divide_curve(&f);
+    if (!code) code = gproji_fill_outline(&f);
+    if (!code) code = gproji_build_filling(&f, object);
+    if (!code) gproji_describe_filling(&f, &object->mesh, &found);
     gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
     gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
     gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));

@@ -1,5 +1,6 @@
 /* test_measure.c - >>measure: every figure against one that is known or computed in another way. */
 #include "gprojt_form.h"
+#include <time.h>
 
 static gproj_mesh *gprojt_polygon(int32_t count, const double *x) {
     gprojt_soup s;
@@ -521,6 +522,126 @@ GPROJT_TEST(crossed_faces_as_in_measure) {
     GPROJT_CHECK(crossed > 2000 && crossed < 15000);
 }
 
+/* Do two sides of a flat outline (z = 0) that are not neighbours cross? Every side with every other. */
+static bool gprojt_outline_crosses(const double *x, int32_t n) {
+    int32_t i, j, end;
+    for (i = 0; i < n; ++i)
+        for (j = i + 2; j < n; ++j) {
+            const double *a = x + 3 * i, *b = x + 3 * ((i + 1) % n), *c = x + 3 * j, *d = x + 3 * ((j + 1) % n);
+            double margin = 1e-12 * hypot(b[0] - a[0], b[1] - a[1]) * hypot(d[0] - c[0], d[1] - c[1]), area[4];
+            if ((j + 1) % n == i) continue;
+            for (end = 0; end < 2; ++end) {
+                const double *p = end ? d : c, *q = end ? b : a;
+                area[end] = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                area[2 + end] = (d[0] - c[0]) * (q[1] - c[1]) - (d[1] - c[1]) * (q[0] - c[0]);
+            }
+            if (fabs(area[0]) > margin && fabs(area[1]) > margin && fabs(area[2]) > margin && fabs(area[3]) > margin &&
+                area[0] * area[1] < 0 && area[2] * area[3] < 0)
+                return true;
+        }
+    return false;
+}
+
+/* Outlines by polar coordinates: n corners at growing angles never cross; some are then spoiled at few corners. */
+static void gprojt_random_outline(int32_t n, int32_t kind, uint64_t *seed, double *x) {
+    int32_t i, at = (int32_t)(n * gprojt_uniform(seed)), far = (int32_t)(n * gprojt_uniform(seed));
+    double rough = kind % 3 == 0 ? 0.9 : kind % 3 == 1 ? 0.05 : 0, turns = kind % 7 == 6 ? 6 : 2, k;
+    for (i = 0; i < n; ++i) {
+        double angle = turns * 3.141592653589793 * (i + 0.5 * gprojt_uniform(seed)) / n;
+        double radius = (turns > 2 ? 0.1 + 0.9 * i / n : 1) * (1 - rough * gprojt_uniform(seed));
+        x[3 * i] = radius * cos(angle), x[3 * i + 1] = radius * sin(angle), x[3 * i + 2] = 0;
+    }
+    if (kind % 5 == 1) /* a spike that may or may not come out on the other side */
+        for (i = 0; i < 2; ++i) x[3 * at + i] *= -1.1 * gprojt_uniform(seed);
+    if (kind % 5 == 2) /* two neighbours in the wrong order */
+        for (i = 0; i < 2; ++i)
+            k = x[3 * at + i], x[3 * at + i] = x[3 * ((at + 1) % n) + i], x[3 * ((at + 1) % n) + i] = k;
+    if (kind % 5 == 3) /* a corner moves elsewhere */
+        for (i = 0; i < 2; ++i) x[3 * at + i] = 1.02 * x[3 * far + i];
+}
+
+static gproj_mesh *gprojt_outline_mesh(int32_t n, const double *x) {
+    int32_t *corner = (int32_t *)malloc((size_t)n * sizeof *corner), i;
+    gproj_mesh *mesh;
+    for (i = 0; i < n; ++i) corner[i] = i;
+    mesh = gproj_mesh_create(n, x, 1, &n, corner, NULL, NULL);
+    free(corner);
+    return mesh;
+}
+
+/* Faces with many corners are compared by boxes: the outcome is that of the plain comparison. */
+GPROJT_TEST(bow_ties_with_many_corners) {
+    uint64_t seed = 11;
+    int32_t crossed = 0, all = 0, kind;
+    double x[3 * 400];
+    for (kind = 0; kind < 2000; ++kind, ++all) {
+        int32_t n = 3 + (int32_t)((kind % 4 ? 397 : 40) * gprojt_uniform(&seed));
+        bool crosses;
+        gproj_mesh *mesh;
+        gprojt_random_outline(n, kind, &seed, x);
+        crosses = gprojt_outline_crosses(x, n);
+        mesh = gprojt_outline_mesh(n, x);
+        GPROJT_REQUIRE(mesh);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).bow_tie_faces == crosses);
+        crossed += crosses;
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(crossed > all / 5 && crossed < 4 * all / 5);
+}
+
+/* A prism with n sides: at each corner the normals of a cap and of two sides. Its caps are large faces. */
+static gproj_mesh *gprojt_prism(int32_t n) {
+    gprojt_soup s;
+    int32_t *corner = (int32_t *)malloc((size_t)n * sizeof *corner), i;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < 2 * n; ++i) {
+        double angle = 2 * 3.141592653589793 * (i % n) / n;
+        gprojt_add_vertex(&s, cos(angle), sin(angle), i / n);
+    }
+    for (i = 0; i < n; ++i) corner[i] = n - 1 - i;
+    gprojt_add_face(&s, n, corner);
+    for (i = 0; i < n; ++i) corner[i] = n + i;
+    gprojt_add_face(&s, n, corner);
+    for (i = 0; i < n; ++i) gprojt_add_quad(&s, i, (i + 1) % n, n + (i + 1) % n, n + i);
+    free(corner);
+    return gprojt_mesh_of(s);
+}
+
+GPROJT_TEST(faces_with_very_many_corners) {
+    static const int32_t counts[] = {5, 32, 33, 200, 30000};
+    clock_t start = clock();
+    double *x, turn;
+    gproj_mesh *mesh;
+    int32_t i, n;
+    for (i = 0; i < 5; ++i) {
+        gproj_measures m;
+        n = counts[i], turn = 2 * 3.141592653589793 / n;
+        mesh = gprojt_prism(n);
+        m = gproj_measure(mesh, mesh->position, NULL);
+        /* e_z and two horizontal unit vectors make a triangle with base 2 sin(turn / 2) and squared height
+           1 + cos(turn / 2)^2 */
+        GPROJT_NEAR(m.gauss_variation / (2 * n * sin(turn / 2) * sqrt(1 + cos(turn / 2) * cos(turn / 2))), 1, 1e-9);
+        GPROJT_CHECK(m.folded_edges == 0 && m.bow_tie_faces == 0 && m.turned_faces == 0 && m.degenerate_faces == 0);
+        GPROJT_CHECK(gproj_measure_spoiled(mesh, mesh->position).total == 0);
+        GPROJT_NEAR(m.conicality_max, 0, 0);
+        GPROJT_NEAR(m.max_face_area / (0.5 * n * sin(turn)), 1, 1e-12);
+        gproj_mesh_destroy(mesh);
+    }
+    n = 100000; /* the plain comparison would take minutes */
+    x = (double *)malloc(3 * (size_t)n * sizeof *x);
+    for (i = 0; i < 3 * n; ++i) {
+        double angle = 2 * 3.141592653589793 * (i / 3) / n, radius = 1 + 0.1 * sin(1000 * angle);
+        x[i] = i % 3 == 2 ? 0 : radius * (i % 3 ? sin(angle) : cos(angle));
+    }
+    mesh = gprojt_outline_mesh(n, x);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).bow_tie_faces == 0);
+    mesh->position[3] = -1.2;
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).bow_tie_faces == 1);
+    gproj_mesh_destroy(mesh);
+    free(x);
+    GPROJT_CHECK((double)(clock() - start) / CLOCKS_PER_SEC < 20);
+}
+
 int main(void) {
     GPROJT_RUN(planarity_of_a_lifted_square);
     GPROJT_RUN(planarity_is_of_the_least_squares_plane);
@@ -535,6 +656,8 @@ int main(void) {
     GPROJT_RUN(folded_edges);
     GPROJT_RUN(bow_ties);
     GPROJT_RUN(bow_ties_without_area);
+    GPROJT_RUN(bow_ties_with_many_corners);
+    GPROJT_RUN(faces_with_very_many_corners);
     GPROJT_RUN(turned_and_degenerate_faces);
     GPROJT_RUN(deviation_and_displacement);
     GPROJT_RUN(gauss_variation);
