@@ -12771,17 +12771,17 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
 /* ============================================================================================================
-   >>mesh   Half-edge meshes of any polygons. Uses platform, memory, error, vector.
+   >>mesh   Half-edge meshes from any polygons. Uses platform, memory, error, vector.
 
-   The half-edge structure is Mantyla's (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are
-   twins, edges are numbered as they first appear along the faces. Equal edges are found by counting sort on their
-   smaller vertex and a table of the larger one: linear time and no hashing, so the result depends on the input
-   alone. A mesh is built in steps, each a function below: check, match, orient, link, fans, loops.
-   Invariants of a finished mesh: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`;
-   origin[next[h]] = origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it
-   is vertex_halfedge; the faces of a vertex form one fan. */
+   Mantyla's half-edge structure (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are twins, edges
+   are numbered as they first appear along the faces. Equal edges are found by counting sort on their smaller vertex and
+   a table by the larger one: linear time and no hashing, so the result depends on the input alone. Building takes five
+   steps: check (gproji_mesh_build, gproji_mesh_read_corners), match, orient, link, loops (gproji_mesh_connect).
+   Invariants: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`; origin[next[h]] =
+   origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it is vertex_halfedge;
+   the faces at a vertex form one fan. */
 
-/* Coordinates beyond this are refused, so that squared areas do not overflow. */
+/* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
 /* 3 * vertices and 2 * (corners of all faces) must be int32_t. */
 enum {
@@ -12789,7 +12789,7 @@ enum {
     GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
 };
 
-/* The owner of a gproj_mesh. The arrays are those that `mesh` shows read-only; their lengths follow from its counts. */
+/* Owns a gproj_mesh: the arrays that `mesh` shows read-only, whose lengths follow from the counts there. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_mesh mesh;
@@ -12806,71 +12806,39 @@ GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
     return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
 }
 
-/* Polygons as they come: the builder's input. */
+/* Polygons without adjacency: the builder's input. */
 typedef struct gproji_soup {
     int32_t vertex_count;
     int32_t face_count;
-    int32_t corner_count;
+    int32_t corner_count; /* set by gproji_mesh_build */
     const double *position;
     const int32_t *face_degree;
     const int32_t *face_vertex;
 } gproji_soup;
 
-/* The work arrays of the builder, all given back before it returns. */
+/* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
-    int32_t *corner_vertex; /* corner_count: face_vertex, with faces turned round where they were against the others */
-    int32_t *corner_face;   /* corner_count: the face of each corner */
-    int32_t *corner_next;   /* corner_count: the next corner of the same face */
+    int32_t *corner_vertex; /* corner_count: face_vertex; turned faces are reversed here */
+    int32_t *corner_face;   /* corner_count: the corner's face */
+    int32_t *corner_next;   /* corner_count: the next corner in the same face */
     int32_t *corner_edge;   /* corner_count: the edge from this corner's vertex to the next one's */
-    int32_t *corner_order;  /* corner_count: the corners sorted by the smaller vertex of their edge; later a queue */
-    int32_t *edge_corner;   /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
-    int32_t *face_start;    /* face_count + 1: the first corner of each face */
-    int32_t *face_state;    /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
-    int32_t *mark;          /* vertex_count: the last element that touched a vertex, -1 at the start of each step */
-    int32_t *slot; /* vertex_count + 1: counters and starts of the counting sort, then edges by larger vertex */
+    int32_t *corner_order; /* corner_count: sorted by the smaller vertex of the corner's edge; later a queue of faces */
+    int32_t *edge_corner;  /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
+    int32_t *face_start;   /* face_count + 1: the first corner of each face */
+    int32_t *face_state;   /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
+    int32_t *mark;         /* vertex_count: scratch that each step sets anew */
+    int32_t *slot;         /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
-
-GPROJI_INTERNAL void gproji_mesh_work_give(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
-    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
-           vertices = (size_t)soup->vertex_count;
-    gproji_give(heap, work->corner_vertex, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_face, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_next, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_edge, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_order, corners, sizeof(int32_t));
-    gproji_give(heap, work->edge_corner, corners, 2 * sizeof(int32_t));
-    gproji_give(heap, work->face_start, faces + 1, sizeof(int32_t));
-    gproji_give(heap, work->face_state, faces, sizeof(int32_t));
-    gproji_give(heap, work->mark, vertices, sizeof(int32_t));
-    gproji_give(heap, work->slot, vertices + 1, sizeof(int32_t));
-    memset(work, 0, sizeof *work);
-}
-
-/* False when there is no memory; what was taken is given back by gproji_mesh_work_give. */
-GPROJI_INTERNAL bool gproji_mesh_work_take(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
-    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
-           vertices = (size_t)soup->vertex_count;
-    memset(work, 0, sizeof *work);
-    return (work->corner_vertex = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_face = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_next = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_edge = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_order = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->edge_corner = (int32_t *)gproji_take(heap, corners, 2 * sizeof(int32_t))) != NULL &&
-           (work->face_start = (int32_t *)gproji_take(heap, faces + 1, sizeof(int32_t))) != NULL &&
-           (work->face_state = (int32_t *)gproji_take(heap, faces, sizeof(int32_t))) != NULL &&
-           (work->mark = (int32_t *)gproji_take(heap, vertices, sizeof(int32_t))) != NULL &&
-           (work->slot = (int32_t *)gproji_take(heap, vertices + 1, sizeof(int32_t))) != NULL;
-}
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
     for (i = 0; i < count; ++i) array[i] = value;
 }
 
-/* -- the checks -- */
+/* -- checks -- */
 
-GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *what,
+/* Refuses coordinates that are not finite or too large; the sentence calls the points `noun`. */
+GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *noun,
                                                   gproj_error *error) {
     int32_t i, k;
     for (i = 0; i < count; ++i) {
@@ -12879,11 +12847,11 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
             if (!gproji_is_finite(x)) {
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                                   "coordinate %s of %s %d is %g; give it a finite value", axis, what, i, x);
+                                   "coordinate %s of %s %d is %g; give it a finite value", axis, noun, i, x);
             }
             if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX) {
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                                   "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, what,
+                                   "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, noun,
                                    i, x);
             }
         }
@@ -12891,31 +12859,11 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
     return GPROJ_OK;
 }
 
-/* Degrees and their sum, before any corner is read. Sets corner_count. */
-GPROJI_INTERNAL gproj_code gproji_check_degrees(gproji_soup *soup, gproj_error *error) {
-    int64_t sum = 0;
-    int32_t f;
-    for (f = 0; f < soup->face_count; ++f) {
-        if (soup->face_degree[f] < 3) {
-            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
-        }
-        sum += soup->face_degree[f];
-        if (sum > GPROJI_CORNERS_MAX) {
-            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
-                               "the faces up to face %d have more than %d corners; split the mesh", f,
-                               (int32_t)GPROJI_CORNERS_MAX);
-        }
-    }
-    soup->corner_count = (int32_t)sum;
-    return GPROJ_OK;
-}
-
-/* Indices in range, no vertex twice in a face; fills the corner arrays. */
+/* Fills the corner arrays and face_start; refuses indices beyond the vertices and a vertex twice in a face. */
 GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gproji_mesh_work *work,
                                                     gproj_error *error) {
     int32_t f, k, c = 0;
-    gproji_fill(work->mark, soup->vertex_count, -1);
+    gproji_fill(work->mark, soup->vertex_count, -1); /* the last face that named each vertex */
     for (f = 0; f < soup->face_count; ++f) {
         work->face_start[f] = c;
         for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
@@ -12943,10 +12891,12 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gpr
 
 /* -- edges -- */
 
+/* The vertex at which a corner's edge ends. */
 GPROJI_INLINE int32_t gproji_corner_head(const gproji_mesh_work *work, int32_t c) {
     return work->corner_vertex[work->corner_next[c]];
 }
 
+/* Refuses an edge with more than two faces, given the third corner there; the sentence names three faces. */
 GPROJI_INTERNAL gproj_code gproji_fail_edge(const gproji_soup *soup, const gproji_mesh_work *work, int32_t corner,
                                             gproj_error *error) {
     int32_t a = work->corner_vertex[corner], b = gproji_corner_head(work, corner), faces[3] = {0, 0, 0}, count = 0, c;
@@ -12963,173 +12913,150 @@ GPROJI_INTERNAL gproj_code gproji_fail_edge(const gproji_soup *soup, const gproj
         count > 3 ? ", ..." : "");
 }
 
-/* Sorts the corners by the smaller vertex of their edge, keeping their order within a vertex (counting sort). On return
-   slot[v]..slot[v + 1] - 1 are the places of v in corner_order. */
-GPROJI_INTERNAL void gproji_mesh_sort_corners(const gproji_soup *soup, gproji_mesh_work *work) {
-    int32_t c, v, sum = 0, count;
-    memset(work->slot, 0, ((size_t)soup->vertex_count + 1) * sizeof(int32_t));
-    for (c = 0; c < soup->corner_count; ++c) {
-        work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
-    }
-    for (v = 0; v <= soup->vertex_count; ++v) {
-        count = work->slot[v];
-        work->slot[v] = sum;
-        sum += count;
-    }
-    for (c = 0; c < soup->corner_count; ++c) {
-        work->corner_order[work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
-    }
-}
-
 /* Numbers the edges in the order in which they first appear along the faces: fills corner_edge and edge_corner. */
 GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mesh_work *work, int32_t *edge_count,
                                              gproj_error *error) {
-    int32_t i, c, edges = 0, third = -1;
-    gproji_mesh_sort_corners(soup, work);
-    /* 1. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
-       the corners of the smaller vertex a are passed, which mark[b] = a says. */
-    gproji_fill(work->mark, soup->vertex_count, -1);
+    int32_t i, c, v, sum = 0, edges = 0, third = -1, *slot = work->slot, *mark = work->mark;
+    /* 1. Sort the corners by the smaller vertex of their edge; equal ones keep their order. */
+    gproji_fill(slot, soup->vertex_count + 1, 0);
+    for (c = 0; c < soup->corner_count; ++c) {
+        slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
+    }
+    for (v = 0; v <= soup->vertex_count; ++v) {
+        int32_t count = slot[v];
+        slot[v] = sum;
+        sum += count;
+    }
+    for (c = 0; c < soup->corner_count; ++c) {
+        work->corner_order[slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
+    }
+    /* 2. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
+       the loop passes smaller vertex a, which mark[b] = a says. */
+    gproji_fill(mark, soup->vertex_count, -1);
     for (i = 0; i < soup->corner_count; ++i) {
-        int32_t u, v, a, b;
+        int32_t u, a, b;
         c = work->corner_order[i];
         u = work->corner_vertex[c], v = gproji_corner_head(work, c);
         a = gproji_min(u, v), b = gproji_max(u, v);
-        if (work->mark[b] != a) {
-            work->mark[b] = a;
-            work->slot[b] = c;
+        if (mark[b] != a) {
+            mark[b] = a;
+            slot[b] = c;
         }
-        work->corner_edge[c] = work->slot[b];
+        work->corner_edge[c] = slot[b];
     }
-    /* 2. Number those in order, and give the others their edge. */
+    /* 3. Number the first corners in order, and give the others their edge. */
     for (c = 0; c < soup->corner_count; ++c) {
-        int32_t first = work->corner_edge[c], e;
-        if (first == c) {
-            work->corner_edge[c] = edges;
-            work->edge_corner[2 * edges] = c;
-            work->edge_corner[2 * edges + 1] = -1;
-            ++edges;
-            continue;
-        }
-        e = work->corner_edge[first];
+        int32_t first = work->corner_edge[c], e = first == c ? edges++ : work->corner_edge[first];
         work->corner_edge[c] = e;
-        if (work->edge_corner[2 * e + 1] < 0)
+        if (first == c) {
+            work->edge_corner[2 * e] = c;
+            work->edge_corner[2 * e + 1] = -1;
+        } else if (work->edge_corner[2 * e + 1] < 0) {
             work->edge_corner[2 * e + 1] = c;
-        else if (third < 0)
+        } else if (third < 0) {
             third = c;
+        }
     }
     *edge_count = edges;
     return third < 0 ? GPROJ_OK : gproji_fail_edge(soup, work, third, error);
 }
 
-/* -- orientation -- */
-
-/* Reaches all faces of the first face's component and decides which must be turned round. `queue` has room for all
-   faces. */
-GPROJI_INTERNAL gproj_code gproji_mesh_orient_component(gproji_mesh_work *work, int32_t first, int32_t *queue,
-                                                        gproj_error *error) {
-    int32_t head = 0, tail = 0, c;
-    queue[tail++] = first;
-    work->face_state[first] = 0;
-    while (head < tail) {
-        int32_t f = queue[head++];
-        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
-            int32_t e = work->corner_edge[c], other = work->edge_corner[2 * e], g, state;
-            if (other == c) other = work->edge_corner[2 * e + 1];
-            if (other < 0) continue;
-            g = work->corner_face[other];
-            /* neighbours agree when they run along their edge in opposite directions */
-            state = work->face_state[f] ^ (work->corner_vertex[other] == work->corner_vertex[c] ? 1 : 0);
-            if (work->face_state[g] < 0) {
-                work->face_state[g] = state;
-                queue[tail++] = g;
-            } else if (work->face_state[g] != state) {
-                return gproji_fail(error, GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, g,
-                                   "faces %d and %d cannot agree on an outer side at their edge %d-%d, as on a Moebius "
-                                   "strip; cut the mesh open there",
-                                   gproji_min(f, g), gproji_max(f, g), work->corner_vertex[c],
-                                   gproji_corner_head(work, c));
+/* Makes all faces in a component agree with the first one. Turned faces change the order of the corners, so the edges
+   must then be matched again. */
+GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_mesh_work *work, gproj_mesh *mesh,
+                                              gproj_error *error) {
+    int32_t *queue = work->corner_order, *state = work->face_state, first, f, c;
+    /* 1. Breadth-first search from the first face of each component. */
+    gproji_fill(state, soup->face_count, -1);
+    for (first = 0; first < soup->face_count; ++first) {
+        int32_t head = 0, tail = 0;
+        if (state[first] >= 0) continue;
+        mesh->component_count++;
+        state[first] = 0;
+        queue[tail++] = first;
+        while (head < tail) {
+            f = queue[head++];
+            for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
+                int32_t e = work->corner_edge[c], other = work->edge_corner[2 * e], g, wanted;
+                if (other == c) other = work->edge_corner[2 * e + 1];
+                if (other < 0) continue;
+                g = work->corner_face[other];
+                /* neighbours agree when they run along their edge in opposite directions */
+                wanted = state[f] ^ (work->corner_vertex[other] == work->corner_vertex[c] ? 1 : 0);
+                if (state[g] < 0) {
+                    state[g] = wanted;
+                    queue[tail++] = g;
+                } else if (state[g] != wanted) {
+                    return gproji_fail(error, GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, g,
+                                       "faces %d and %d cannot agree on an outer side at their edge %d-%d, as on a "
+                                       "Moebius strip; cut the mesh open there",
+                                       gproji_min(f, g), gproji_max(f, g), work->corner_vertex[c],
+                                       gproji_corner_head(work, c));
+                }
             }
         }
     }
-    return GPROJ_OK;
-}
-
-/* Turns a face's corners round; the first one stays. */
-GPROJI_INTERNAL void gproji_mesh_turn_face(gproji_mesh_work *work, int32_t f) {
-    int32_t i = work->face_start[f] + 1, j = work->face_start[f + 1] - 1, v;
-    for (; i < j; ++i, --j) {
-        v = work->corner_vertex[i];
-        work->corner_vertex[i] = work->corner_vertex[j];
-        work->corner_vertex[j] = v;
-    }
-}
-
-/* Makes all faces of each component agree with its first one. Turned faces change the order of the corners, so the
-   edges must then be matched again. */
-GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_mesh_work *work, gproj_mesh *mesh,
-                                              gproj_error *error) {
-    int32_t f;
-    gproj_code code;
-    gproji_fill(work->face_state, soup->face_count, -1);
+    /* 2. Turn faces round. The first corner stays, so that face_halfedge begins as the input does. */
     for (f = 0; f < soup->face_count; ++f) {
-        if (work->face_state[f] >= 0) continue;
-        code = gproji_mesh_orient_component(work, f, work->corner_order, error);
-        if (code) return code;
-        mesh->component_count++;
-    }
-    for (f = 0; f < soup->face_count; ++f) {
-        if (!work->face_state[f]) continue;
-        gproji_mesh_turn_face(work, f);
+        int32_t i = work->face_start[f] + 1, j = work->face_start[f + 1] - 1;
+        if (!state[f]) continue;
         mesh->reoriented_count++;
+        for (; i < j; ++i, --j) {
+            int32_t v = work->corner_vertex[i];
+            work->corner_vertex[i] = work->corner_vertex[j];
+            work->corner_vertex[j] = v;
+        }
     }
     return GPROJ_OK;
 }
 
 /* -- half-edges -- */
 
-/* Takes the arrays that last; false when there is no memory. */
+/* Takes the arrays whose lengths are known, and shows them in the public struct. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
     gproj_mesh *mesh = &object->mesh;
-    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
+    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, n = (size_t)mesh->halfedge_count;
     mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
-    object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
-    object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    object->halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
-    return mesh->position && object->vertex_halfedge && object->face_halfedge && object->face_degree &&
-           object->halfedge;
+    mesh->vertex_halfedge = object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
+    mesh->face_halfedge = object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    mesh->face_degree = object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    mesh->twin = object->halfedge = (int32_t *)gproji_take(&object->heap, n, 6 * sizeof(int32_t));
+    if (!mesh->position || !mesh->vertex_halfedge || !mesh->face_halfedge || !mesh->face_degree || !mesh->twin) {
+        return false;
+    }
+    mesh->next = mesh->twin + n;
+    mesh->prev = mesh->next + n;
+    mesh->origin = mesh->prev + n;
+    mesh->face = mesh->origin + n;
+    mesh->edge = mesh->face + n;
+    return true;
 }
 
-/* Shows the owner's arrays in the public struct. */
-GPROJI_INTERNAL void gproji_mesh_publish(gproji_mesh_object *object) {
-    gproj_mesh *mesh = &object->mesh;
-    size_t n = (size_t)mesh->halfedge_count;
-    mesh->vertex_halfedge = object->vertex_halfedge;
-    mesh->face_halfedge = object->face_halfedge;
-    mesh->face_degree = object->face_degree;
-    mesh->loop_halfedge = object->loop_halfedge;
-    mesh->twin = object->halfedge;
-    mesh->next = object->halfedge + n;
-    mesh->prev = object->halfedge + 2 * n;
-    mesh->origin = object->halfedge + 3 * n;
-    mesh->face = object->halfedge + 4 * n;
-    mesh->edge = object->halfedge + 5 * n;
-    mesh->polyline_start = object->polyline_start;
-    mesh->polyline_vertex = object->polyline_vertex;
-}
-
-/* The half-edge of corner c: the even one where the edge appeared first. */
+/* The half-edge of corner c: even at the first corner of the edge, odd at the second. */
 GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32_t c) {
     int32_t e = work->corner_edge[c];
     return work->edge_corner[2 * e] == c ? 2 * e : 2 * e + 1;
 }
 
-/* Fills twin, origin, face, edge, and next and prev within faces. Boundary half-edges get next = prev = -1. */
-GPROJI_INTERNAL void gproji_mesh_link_faces(gproji_mesh_object *object, const gproji_mesh_work *work) {
-    const gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h, f, c;
+/* The outgoing half-edge after h around the same vertex, counter-clockwise. */
+GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
+
+GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
+        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
+        "of its own",
+        vertex);
+}
+
+/* Fills the half-edges from matched and oriented corners; refuses vertices with more than one fan. */
+GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gproji_mesh_work *work,
+                                            gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
+    int32_t n = mesh->halfedge_count, h, f, c, v, *out = object->vertex_halfedge, *outgoing = work->mark;
     int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
             *edge = face + n;
+    /* 1. Half-edges in faces. Their twins at the boundary keep face -1 and get an origin only. */
     for (h = 0; h < n; ++h) {
         twin[h] = h ^ 1;
         edge[h] = h / 2;
@@ -13148,131 +13075,116 @@ GPROJI_INTERNAL void gproji_mesh_link_faces(gproji_mesh_object *object, const gp
             origin[h ^ 1] = gproji_corner_head(work, c); /* written again by the face on the other side, if any */
         }
     }
-}
-
-GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
-        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
-        "of its own",
-        vertex);
-}
-
-/* Chooses vertex_halfedge: the boundary half-edge, else the first outgoing one. Links the boundary. A second outgoing
-   boundary half-edge is a second fan. */
-GPROJI_INTERNAL gproj_code gproji_mesh_link_boundary(gproji_mesh_object *object, gproj_error *error) {
-    const gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h;
-    int32_t *next = object->halfedge + n, *prev = next + n, *out = object->vertex_halfedge;
-    const int32_t *origin = prev + n, *face = origin + n;
+    /* 2. vertex_halfedge: the boundary half-edge, else the first outgoing one. A fan that is open has one boundary
+       half-edge going out, so two of them are two fans. */
     gproji_fill(out, mesh->vertex_count, -1);
+    gproji_fill(outgoing, mesh->vertex_count, 0);
     for (h = 0; h < n; ++h) {
-        int32_t v = origin[h];
-        if (out[v] < 0) {
-            out[v] = h;
-        } else if (face[h] < 0) {
-            if (face[out[v]] < 0) return gproji_fail_fans(v, error);
-            out[v] = h;
-        }
+        v = origin[h];
+        outgoing[v]++;
+        if (out[v] >= 0 && face[h] >= 0) continue;
+        if (out[v] >= 0 && face[out[v]] < 0) return gproji_fail_fans(v, error);
+        out[v] = h;
     }
+    /* 3. Boundary loops: next[h] is the boundary half-edge that leaves the end of h. */
     for (h = 0; h < n; ++h) {
         if (face[h] >= 0) continue;
         next[h] = out[origin[h ^ 1]];
         prev[next[h]] = h;
     }
-    return GPROJ_OK;
-}
-
-/* The outgoing half-edge that follows h around its origin, counter-clockwise. */
-GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
-
-/* All outgoing half-edges of a vertex are met by rotating: else there are several fans. `outgoing` has an entry a
-   vertex. */
-GPROJI_INTERNAL gproj_code gproji_mesh_check_fans(gproj_mesh *mesh, int32_t *outgoing, gproj_error *error) {
-    int32_t v, h;
-    memset(outgoing, 0, (size_t)mesh->vertex_count * sizeof(int32_t));
-    for (h = 0; h < mesh->halfedge_count; ++h) outgoing[mesh->origin[h]]++;
+    /* 4. Rotation stays within a fan: if it misses an outgoing half-edge, there is another fan. */
     for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], met = 0;
-        if (start < 0) {
+        if (out[v] < 0) {
             mesh->isolated_count++;
             continue;
         }
-        h = start;
+        h = out[v];
         do {
-            ++met;
+            --outgoing[v];
             h = gproji_rotate(mesh, h);
-        } while (h != start);
-        if (met != outgoing[v]) return gproji_fail_fans(v, error);
+        } while (h != out[v]);
+        if (outgoing[v]) return gproji_fail_fans(v, error);
     }
     return GPROJ_OK;
-}
-
-/* Passes through the boundary loops in the order of their lowest half-edges; writes one of each to `loop` unless that
-   is NULL. `seen` has an entry a vertex: a vertex is in one loop at most. Returns their number. */
-GPROJI_INTERNAL int32_t gproji_mesh_loops(const gproj_mesh *mesh, int32_t *seen, int32_t *loop) {
-    int32_t h, i, count = 0;
-    gproji_fill(seen, mesh->vertex_count, 0);
-    for (h = 0; h < mesh->halfedge_count; ++h) {
-        if (mesh->face[h] >= 0 || seen[mesh->origin[h]]) continue;
-        for (i = h; !seen[mesh->origin[i]]; i = mesh->next[i]) seen[mesh->origin[i]] = 1;
-        if (loop) loop[count] = h;
-        ++count;
-    }
-    return count;
 }
 
 /* -- building -- */
 
-/* From matched and oriented corners to the finished mesh. */
-GPROJI_INTERNAL gproj_code gproji_mesh_finish(gproji_mesh_object *object, const gproji_soup *soup,
-                                              gproji_mesh_work *work, gproj_error *error) {
-    gproj_mesh *mesh = &object->mesh;
-    gproj_code code;
-    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
-    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
-    gproji_mesh_link_faces(object, work);
-    code = gproji_mesh_link_boundary(object, error);
-    if (code) return code;
-    gproji_mesh_publish(object);
-    code = gproji_mesh_check_fans(mesh, work->mark, error);
-    if (code) return code;
-    mesh->loop_count = gproji_mesh_loops(mesh, work->mark, NULL);
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!object->loop_halfedge) return gproji_fail_memory(error);
-    gproji_mesh_loops(mesh, work->mark, object->loop_halfedge);
-    gproji_mesh_publish(object);
-    return GPROJ_OK;
-}
-
+/* Builds the mesh after the soup's counts, degrees and positions have been checked. */
 GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
                                                gproji_mesh_work *work, gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
+    int32_t h, i, *loop = work->slot;
     gproj_code code = gproji_mesh_read_corners(soup, work, error);
     if (!code) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (!code) code = gproji_mesh_orient(soup, work, mesh, error);
     if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
-    return code ? code : gproji_mesh_finish(object, soup, work, error);
+    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
+    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
+    code = gproji_mesh_link(object, work, error);
+    if (code) return code;
+    /* The boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
+    gproji_fill(work->mark, mesh->vertex_count, 0);
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
+        for (i = h; !work->mark[mesh->origin[i]]; i = mesh->next[i]) work->mark[mesh->origin[i]] = 1;
+        loop[mesh->loop_count++] = h;
+    }
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
+    if (!object->loop_halfedge) return gproji_fail_memory(error);
+    memcpy(object->loop_halfedge, loop, (size_t)mesh->loop_count * sizeof(int32_t));
+    mesh->loop_halfedge = object->loop_halfedge;
+    return GPROJ_OK;
 }
 
-/* Builds the mesh of an object that has none yet. After a failure the object can only be destroyed. */
+/* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
 GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_soup *soup, gproj_error *error) {
+    gproji_pool pool;
     gproji_mesh_work work;
     gproj_code code;
+    int64_t corners = 0;
+    int32_t f;
     if (soup->vertex_count > GPROJI_VERTICES_MAX) {
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     }
-    code = gproji_check_degrees(soup, error);
-    if (!code) code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
+    /* Degrees come first, because they say how long face_vertex is. */
+    for (f = 0; f < soup->face_count; ++f) {
+        if (soup->face_degree[f] < 3) {
+            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
+        }
+        corners += soup->face_degree[f];
+        if (corners > GPROJI_CORNERS_MAX) {
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
+                               "the faces up to face %d have more than %d corners; split the mesh", f,
+                               (int32_t)GPROJI_CORNERS_MAX);
+        }
+    }
+    code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
     if (code) return code;
+    soup->corner_count = (int32_t)corners;
     object->mesh.vertex_count = soup->vertex_count;
     object->mesh.face_count = soup->face_count;
-    code = gproji_mesh_work_take(&object->heap, &work, soup) ? gproji_mesh_connect(object, soup, &work, error)
-                                                             : gproji_fail_memory(error);
-    gproji_mesh_work_give(&object->heap, &work, soup);
+    gproji_pool_start(&pool, &object->heap);
+    work.corner_vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_face = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_next = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_edge = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_order = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.edge_corner = (int32_t *)gproji_pool_take(&pool, 2 * corners, sizeof(int32_t));
+    work.face_start = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->face_count + 1, sizeof(int32_t));
+    work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
+    work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
+    work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
+    code = work.corner_vertex && work.corner_face && work.corner_next && work.corner_edge && work.corner_order &&
+                   work.edge_corner && work.face_start && work.face_state && work.mark && work.slot
+               ? gproji_mesh_connect(object, soup, &work, error)
+               : gproji_fail_memory(error);
+    gproji_pool_give_all(&pool);
     return code;
 }
 
@@ -13301,26 +13213,28 @@ GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
 /* Stores polylines: `start` has count + 1 entries, start[0] = 0. */
 GPROJI_INTERNAL gproj_code gproji_mesh_set_polylines(gproji_mesh_object *object, int32_t count, const int32_t *start,
                                                      const int32_t *vertex, gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
     size_t total = count ? (size_t)start[count] : 0;
     object->polyline_vertex = (int32_t *)gproji_take(&object->heap, total, sizeof(int32_t));
     if (!object->polyline_vertex) return gproji_fail_memory(error);
     object->polyline_start = (int32_t *)gproji_take(&object->heap, (size_t)count + 1, sizeof(int32_t));
     if (!object->polyline_start) {
+        /* gproj_mesh_destroy cannot give polyline_vertex back, for polyline_start has the length */
         gproji_give(&object->heap, object->polyline_vertex, total, sizeof(int32_t));
         object->polyline_vertex = NULL;
         return gproji_fail_memory(error);
     }
-    object->mesh.polyline_count = count;
     object->polyline_start[0] = 0;
     if (count) {
         memcpy(object->polyline_start, start, ((size_t)count + 1) * sizeof(int32_t));
         memcpy(object->polyline_vertex, vertex, total * sizeof(int32_t));
     }
-    gproji_mesh_publish(object);
+    mesh->polyline_count = count;
+    mesh->polyline_start = object->polyline_start, mesh->polyline_vertex = object->polyline_vertex;
     return GPROJ_OK;
 }
 
-/* The end of every function that makes a mesh: the mesh, or NULL and nothing kept. */
+/* Ends every function that makes a mesh: returns the mesh, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
     if (!code) return &object->mesh;
     gproj_mesh_destroy(&object->mesh);
@@ -13362,8 +13276,8 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
     gproj_mesh *copy;
-    gproj_code code = GPROJ_OK;
-    size_t vertices, faces;
+    gproj_code code;
+    size_t vertices, faces, loops;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to copy is NULL");
@@ -13374,19 +13288,19 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
     copy = &object->mesh;
     *copy = *mesh;
     copy->polyline_count = 0; /* set below, when there is memory for them */
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!gproji_mesh_take(object) || !object->loop_halfedge) code = gproji_fail_memory(error);
-    if (!code) {
-        code =
-            gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex, error);
-    }
+    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, loops = (size_t)mesh->loop_count;
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, loops, sizeof(int32_t));
+    copy->loop_halfedge = object->loop_halfedge;
+    code = gproji_mesh_take(object) && object->loop_halfedge
+               ? gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex,
+                                           error)
+               : gproji_fail_memory(error);
     if (!code) {
         memcpy(copy->position, mesh->position, vertices * 3 * sizeof(double));
         memcpy(object->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
         memcpy(object->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
         memcpy(object->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-        memcpy(object->loop_halfedge, mesh->loop_halfedge, (size_t)mesh->loop_count * sizeof(int32_t));
+        memcpy(object->loop_halfedge, mesh->loop_halfedge, loops * sizeof(int32_t));
         memcpy(object->halfedge, mesh->twin, (size_t)mesh->halfedge_count * 6 * sizeof(int32_t));
     }
     return gproji_mesh_done(object, code);
@@ -13396,18 +13310,18 @@ GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
     return gproji_account_of(mesh, offsetof(gproji_mesh_object, mesh));
 }
 
-/* -- questions -- */
+/* -- questions: NULL is answered like an index out of range -- */
 
 GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex) {
-    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return false;
+    if (!mesh || vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return false;
     return mesh->face[mesh->vertex_halfedge[vertex]] < 0;
 }
 
 GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity) {
     int32_t valence = 0, start, h;
-    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return 0;
+    if (!mesh || vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return 0;
     start = mesh->vertex_halfedge[vertex];
-    /* the outgoing boundary half-edge is the last of its vertex: its left side is outside */
+    /* the boundary half-edge has the outside on the left, so it is the last one counter-clockwise */
     if (mesh->face[start] < 0) start = gproji_rotate(mesh, start);
     h = start;
     do {
@@ -13433,7 +13347,8 @@ GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t 
     return -1;
 }
 
-/* Does a polyline turn by more than 45 degrees at a point with these neighbours? Not where one of them is the same. */
+/* True if a polyline turns by more than 45 degrees at a point between two neighbours; false if one of them is the same
+   point. */
 GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], const double after[3]) {
     static const double none[3] = {0, 0, 0};
     double in[3], out[3];
@@ -13443,19 +13358,18 @@ GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], co
     return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
 }
 
-/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex
-   are h and prev[h]. */
+/* See gproj_form_is_corner; with other positions. */
 GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
     int32_t h;
     if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
     if (gproj_mesh_valence(mesh, vertex) == 2) return true;
-    h = mesh->vertex_halfedge[vertex];
+    h = mesh->vertex_halfedge[vertex]; /* leaves along the boundary; prev[h] enters along it */
     return gproji_turns(position + 3 * (size_t)mesh->origin[mesh->prev[h]], position + 3 * (size_t)vertex,
                         position + 3 * (size_t)mesh->origin[h ^ 1]);
 }
 
-/* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
-   interface, without cancellation far from the coordinates' origin. */
+/* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), which equals the sum in the
+   interface but has no cancellation far from the origin. */
 GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
     int32_t start = mesh->face_halfedge[face], h;
     const double *base = position + 3 * (size_t)mesh->origin[start];
@@ -13469,16 +13383,25 @@ GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *po
     }
 }
 
+/* No face, no area: zeros. */
 GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]) {
+    if (!area) return;
     gproji_set3(0, 0, 0, area);
-    if (face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
+    if (mesh && face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
 }
 
-/* The mean edge length with other positions, measured in a unit of `unit`. */
-GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double *position, double unit) {
+/* The mean edge length with other positions; 0 without edges. */
+GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
+    const double unit = 1e-210;
     double sum = 0, d[3];
     int32_t h, k;
-    for (h = 0; h < mesh->halfedge_count; h += 2) {
+    if (mesh->edge_count == 0) return 0;
+    for (h = 0; h < mesh->halfedge_count; h += 2)
+        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
+    sum /= mesh->edge_count;
+    if (!(sum < 1e-140)) return sum;
+    /* squares underflow in edges as short as these: measure them again in a smaller unit */
+    for (sum = 0, h = 0; h < mesh->halfedge_count; h += 2) {
         gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
         for (k = 0; k < 3; ++k) d[k] /= unit;
         sum += gproji_length3(d);
@@ -13486,19 +13409,10 @@ GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double 
     return sum * unit / mesh->edge_count;
 }
 
-/* The mean edge length with other positions; 0 without edges. Edges whose squares would underflow are measured in a smaller
-   unit. */
-GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
-    double sum = 0;
-    int32_t h;
-    for (h = 0; h < mesh->halfedge_count; h += 2)
-        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
-    if (mesh->edge_count == 0) return 0;
-    sum /= mesh->edge_count;
-    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, 1e-210) : sum;
+GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
+    return mesh ? gproji_mean_edge(mesh, mesh->position) : 0;
 }
 
-GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
 /* ============================================================================================================
    >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
 
