@@ -13417,9 +13417,9 @@ GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
    >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
 
    Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
-   Both readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
-   builder's complaints can name the line too. Nothing is allocated because a text promises it: arrays grow as the
-   elements appear.
+   The readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
+   builder's complaints can name the line too. Arrays grow as elements appear: counts that a text promises allocate
+   nothing.
    Invariant: the scanner never reads text[size] or beyond; `line` is the line of the character at `at`. */
 
 typedef struct gproji_reader {
@@ -13433,7 +13433,7 @@ typedef struct gproji_reader {
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
     gproji_ints vertex_line, face_line, face_degree;
-    gproji_ints face_vertex; /* OBJ: as far as the text says, checked against the vertex count at the end */
+    gproji_ints face_vertex; /* from 0; in an OBJ they may point forward until all is read */
     gproji_ints polyline_start, polyline_vertex, polyline_line;
 } gproji_reader;
 
@@ -13449,12 +13449,12 @@ GPROJI_INLINE void gproji_skip_line_end(gproji_reader *reader) {
     if (reader->line < INT32_MAX) reader->line++;
 }
 
-/* Is there a backslash with a line end behind it at position i: the line goes on? */
+/* True if a backslash and a line end stand at position i: the line goes on. */
 GPROJI_INLINE bool gproji_is_continuation(const gproji_reader *reader, size_t i) {
     return reader->text[i] == '\\' && i + 1 < reader->size && gproji_is_line_end(reader->text[i + 1]);
 }
 
-/* The next word of the line; false at the line's end, where a comment counts as the end. */
+/* Scans the next word in the line; false at the line's end, for which a comment counts too. */
 GPROJI_INTERNAL bool gproji_next_word(gproji_reader *reader) {
     size_t end;
     while (reader->at < reader->size) {
@@ -13488,7 +13488,7 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
     return true;
 }
 
-/* The next word of the text, over line ends and comments; false at the end of the text. */
+/* Scans the next word, over line ends and comments; false at the end of the text. */
 GPROJI_NOINLINE bool gproji_next_word_anywhere(gproji_reader *reader) {
     while (!gproji_next_word(reader)) {
         if (!gproji_next_line(reader)) return false;
@@ -13515,9 +13515,9 @@ GPROJI_INTERNAL const char *gproji_quote(const gproji_reader *reader, char quote
     return quote;
 }
 
-/* -- numbers and indices -- */
+/* -- numbers and elements -- */
 
-/* The word as a number. */
+/* Reads the word as a number. */
 GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *value) {
     char quote[GPROJI_QUOTE_SIZE];
     size_t used = gproj_number_read(reader->word, reader->word_size, value);
@@ -13527,7 +13527,7 @@ GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *val
                        used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
 }
 
-/* The word as an integer, clamped to +-10^12; with `slashes`, what follows a '/' (texture, normal) is passed over. */
+/* Reads the word as an integer, clamped to +-10^12. With `slashes`, texture and normal behind a '/' are passed over. */
 GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes, int64_t *value) {
     const char *word = reader->word;
     char quote[GPROJI_QUOTE_SIZE];
@@ -13548,7 +13548,7 @@ GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes
                        slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
 }
 
-/* Appends to a growing array of the text. */
+/* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
     if (gproji_ints_add(reader->heap, ints, value)) return GPROJ_OK;
     if (ints->count < GPROJI_INTS_MAX) return gproji_fail_memory(reader->error);
@@ -13572,9 +13572,22 @@ GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const doubl
     return gproji_push(reader, &reader->vertex_line, line);
 }
 
+/* Appends a face; the caller appends the corners. */
+GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
+    gproj_code code;
+    if (degree < 3) {
+        return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                           "line %d: a face with %d corners; a face needs at least 3", line,
+                           (int32_t)(degree < -9 ? -9 : degree));
+    }
+    /* no text has the corners for a degree beyond int32_t, so a wrong number here is never used */
+    code = gproji_push(reader, &reader->face_degree, (int32_t)degree);
+    return code ? code : gproji_push(reader, &reader->face_line, line);
+}
+
 /* -- OBJ -- */
 
-/* v x y z, maybe with a weight, a colour or both, which are passed over. */
+/* Reads v x y z; a weight, a colour or both may follow and are passed over. */
 GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
     double number, x[3] = {0, 0, 0};
     int32_t count = 0, line = reader->line;
@@ -13583,7 +13596,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
         code = gproji_word_number(reader, &number);
         if (code) return code;
         if (count < 3) x[count] = number;
-        if (count < 8) ++count;
+        if (count < 8) ++count; /* 8 stands for all larger counts */
     }
     if (count != 3 && count != 4 && count != 6 && count != 7) {
         return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
@@ -13593,8 +13606,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
     return gproji_push_vertex(reader, x, line);
 }
 
-/* The indices of an f or l line, from 0, into `ints`; *count is their number. Positive ones may point forward, so they
-   are compared with the vertex count at the end. */
+/* Appends the indices in an f or l line, counted from 0, to `ints`; *count is their number. */
 GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
     int64_t index, vertices = (int64_t)reader->vertex_count;
     gproj_code code;
@@ -13610,6 +13622,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints
             return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
                                "line %d: index %l, but only %l vertices stand above", reader->line, index, vertices);
         }
+        /* negative ones count back from here; positive ones may point forward: gproji_obj_check_indices */
         index = index < 0 ? index + vertices : index - 1;
         if (index >= GPROJI_VERTICES_MAX) {
             return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
@@ -13623,35 +13636,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_corners(gproji_reader *reader, int32_t count, int32_t line) {
-    return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                       "line %d: a face with %d corners; a face needs at least 3", line, count);
-}
-
-GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int32_t degree, int32_t line) {
-    gproj_code code = gproji_push(reader, &reader->face_degree, degree);
-    return code ? code : gproji_push(reader, &reader->face_line, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_obj_face(gproji_reader *reader) {
-    int32_t count, line = reader->line;
-    gproj_code code = gproji_obj_indices(reader, &reader->face_vertex, &count);
-    if (code) return code;
-    return count < 3 ? gproji_fail_corners(reader, count, line) : gproji_push_face(reader, count, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_obj_polyline(gproji_reader *reader) {
-    int32_t count, line = reader->line;
-    gproj_code code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
-    if (!code && count < 2) {
-        code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                           "line %d: a polyline with %d points; it needs at least 2", line, count);
-    }
-    if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
-    return code ? code : gproji_push(reader, &reader->polyline_line, line);
-}
-
-/* Are all indices of the elements, of which each has degree[i] or ends at start[i], below the vertex count? */
+/* Refuses indices beyond the vertices. Element e has degree[e] of them, or ends before number end[e + 1]. */
 GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints,
                                                     const gproji_ints *line, const int32_t *degree,
                                                     const int32_t *end) {
@@ -13671,17 +13656,27 @@ GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const
 GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
     gproj_code code = gproji_push(reader, &reader->polyline_start, 0);
     bool more = true;
-    while (more && !code) {
-        if (gproji_next_word(reader)) {
-            if (gproji_word_is(reader, "v"))
-                code = gproji_obj_vertex(reader);
-            else if (gproji_word_is(reader, "f"))
-                code = gproji_obj_face(reader);
-            else if (gproji_word_is(reader, "l"))
-                code = gproji_obj_polyline(reader);
+    /* Lines that begin with v, f or l; all others are passed over. */
+    for (; more && !code; more = gproji_next_line(reader)) {
+        int32_t count, line;
+        if (!gproji_next_word(reader)) continue;
+        line = reader->line;
+        if (gproji_word_is(reader, "v")) {
+            code = gproji_obj_vertex(reader);
+        } else if (gproji_word_is(reader, "f")) {
+            code = gproji_obj_indices(reader, &reader->face_vertex, &count);
+            if (!code) code = gproji_push_face(reader, count, line);
+        } else if (gproji_word_is(reader, "l")) {
+            code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
+            if (!code && count < 2) {
+                code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                                   "line %d: a polyline with %d points; it needs at least 2", line, count);
+            }
+            if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
+            if (!code) code = gproji_push(reader, &reader->polyline_line, line);
         }
-        more = gproji_next_line(reader);
     }
+    /* Indices may point forward, so they are compared with the vertex count when that is known. */
     if (!code) {
         code =
             gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
@@ -13695,7 +13690,7 @@ GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
 
 /* -- OFF -- */
 
-/* Is the word [ST][C][N][4][n]OFF? The 4 and the n (other dimensions than 3) set *plain to false. */
+/* True if the word is [ST][C][N][4][n]OFF. The 4 and the n (other dimensions than 3) set *plain to false. */
 GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain) {
     const char *word = reader->word;
     size_t size = reader->word_size, i = 0;
@@ -13708,18 +13703,45 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
     return size - i == 3 && !memcmp(word + i, "OFF", 3);
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t of, const char *what) {
+GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t promised,
+                                               const char *noun) {
     return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count, of,
-                       what);
+                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count,
+                       promised, noun);
 }
 
-/* The header up to the counts of vertices and faces. */
-GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t count[2]) {
+/* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
+GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
+    int64_t degree, index, k, vertices = (int64_t)reader->vertex_count;
+    gproj_code code = gproji_word_index(reader, false, &degree);
+    if (!code) code = gproji_push_face(reader, degree, reader->line);
+    for (k = 0; !code && k < degree; ++k) {
+        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
+        code = gproji_word_index(reader, false, &index);
+        if (code) return code;
+        if (index < 0 || index >= vertices) {
+            /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
+            bool from_one = index == vertices;
+            size_t c;
+            for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
+            return gproji_fail(
+                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index, vertices - 1,
+                from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index" : "");
+        }
+        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
+    }
+    if (!code) gproji_next_line(reader);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
+    int64_t count[2] = {0, 0}, i;
     bool plain, have_word = gproji_next_word_anywhere(reader);
-    int32_t k;
-    gproj_code code;
+    int32_t k, line;
+    gproj_code code = GPROJ_OK;
+    /* 1. The word OFF, which may be missing if the counts are there. */
     if (have_word && gproji_is_off_word(reader, &plain)) {
         have_word = gproji_next_word_anywhere(reader);
         if (!plain || (have_word && gproji_word_is(reader, "BINARY"))) {
@@ -13731,7 +13753,9 @@ GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t coun
         return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
                            "line %d: '%s' where an OFF text says OFF", reader->line, gproji_quote(reader, quote));
     }
-    for (k = 0; k < 2; ++k, have_word = gproji_next_word_anywhere(reader)) {
+    /* 2. Counts of vertices and faces; that of edges, which many writers leave 0, is passed over. */
+    for (k = 0; k < 2; ++k) {
+        if (k) have_word = gproji_next_word_anywhere(reader);
         if (!have_word) return gproji_fail_cut_off(reader, k, 2, "counts");
         code = gproji_word_index(reader, false, &count[k]);
         if (code) return code;
@@ -13739,72 +13763,25 @@ GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t coun
             return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
                                "line %d: a count of %l %s", reader->line, count[k], k ? "faces" : "vertices");
         }
-        if (k == 1) break;
-    }
-    gproji_next_line(reader); /* the count of edges is not needed */
-    return GPROJ_OK;
-}
-
-/* One line: x y z; colours, normals and texture coordinates behind them are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_vertex(gproji_reader *reader) {
-    double x[3];
-    int32_t k, line = reader->line;
-    gproj_code code;
-    for (k = 0; k < 3; ++k) {
-        if (k && !gproji_next_word(reader)) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                               "line %d: a vertex with %d numbers; write x y z on one line", line, k);
-        }
-        code = gproji_word_number(reader, &x[k]);
-        if (code) return code;
     }
     gproji_next_line(reader);
-    return gproji_push_vertex(reader, x, line);
-}
-
-/* Could the faces so far count vertices from 1: is this index one too large, and was none 0? */
-GPROJI_INTERNAL bool gproji_counts_from_one(const gproji_reader *reader, int64_t index) {
-    size_t c;
-    if (index != (int64_t)reader->vertex_count) return false;
-    for (c = 0; c < reader->face_vertex.count; ++c)
-        if (reader->face_vertex.data[c] == 0) return false;
-    return true;
-}
-
-/* degree, then the corners; colours behind them are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree, index, k;
-    int32_t line = reader->line;
-    gproj_code code = gproji_word_index(reader, false, &degree);
-    if (code) return code;
-    if (degree < 3) return gproji_fail_corners(reader, (int32_t)(degree < -9 ? -9 : degree), line);
-    for (k = 0; k < degree; ++k) {
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
-        code = gproji_word_index(reader, false, &index);
-        if (code) return code;
-        if (index < 0 || index >= (int64_t)reader->vertex_count) {
-            return gproji_fail(
-                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index,
-                (int64_t)reader->vertex_count - 1,
-                gproji_counts_from_one(reader, index)
-                    ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
-                    : "");
-        }
-        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
-        if (code) return code;
-    }
-    gproji_next_line(reader);
-    return gproji_push_face(reader, (int32_t)degree, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
-    int64_t count[2] = {0, 0}, i;
-    gproj_code code = gproji_off_header(reader, count);
+    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
     for (i = 0; i < count[0] && !code; ++i) {
-        code = gproji_next_word_anywhere(reader) ? gproji_off_vertex(reader)
-                                                 : gproji_fail_cut_off(reader, i, count[0], "vertices");
+        double x[3];
+        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, i, count[0], "vertices");
+        line = reader->line;
+        for (k = 0; k < 3; ++k) {
+            if (k && !gproji_next_word(reader)) {
+                return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                                   "line %d: a vertex with %d numbers; write x y z on one line", line, k);
+            }
+            code = gproji_word_number(reader, &x[k]);
+            if (code) return code;
+        }
+        gproji_next_line(reader);
+        code = gproji_push_vertex(reader, x, line);
     }
+    /* 4. Faces: the degree, then the corners. */
     for (i = 0; i < count[1] && !code; ++i) {
         code = gproji_next_word_anywhere(reader) ? gproji_off_face(reader, i, count[1])
                                                  : gproji_fail_cut_off(reader, i, count[1], "faces");
@@ -13814,25 +13791,7 @@ GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
 
 /* -- reading -- */
 
-/* A zero byte is never in a text: a binary file, or one in UTF-16. */
-GPROJI_INTERNAL gproj_code gproji_check_text(gproji_reader *reader) {
-    const char *zero = reader->size ? (const char *)memchr(reader->text, 0, reader->size) : NULL;
-    if (!reader->size) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                           "the text is empty; it needs at least one vertex");
-    }
-    if (!zero) return GPROJ_OK;
-    while (reader->text + reader->at < zero) {
-        if (gproji_is_line_end(reader->text[reader->at]))
-            gproji_skip_line_end(reader);
-        else
-            reader->at++;
-    }
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text", reader->line);
-}
-
-/* Which other format this is, by the way that it begins; NULL: none that is known. */
+/* Names another format that begins like this text; NULL: none that is known. */
 GPROJI_INTERNAL const char *gproji_foreign_format(const char *text, size_t size) {
     static const struct {
         const char *begins, *name;
@@ -13859,75 +13818,78 @@ GPROJI_INTERNAL const char *gproji_foreign_format(const char *text, size_t size)
     return NULL;
 }
 
-/* Says of what could not be read as OBJ or OFF what it is, where that is known. */
-GPROJI_INTERNAL void gproji_tell_foreign(const char *text, size_t size, gproj_error *error) {
-    const char *name = gproji_foreign_format(text, size);
-    if (!name || !error || error->code != GPROJ_ERROR_SYNTAX) return;
-    gproji_error_clear(error);
-    gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                "this is %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, MeshLab or "
-                "assimp",
-                name);
-}
-
-/* By the first word: [ST][C][N]OFF or OBJ. */
-GPROJI_INTERNAL gproj_format gproji_detect_format(const gproji_reader *reader) {
-    gproji_reader look = *reader;
-    bool plain;
-    return gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-}
-
-/* Puts "line 203: " in front of the mesh builder's sentence about a vertex or face. */
-GPROJI_INTERNAL void gproji_add_line(const gproji_reader *reader) {
-    gproj_error *error = reader->error;
-    const gproji_ints *lines = &reader->face_line;
-    char message[GPROJ_MESSAGE_SIZE];
-    if (!error) return;
-    if (error->place == GPROJ_PLACE_VERTEX)
-        lines = &reader->vertex_line;
-    else if (error->place != GPROJ_PLACE_FACE)
-        return;
-    if (error->index < 0 || (size_t)error->index >= lines->count) return;
-    gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
-    memcpy(error->message, message, sizeof message);
-}
-
-/* From what the text said to the mesh. */
-GPROJI_INTERNAL gproj_code gproji_reader_build(const gproji_reader *reader, gproji_mesh_object *object) {
+/* Reads the text and builds the mesh. */
+GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format format, gproji_mesh_object *object) {
+    const char *zero;
     gproji_soup soup;
+    gproj_error *error = reader->error;
     gproj_code code;
+    if (!reader->size) {
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "the text is empty; it needs at least one vertex");
+    }
+    /* 1. No text has a zero byte; count the lines up to it. */
+    zero = (const char *)memchr(reader->text, 0, reader->size);
+    if (zero) {
+        while (reader->text + reader->at < zero) {
+            if (gproji_is_line_end(reader->text[reader->at]))
+                gproji_skip_line_end(reader);
+            else
+                reader->at++;
+        }
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                           "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text",
+                           reader->line);
+    }
+    /* 2. Polygons, after the byte order mark if there is one. */
+    if (reader->size >= 3 && !memcmp(reader->text, "\xef\xbb\xbf", 3)) reader->at = 3;
+    if (format == GPROJ_FORMAT_DETECT) {
+        gproji_reader look = *reader;
+        bool plain;
+        format =
+            gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
+    }
+    code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
+    if (code) return code;
     if (!reader->vertex_count) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
     }
+    /* 3. The mesh. The builder's sentence about a vertex or face gets "line 203: " in front. */
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
     soup.face_degree = reader->face_degree.data, soup.face_vertex = reader->face_vertex.data;
-    code = gproji_mesh_build(object, &soup, reader->error);
-    if (code) {
-        gproji_add_line(reader);
-        return code;
+    code = gproji_mesh_build(object, &soup, error);
+    if (code && error && (error->place == GPROJ_PLACE_VERTEX || error->place == GPROJ_PLACE_FACE)) {
+        const gproji_ints *lines = error->place == GPROJ_PLACE_VERTEX ? &reader->vertex_line : &reader->face_line;
+        char message[GPROJ_MESSAGE_SIZE];
+        gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
+        memcpy(error->message, message, sizeof message);
     }
+    if (code) return code;
     return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
-                                     reader->polyline_vertex.data, reader->error);
+                                     reader->polyline_vertex.data, error);
 }
 
 /* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
 GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, const char *text, size_t size,
                                                  gproj_format format, gproj_error *error) {
     gproji_reader reader;
+    const char *foreign;
     gproj_code code;
     memset(&reader, 0, sizeof reader);
     reader.text = text, reader.size = size, reader.line = 1;
     reader.heap = &object->heap, reader.error = error;
-    code = gproji_check_text(&reader);
-    if (size >= 3 && !memcmp(text, "\xef\xbb\xbf", 3)) reader.at = 3; /* byte order mark */
-    if (!code) {
-        if (format == GPROJ_FORMAT_DETECT) format = gproji_detect_format(&reader);
-        code = format == GPROJ_FORMAT_OFF ? gproji_read_off(&reader) : gproji_read_obj(&reader);
+    code = gproji_read_text(&reader, format, object);
+    /* Only after a failure: an OBJ may begin with anything. */
+    foreign = code ? gproji_foreign_format(text, size) : NULL;
+    if (foreign && error && error->code == GPROJ_ERROR_SYNTAX) {
+        gproji_error_clear(error);
+        gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                    "this is %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, MeshLab "
+                    "or assimp",
+                    foreign);
     }
-    if (!code) code = gproji_reader_build(&reader, object);
-    if (code) gproji_tell_foreign(text, size, error);
     gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
     gproji_ints_give(reader.heap, &reader.vertex_line);
     gproji_ints_give(reader.heap, &reader.face_line);
@@ -13957,7 +13919,7 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
 typedef struct gproji_writer {
     gproj_write write;
     void *user;
-    bool failed;
+    bool failed; /* `write` has returned false; it is not called again */
     size_t length;
     char buffer[4096];
 } gproji_writer;
@@ -13987,50 +13949,12 @@ GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
     gproji_put(writer, text);
 }
 
-GPROJI_INTERNAL void gproji_put_position(gproji_writer *writer, const double x[3]) {
-    int32_t k;
-    for (k = 0; k < 3; ++k) {
-        writer->length += gproj_number_write(x[k], gproji_room(writer));
-        gproji_put(writer, k < 2 ? " " : "\n");
-    }
-}
-
-/* The corners of all faces; `base` is 1 for OBJ. */
-GPROJI_INTERNAL void gproji_put_faces(gproji_writer *writer, const gproj_mesh *mesh, bool off) {
-    int32_t f, h;
-    for (f = 0; f < mesh->face_count && !writer->failed; ++f) {
-        if (off)
-            gproji_put_integer(writer, mesh->face_degree[f]);
-        else
-            gproji_put(writer, "f");
-        h = mesh->face_halfedge[f];
-        do {
-            gproji_put(writer, " ");
-            gproji_put_integer(writer, mesh->origin[h] + (off ? 0 : 1));
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-        gproji_put(writer, "\n");
-    }
-}
-
-GPROJI_INTERNAL void gproji_put_polylines(gproji_writer *writer, const gproj_mesh *mesh) {
-    int32_t p, i;
-    for (p = 0; p < mesh->polyline_count && !writer->failed; ++p) {
-        gproji_put(writer, "l");
-        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            gproji_put(writer, " ");
-            gproji_put_integer(writer, mesh->polyline_vertex[i] + 1);
-        }
-        gproji_put(writer, "\n");
-    }
-}
-
-/* After the arguments have been checked. */
+/* Writes a mesh after the arguments have been checked. */
 GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
                                              void *user) {
     gproji_writer writer;
     bool off = format == GPROJ_FORMAT_OFF;
-    int32_t v;
+    int32_t v, f, p, h, i, k;
     writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
     if (off) {
         gproji_put(&writer, "OFF\n");
@@ -14043,10 +13967,32 @@ GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_forma
     }
     for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
         if (!off) gproji_put(&writer, "v ");
-        gproji_put_position(&writer, mesh->position + 3 * v);
+        for (k = 0; k < 3; ++k) {
+            writer.length += gproj_number_write(mesh->position[3 * v + k], gproji_room(&writer));
+            gproji_put(&writer, k < 2 ? " " : "\n");
+        }
     }
-    gproji_put_faces(&writer, mesh, off);
-    if (!off) gproji_put_polylines(&writer, mesh);
+    for (f = 0; f < mesh->face_count && !writer.failed; ++f) {
+        if (off)
+            gproji_put_integer(&writer, mesh->face_degree[f]);
+        else
+            gproji_put(&writer, "f");
+        h = mesh->face_halfedge[f];
+        do {
+            gproji_put(&writer, " ");
+            gproji_put_integer(&writer, mesh->origin[h] + (off ? 0 : 1)); /* OBJ counts from 1 */
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
+        gproji_put(&writer, "\n");
+    }
+    for (p = 0; p < mesh->polyline_count && !off && !writer.failed; ++p) {
+        gproji_put(&writer, "l");
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            gproji_put(&writer, " ");
+            gproji_put_integer(&writer, mesh->polyline_vertex[i] + 1);
+        }
+        gproji_put(&writer, "\n");
+    }
     gproji_flush(&writer);
     return writer.failed ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
