@@ -14152,19 +14152,19 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
    subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
    for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
-   Truong: Subdivision surfaces in character animation (1998) for creases that end. Products and transposition of
-   matrices are Gustavson's (1978).
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Sparse products and transposition are
+   Gustavson's (1978).
 
-   A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
-   coarse ones, and the faces go to the mesh builder as any others do.
-   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+   Each level makes a stencil row by row from the rules in the interface; fine positions are the stencil times the coarse
+   ones, and the mesh builder gets the faces.
+   Invariant: boundary edges are sharp on all levels, because GPROJI_SHARP outlasts them. */
 
 enum {
     GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
     GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
 };
 
-/* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
+/* Owns a gproj_stencil and the arrays that `stencil` shows read-only. */
 typedef struct gproji_stencil_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_stencil stencil;
@@ -14202,7 +14202,7 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
     return enough;
 }
 
-/* A stencil of zeros with room for `entries` entries; NULL when there is no memory. */
+/* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
                                                     const gproj_host *host) {
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
@@ -14216,30 +14216,32 @@ GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t column
     return NULL;
 }
 
-/* The transposed matrix, with its columns in ascending order; NULL when there is no memory. */
+/* Creates the transposed matrix, columns in ascending order; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
-    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, count;
+    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, *start;
     gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
     gproji_stencil_object *object;
     int32_t i;
     if (!out) return NULL;
     object = gproji_stencil_owner(out);
-    /* start[j] counts, then is where row j begins, then, as row j fills, where it ends; which is start[j + 1] */
-    for (k = 0; k < entries; ++k) object->start[stencil->column[k]]++;
+    start = object->start;
+    /* 1. start[j] counts the entries in row j, then becomes the place at which row j begins. */
+    for (k = 0; k < entries; ++k) start[stencil->column[k]]++;
     for (i = 0; i <= out->row_count; ++i) {
-        count = object->start[i];
-        object->start[i] = sum;
+        int64_t count = start[i];
+        start[i] = sum;
         sum += count;
     }
+    /* 2. Scatter by rows, so that columns ascend; start[j] then has moved to the end, at which row j + 1 begins. */
     for (i = 0; i < stencil->row_count; ++i) {
         for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k) {
-            int64_t to = object->start[stencil->column[k]]++;
+            int64_t to = start[stencil->column[k]]++;
             object->column[to] = i;
             object->weight[to] = stencil->weight[k];
         }
     }
-    memmove(object->start + 1, object->start, (size_t)out->row_count * sizeof *object->start);
-    object->start[0] = 0;
+    memmove(start + 1, start, (size_t)out->row_count * sizeof *start);
+    start[0] = 0;
     return out;
 }
 
@@ -14259,15 +14261,15 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* -- rows -- */
 
-/* A stencil that is made row by row. Memory that is missing is noticed at the end. */
+/* A stencil that is made row by row; gproji_rows_end reports missing memory. */
 typedef struct gproji_rows {
-    gproji_heap *heap; /* of `place` */
+    gproji_heap *heap; /* gives `place` */
     const gproj_host *host;
     gproj_stencil *stencil; /* NULL: no memory */
     int32_t column_count;
     int32_t row;    /* the one that is being made */
-    int64_t count;  /* of all entries so far */
-    int64_t *place; /* of each column, its entry in this row; one of an earlier row, or -1: it has none */
+    int64_t count;  /* all entries so far */
+    int64_t *place; /* column_count: the column's entry in this row; older than the row, or -1: none yet */
 } gproji_rows;
 
 GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
@@ -14286,7 +14288,7 @@ GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int
     for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
 }
 
-/* Adds a weight to an entry of the row. */
+/* Adds a weight to an entry in the row, which is appended when it is new. */
 GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
     gproji_stencil_object *object;
     if (!rows->stencil) return;
@@ -14308,10 +14310,11 @@ GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
     if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
 }
 
-/* The finished stencil with its columns in ascending order: the transposed of the transposed. NULL without memory. */
+/* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
     gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    /* transposing twice sorts the columns in all rows, in linear time */
     if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
     gproji_rows_drop(rows);
     if (turned) sorted = gproji_transposed(turned, rows->host);
@@ -14320,25 +14323,25 @@ GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *e
     return sorted;
 }
 
-/* -- the rules -- */
+/* -- rules -- */
 
-/* The mesh of a level and what the rules need besides it. */
+/* A mesh to be refined, and the data that the rules need besides. */
 typedef struct gproji_level {
     const gproj_mesh *mesh;
     gproj_scheme scheme;
-    double *sharpness;  /* of each edge, > 1 at the boundary */
-    const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
-    int32_t corner_count;
+    double *sharpness;    /* edge_count: > 1 at the boundary */
+    const bool *corner;   /* corner_count: vertices that stay */
+    int32_t corner_count; /* vertices on the first level; later ones are no corners */
 } gproji_level;
 
-/* The mean of a face's corners. */
+/* Adds `share` times the mean of a face's corners. */
 GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
         gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
 }
 
-/* An edge: the smooth rule and the sharp one, blended by its sharpness. */
+/* Adds an edge's vertex: the smooth rule and the sharp one, blended by sharpness. */
 GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
     const gproj_mesh *mesh = level->mesh;
     bool loop = level->scheme == GPROJ_LOOP;
@@ -14346,6 +14349,7 @@ GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edg
     double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
     int32_t h;
     for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
+    /* only boundary edges lack a face, and these are sharp */
     for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
         if (loop)
             gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
@@ -14354,12 +14358,31 @@ GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edg
     }
 }
 
-/* A vertex without a corner or crease, inside. */
-GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t vertex, double share,
+/* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
                                             gproji_rows *rows) {
     const gproj_mesh *mesh = level->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    double n = gproj_mesh_valence(mesh, vertex), ring;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
+    double n = 0, ring;
+    do {
+        if (level->sharpness[h / 2] > least) {
+            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
+            ++sharp;
+        }
+        ++n;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    if (sharp > 2) { /* a corner */
+        gproji_rows_add(rows, vertex, share);
+        return;
+    }
+    if (sharp == 2) { /* on a crease: cubic B-spline */
+        gproji_rows_add(rows, end[0], 0.125 * share);
+        gproji_rows_add(rows, vertex, 0.75 * share);
+        gproji_rows_add(rows, end[1], 0.125 * share);
+        return;
+    }
+    /* smooth, inside the mesh: `ring` is the weight for each neighbour, and with Catmull-Clark for each face's vertex */
     if (level->scheme == GPROJ_LOOP) {
         double c = 0.375 + 0.25 * cos(2 * GPROJI_PI / n);
         ring = share * (0.625 - c * c) / n;
@@ -14375,87 +14398,56 @@ GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t v
     } while (h != start);
 }
 
-/* A vertex whose edges of more than this sharpness are sharp: smooth, on a crease, or a corner. */
-GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
-                                            gproji_rows *rows) {
-    const gproj_mesh *mesh = level->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
-    do {
-        if (level->sharpness[h / 2] > least) {
-            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
-            ++sharp;
-        }
-        h = gproji_rotate(mesh, h);
-    } while (h != start);
-    if (sharp < 2) {
-        gproji_add_smooth_rule(level, vertex, share, rows);
-    } else if (sharp == 2) {
-        gproji_rows_add(rows, end[0], 0.125 * share);
-        gproji_rows_add(rows, vertex, 0.75 * share);
-        gproji_rows_add(rows, end[1], 0.125 * share);
-    } else {
-        gproji_rows_add(rows, vertex, share);
-    }
-}
-
-/* The mean sharpness of the edges at a vertex that are sharp on this level and smooth on the next; 1 without any. */
-GPROJI_INTERNAL double gproji_ending_sharpness(const gproji_level *level, int32_t vertex) {
+/* Adds a vertex: a corner, or the rules for this level and the next, blended if creases at it end in between. */
+GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
     int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
-    double sum = 0;
+    double sum = 0, now;
+    if (start < 0 || (vertex < level->corner_count && level->corner[vertex])) {
+        gproji_rows_add(rows, vertex, 1);
+        return;
+    }
+    /* the mean sharpness over edges that are sharp here and smooth on the next level */
     do {
         double s = level->sharpness[h / 2];
         if (s > 0 && s <= 1) sum += s, ++count;
         h = gproji_rotate(level->mesh, h);
     } while (h != start);
-    return count ? sum / count : 1;
-}
-
-GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
-    double now;
-    if (level->mesh->vertex_halfedge[vertex] < 0 || (vertex < level->corner_count && level->corner[vertex])) {
-        gproji_rows_add(rows, vertex, 1);
-        return;
-    }
-    now = gproji_ending_sharpness(level, vertex);
+    now = count ? sum / count : 1;
     gproji_add_vertex_rule(level, vertex, 0, now, rows);
     if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
 }
 
 /* -- one level -- */
 
-/* How large a level is. */
 typedef struct gproji_counts {
     int64_t vertices, edges, faces, corners;
-    int64_t polyline_vertices; /* at most: if all polylines run along edges */
+    int64_t polyline_vertices; /* at most: reached when all polylines run along edges */
 } gproji_counts;
 
-GPROJI_INTERNAL gproji_counts gproji_count(const gproj_mesh *mesh) {
-    gproji_counts counts = {0, 0, 0, 0, 0};
+/* Counts the elements after some levels. */
+GPROJI_INTERNAL gproji_counts gproji_count_levels(const gproj_mesh *mesh, gproj_scheme scheme, int32_t levels) {
+    gproji_counts counts;
     int32_t f;
-    counts.vertices = mesh->vertex_count;
-    counts.edges = mesh->edge_count;
-    counts.faces = mesh->face_count;
-    for (f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    counts.vertices = mesh->vertex_count, counts.edges = mesh->edge_count, counts.faces = mesh->face_count;
     counts.polyline_vertices = mesh->polyline_start[mesh->polyline_count];
+    for (counts.corners = 0, f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    for (; levels > 0; --levels) {
+        counts.vertices += counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
+        counts.edges = 2 * counts.edges + counts.corners;
+        counts.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
+        counts.corners *= 4;
+        counts.polyline_vertices *= 2;
+    }
     return counts;
 }
 
-GPROJI_INTERNAL gproji_counts gproji_count_next(gproji_counts counts, gproj_scheme scheme) {
-    gproji_counts next;
-    next.vertices = counts.vertices + counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
-    next.edges = 2 * counts.edges + counts.corners;
-    next.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
-    next.corners = 4 * counts.corners;
-    next.polyline_vertices = 2 * counts.polyline_vertices;
-    return next;
-}
-
+/* Creates the stencil from a level to the next, with rows in the order vertices, edges, faces. */
 GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
                                                     const gproj_host *host, gproj_error *error) {
     const gproj_mesh *mesh = level->mesh;
+    gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     gproji_rows rows;
     int32_t i;
-    gproji_counts next = gproji_count_next(gproji_count(mesh), level->scheme);
     gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
     for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
         gproji_add_vertex_row(level, i, &rows);
@@ -14466,112 +14458,66 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, g
     return gproji_rows_end(&rows, error);
 }
 
-/* The faces of the next level: their degrees and corners, one after the other. */
-GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degree, int32_t *corner) {
+/* Builds the next level's mesh. */
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
+                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
     const gproj_mesh *mesh = level->mesh;
-    int32_t f, k, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
+    int32_t p, i, f, h, k, c = 0, d = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
+    gproji_mesh_object *object;
+    gproji_soup soup;
+    gproji_pool pool;
+    gproj_code code;
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+    gproji_pool_start(&pool, heap);
+    position = (double *)gproji_pool_take(&pool, next.vertices, 3 * sizeof(double));
+    degree = (int32_t *)gproji_pool_take(&pool, next.faces, sizeof(int32_t));
+    corner = (int32_t *)gproji_pool_take(&pool, next.corners, sizeof(int32_t));
+    start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    vertex = (int32_t *)gproji_pool_take(&pool, next.polyline_vertices, sizeof(int32_t));
+    object = position && degree && corner && start && vertex ? gproji_mesh_begin(host, error) : NULL;
+    if (!object) {
+        gproji_pool_give_all(&pool);
+        gproji_fail_memory(error);
+        return NULL;
+    }
+    gproj_stencil_apply(stencil, 3, mesh->position, position);
+    /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
     for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f];
+        h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            *corner++ = mesh->origin[h];
-            *corner++ = edges + h / 2;
-            if (!loop) *corner++ = faces + f;
-            *corner++ = edges + mesh->prev[h] / 2;
-            *degree++ = loop ? 3 : 4;
+            corner[c++] = mesh->origin[h];
+            corner[c++] = edges + h / 2;
+            if (!loop) corner[c++] = faces + f;
+            corner[c++] = edges + mesh->prev[h] / 2;
+            degree[d++] = loop ? 3 : 4;
         }
         if (!loop) continue;
-        for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
-        *degree++ = 3;
+        for (k = 0; k < 3; ++k, h = mesh->next[h]) corner[c++] = edges + h / 2;
+        degree[d++] = 3;
     }
-}
-
-/* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
-   number of their vertices. */
-GPROJI_INTERNAL int32_t gproji_level_polylines(const gproj_mesh *mesh, int32_t *start, int32_t *vertex) {
-    int32_t p, i, h, count = 0;
+    /* 2. Polylines: a vertex more between two that have an edge. */
     for (p = 0; p < mesh->polyline_count; ++p) {
         start[p] = count;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            int32_t v = mesh->polyline_vertex[i];
             bool last = i + 1 == mesh->polyline_start[p + 1];
-            if (vertex) vertex[count] = v;
-            ++count;
-            h = last ? -1 : gproji_halfedge_between(mesh, v, mesh->polyline_vertex[i + 1]);
-            if (h < 0) continue;
-            if (vertex) vertex[count] = mesh->vertex_count + h / 2;
-            ++count;
+            vertex[count++] = mesh->polyline_vertex[i];
+            h = last ? -1 : gproji_halfedge_between(mesh, mesh->polyline_vertex[i], mesh->polyline_vertex[i + 1]);
+            if (h >= 0) vertex[count++] = edges + h / 2;
         }
     }
     start[p] = count;
-    return count;
+    soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
+    soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
+    code = gproji_mesh_build(object, &soup, error);
+    if (!code) code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    gproji_pool_give_all(&pool);
+    return gproji_mesh_done(object, code);
 }
 
-GPROJI_INTERNAL gproj_code gproji_set_level_polylines(gproji_mesh_object *object, const gproj_mesh *mesh,
-                                                      gproji_heap *heap, gproj_error *error) {
-    size_t starts = (size_t)mesh->polyline_count + 1, vertices = 0;
-    int32_t *start = (int32_t *)gproji_take(heap, starts, sizeof *start), *vertex = NULL;
-    gproj_code code;
-    if (start) {
-        vertices = (size_t)gproji_level_polylines(mesh, start, NULL);
-        vertex = (int32_t *)gproji_take(heap, vertices, sizeof *vertex);
-    }
-    if (vertex) {
-        gproji_level_polylines(mesh, start, vertex);
-        code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
-    } else {
-        code = gproji_fail_memory(error);
-    }
-    gproji_give(heap, vertex, vertices, sizeof *vertex);
-    gproji_give(heap, start, starts, sizeof *start);
-    return code;
-}
-
-/* The mesh of the next level. */
-GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
-                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
-    gproji_counts next = gproji_count_next(gproji_count(level->mesh), level->scheme);
-    size_t vertices = (size_t)next.vertices, faces = (size_t)next.faces, corners = (size_t)next.corners;
-    gproji_mesh_object *object = gproji_mesh_begin(host, error);
-    double *position = (double *)gproji_take(heap, vertices, 3 * sizeof *position);
-    int32_t *degree = (int32_t *)gproji_take(heap, faces, sizeof *degree);
-    int32_t *corner = (int32_t *)gproji_take(heap, corners, sizeof *corner);
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    if (object && position && degree && corner) {
-        gproji_soup soup;
-        gproj_stencil_apply(stencil, 3, level->mesh->position, position);
-        gproji_level_faces(level, degree, corner);
-        soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
-        soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
-        code = gproji_mesh_build(object, &soup, error);
-        if (!code) code = gproji_set_level_polylines(object, level->mesh, heap, error);
-    } else {
-        gproji_fail_memory(error);
-    }
-    gproji_give(heap, position, vertices, 3 * sizeof *position);
-    gproji_give(heap, degree, faces, sizeof *degree);
-    gproji_give(heap, corner, corners, sizeof *corner);
-    return object ? gproji_mesh_done(object, code) : NULL;
-}
-
-/* What is left of the sharpness on the next level: of each half of an edge one less, of new edges nothing. Each coarse
-   corner's face there begins with the halves of two edges, the last one and the first one of its corner. */
-GPROJI_INTERNAL void gproji_level_creases(const gproji_level *level, const gproj_mesh *fine, double *sharpness) {
-    const gproj_mesh *mesh = level->mesh;
-    int32_t f, k, e, at = 0;
-    for (e = 0; e < fine->edge_count; ++e) sharpness[e] = 0;
-    for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f];
-        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
-            int32_t half = fine->face_halfedge[at];
-            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
-            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
-        }
-        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
-    }
-}
-
-/* -- the stencil's functions -- */
+/* -- functions on stencils -- */
 
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error) {
@@ -14614,62 +14560,9 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
     return gproji_rows_end(&rows, error);
 }
 
-/* -- all levels -- */
+/* -- checks -- */
 
-/* The state between two levels. Meshes and stencils have their own memory. */
-typedef struct gproji_subdivision {
-    gproji_heap heap; /* of the work arrays */
-    const gproj_host *host;
-    gproj_error *error;
-    const gproj_subdivide_options *options;
-    gproji_level level;
-    bool *corner;           /* of each vertex of the first mesh */
-    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
-    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
-} gproji_subdivision;
-
-GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, const gproj_subdivide_options *options,
-                                                     gproj_error *error) {
-    gproji_counts counts = gproji_count(mesh);
-    int32_t level;
-    for (level = 1; level <= options->levels; ++level) {
-        counts = gproji_count_next(counts, options->scheme);
-        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > INT32_MAX) {
-            return gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
-                "can have; take fewer levels",
-                level, counts.vertices, counts.faces, counts.polyline_vertices);
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* Loop's scheme takes triangles, no two of them with the same corners: those of the next level would share edges. */
-GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_error *error) {
-    int32_t f;
-    for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
-        if (mesh->face_degree[f] != 3) {
-            return gproji_fail(
-                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
-                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
-                "or cut the faces into triangles",
-                f, mesh->face_degree[f]);
-        }
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
-            return gproji_fail(
-                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
-                "edges; use Catmull-Clark, or remove them",
-                f, other);
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+/* A crease's sharpness, at most GPROJI_SHARP; < 0 if it is no such number. */
 GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
     double x = GPROJI_SHARP;
     uint64_t bits;
@@ -14711,8 +14604,10 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
 
 GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                     gproj_error *error) {
+    bool loop = options->scheme == GPROJ_LOOP;
+    int32_t level, f;
     gproj_code code;
-    if (options->scheme != GPROJ_CATMULL_CLARK && options->scheme != GPROJ_LOOP) {
+    if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
                            (int32_t)options->scheme);
     }
@@ -14727,76 +14622,101 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
                            options->levels, options->levels - 1);
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
-    if (!code && options->scheme == GPROJ_LOOP) code = gproji_check_triangles(mesh, error);
-    if (!code) code = gproji_check_creases(mesh, options, error);
-    return code ? code : gproji_check_level_counts(mesh, options, error);
-}
-
-/* The first level: corners, and the sharpness of the edges. */
-GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const gproj_mesh *mesh) {
-    const gproj_subdivide_options *options = s->options;
-    double *sharpness = (double *)gproji_take(&s->heap, (size_t)mesh->edge_count, sizeof *sharpness);
-    int32_t k;
-    s->level.mesh = mesh, s->level.scheme = options->scheme, s->level.sharpness = sharpness;
-    s->level.corner_count = mesh->vertex_count;
-    s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
-    if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
-    for (k = 0; k < mesh->edge_count; ++k)
-        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
-    for (k = 0; k < options->crease_count; ++k) {
-        double *edge = sharpness + (options->creases ? options->creases[k] : k);
-        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
+    if (code) return code;
+    /* Two triangles with the same corners have three edges in common, and so would their fine faces in the middle. */
+    for (f = 0; loop && f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3) {
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        }
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+        }
     }
-    for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
-    for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
-        if (gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2) s->corner[k] = true;
-    return GPROJ_OK;
-}
-
-/* Takes a level's stencil into that of all levels; it is given away. */
-GPROJI_INTERNAL gproj_code gproji_take_stencil(gproji_subdivision *s, gproj_stencil *step) {
-    gproj_stencil *both = step;
-    if (s->stencil) {
-        both = gproj_stencil_multiply(step, s->stencil, s->host, s->error);
-        gproj_stencil_destroy(step);
-        gproj_stencil_destroy(s->stencil);
+    code = gproji_check_creases(mesh, options, error);
+    for (level = 1; !code && level <= options->levels; ++level) {
+        gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
+        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
+            counts.polyline_vertices > INT32_MAX) {
+            code = gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
+        }
     }
-    s->stencil = both;
-    return both ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+    return code;
 }
 
-/* From a level to the next one. */
+/* -- all levels -- */
+
+/* The state between two levels. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* gives level.sharpness and level.corner */
+    const gproj_host *host;
+    gproj_error *error;
+    gproji_level level;
+    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
+
+/* Goes from a level to the next one. */
 GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
     gproji_level *level = &s->level;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error);
+    const gproj_mesh *mesh = level->mesh;
+    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error), *both;
     gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
-    double *sharpness = NULL;
-    if (fine) {
-        sharpness = (double *)gproji_take(&s->heap, (size_t)fine->edge_count, sizeof *sharpness);
-        code = sharpness ? GPROJ_OK : gproji_fail_memory(s->error);
-    }
-    if (code) {
+    double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
+    int32_t f, k, at = 0;
+    if (!sharpness) {
         gproj_mesh_destroy(fine);
         gproj_stencil_destroy(step);
-        return code;
+        return gproji_fail_memory(s->error);
     }
-    gproji_level_creases(level, fine, sharpness);
-    gproji_give(&s->heap, level->sharpness, (size_t)level->mesh->edge_count, sizeof *level->sharpness);
+    /* 1. Sharpness falls by one on the halves of an edge, and is 0 on new edges. The fine face at a corner begins with a
+       half of the corner's edge and ends with a half of the edge before. */
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
+            int32_t half = fine->face_halfedge[at];
+            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+        }
+        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+    }
+    /* 2. The fine mesh takes the coarse one's place. */
+    gproji_give(&s->heap, level->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
     level->sharpness = sharpness;
     level->mesh = s->own = fine;
-    if (keep_stencil) return gproji_take_stencil(s, step);
+    /* 3. The stencil from stencil_level to here. */
+    if (keep_stencil && !s->stencil) {
+        s->stencil = step;
+        return GPROJ_OK;
+    }
+    both = keep_stencil ? gproj_stencil_multiply(step, s->stencil, s->host, s->error) : NULL;
     gproj_stencil_destroy(step);
-    return GPROJ_OK;
+    gproj_stencil_destroy(s->stencil);
+    s->stencil = both;
+    return keep_stencil && !both ? GPROJ_ERROR_MEMORY : GPROJ_OK;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
     gproj_subdivide_options given;
     gproji_subdivision s;
-    gproj_code code;
-    int32_t level;
+    gproj_code code = GPROJ_OK;
+    double *sharpness;
+    bool *corner;
+    int32_t level, k;
     gproji_error_clear(error);
     if (stencil) *stencil = NULL;
     if (!mesh) {
@@ -14809,12 +14729,26 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     if (gproji_check_subdivision(mesh, &given, error)) return NULL;
     memset(&s, 0, sizeof s);
     s.heap = gproji_heap_of(host);
-    s.host = host, s.error = error, s.options = &given;
-    code = gproji_subdivision_begin(&s, mesh);
+    s.host = host, s.error = error;
+    s.level.mesh = mesh, s.level.scheme = given.scheme, s.level.corner_count = mesh->vertex_count;
+    s.level.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
+    s.level.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
+    if (!sharpness || !corner) code = gproji_fail_memory(error);
+    /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
+    for (k = 0; !code && k < mesh->edge_count; ++k)
+        if (mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
+    for (k = 0; !code && k < mesh->vertex_count && !given.round_corners; ++k)
+        corner[k] = gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2;
+    for (k = 0; !code && k < given.crease_count; ++k) {
+        double *edge = sharpness + (given.creases ? given.creases[k] : k);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(&given, k));
+    }
+    for (k = 0; !code && k < given.corner_count; ++k) corner[given.corners ? given.corners[k] : k] = true;
+    /* 2. The levels. */
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
-    gproji_give(&s.heap, s.corner, (size_t)mesh->vertex_count, sizeof *s.corner);
-    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof *s.level.sharpness);
+    gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
+    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof(double));
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
