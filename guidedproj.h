@@ -14761,12 +14761,12 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
 /* ============================================================================================================
    >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory.
 
-   A binary tree of axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median of the box centres
-   along the longest axis of the node's centres, down to leaves of at most four items; searched depth first, the nearer
-   child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis and
-   then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
+   A binary tree with axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median box centre along
+   the axis on which the node's centres spread most, down to leaves with at most four items; searched depth first, the
+   nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis
+   and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
    Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
-   item[begin..end-1]; the halves differ by one item at most, so no path is longer than 32 nodes. */
+   item[begin..end-1]; two children differ by one item at most, so no path is longer than 32 nodes. */
 typedef struct gproji_node {
     double low[3], high[3];
     int32_t begin, end;
@@ -14775,7 +14775,7 @@ typedef struct gproji_node {
 
 typedef struct gproji_hierarchy {
     int32_t item_count, node_count;
-    int32_t *item;     /* item_count: a permutation of the items */
+    int32_t *item;     /* item_count: a permutation */
     gproji_node *node; /* room for item_count */
 } gproji_hierarchy;
 
@@ -14784,7 +14784,7 @@ enum {
     GPROJI_TREE_DEPTH = 64
 };
 
-/* The box of an item; its squared distance from a point. */
+/* An item's box; the squared distance between an item and a point. */
 typedef void (*gproji_item_box)(const void *user, int32_t item, double low[3], double high[3]);
 typedef double (*gproji_item_distance)(const void *user, int32_t item, const double point[3]);
 
@@ -14793,8 +14793,8 @@ typedef double (*gproji_item_distance)(const void *user, int32_t item, const dou
 typedef struct gproji_hierarchy_work {
     double *box;       /* 6 * item_count: low and high of each item */
     int32_t *order[3]; /* item_count each: the items by centre along x, y, z (then by number), within every node */
-    int32_t *spare;    /* item_count: scratch of sorting and splitting */
-    uint8_t *left;     /* item_count: 1 where an item goes to the left child of the node at hand */
+    int32_t *spare;    /* item_count: scratch for sorting and splitting */
+    uint8_t *left;     /* item_count: 1 if the item goes to the left child of the node at hand */
 } gproji_hierarchy_work;
 
 /* Twice the centre. */
@@ -14824,7 +14824,7 @@ GPROJI_INTERNAL void gproji_sort_axis(gproji_hierarchy_work *work, int32_t count
     work->spare = to;
 }
 
-/* Moves the items with left = 1 to the front of list[begin..end-1], both parts keeping their order. */
+/* Moves the items with left = 1 to the front of list[begin..end-1]; items on each side keep their order. */
 GPROJI_INTERNAL void gproji_split_list(const gproji_hierarchy_work *work, int32_t *list, int32_t begin, int32_t end) {
     int32_t i, front = begin, back = 0;
     for (i = begin; i < end; ++i) {
@@ -14836,41 +14836,35 @@ GPROJI_INTERNAL void gproji_split_list(const gproji_hierarchy_work *work, int32_
     memcpy(list + front, work->spare, (size_t)back * sizeof list[0]);
 }
 
-/* The node's box, and the axis along which the centres of its items spread most. */
-GPROJI_INTERNAL int32_t gproji_bound_node(const gproji_hierarchy_work *work, gproji_node *node) {
-    int32_t axis, widest = 0, i;
-    double spread[3];
-    for (axis = 0; axis < 3; ++axis) {
-        const int32_t *list = work->order[axis];
-        spread[axis] =
-            gproji_box_centre(work, list[node->end - 1], axis) - gproji_box_centre(work, list[node->begin], axis);
-        node->low[axis] = DBL_MAX, node->high[axis] = -DBL_MAX;
-        for (i = node->begin; i < node->end; ++i) {
-            const double *box = work->box + 6 * (size_t)list[i] + axis;
-            node->low[axis] = gproji_fmin(node->low[axis], box[0]);
-            node->high[axis] = gproji_fmax(node->high[axis], box[3]);
-        }
-        if (spread[axis] > spread[widest]) widest = axis;
-    }
-    return widest;
-}
-
-/* Builds the nodes in preorder with an explicit stack of the right children still to be made. */
+/* Builds the nodes in preorder with an explicit stack for the right children that are still to be made. */
 GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierarchy_work *work) {
     int32_t stack_begin[GPROJI_TREE_DEPTH], stack_end[GPROJI_TREE_DEPTH], stack_parent[GPROJI_TREE_DEPTH], depth = 0;
     int32_t begin = 0, end = tree->item_count, parent = -1;
     for (;;) {
         gproji_node *node = &tree->node[tree->node_count];
-        int32_t axis, other, middle, i;
+        int32_t axis, widest = 0, middle, i;
+        double spread[3];
         if (parent >= 0) tree->node[parent].right = tree->node_count;
         tree->node_count++;
         node->begin = begin, node->end = end, node->right = -1;
-        axis = gproji_bound_node(work, node);
+        /* 1. Bounds, and the axis along which the centres spread most: their lists are sorted. */
+        for (axis = 0; axis < 3; ++axis) {
+            const int32_t *list = work->order[axis];
+            spread[axis] = gproji_box_centre(work, list[end - 1], axis) - gproji_box_centre(work, list[begin], axis);
+            if (spread[axis] > spread[widest]) widest = axis;
+            node->low[axis] = DBL_MAX, node->high[axis] = -DBL_MAX;
+            for (i = begin; i < end; ++i) {
+                const double *box = work->box + 6 * (size_t)list[i] + axis;
+                node->low[axis] = gproji_fmin(node->low[axis], box[0]);
+                node->high[axis] = gproji_fmax(node->high[axis], box[3]);
+            }
+        }
+        /* 2. The left child comes next, the right one after all nodes below the left. */
         if (end - begin > GPROJI_LEAF_ITEMS) {
             middle = begin + (end - begin) / 2;
-            for (i = begin; i < end; ++i) work->left[work->order[axis][i]] = i < middle;
-            for (other = 0; other < 3; ++other) {
-                if (other != axis) gproji_split_list(work, work->order[other], begin, end);
+            for (i = begin; i < end; ++i) work->left[work->order[widest][i]] = i < middle;
+            for (axis = 0; axis < 3; ++axis) {
+                if (axis != widest) gproji_split_list(work, work->order[axis], begin, end);
             }
             stack_begin[depth] = middle, stack_end[depth] = end, stack_parent[depth] = tree->node_count - 1;
             ++depth;
@@ -14890,44 +14884,40 @@ GPROJI_INTERNAL void gproji_hierarchy_give(gproji_heap *heap, gproji_hierarchy *
     tree->item = NULL, tree->node = NULL;
 }
 
-/* False when there is no memory. Needs count >= 1. */
+/* Builds the tree over `count` >= 1 items; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy *tree, int32_t count,
                                             gproji_item_box item_box, const void *user) {
     gproji_hierarchy_work work;
-    size_t n = (size_t)count;
+    gproji_pool pool;
     int32_t i, axis;
-    bool complete = true;
+    bool complete;
     memset(tree, 0, sizeof *tree);
-    memset(&work, 0, sizeof work);
     tree->item_count = count;
-    tree->item = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-    tree->node = (gproji_node *)gproji_take(heap, n, sizeof(gproji_node));
-    work.box = (double *)gproji_take(heap, n, 6 * sizeof(double));
-    work.spare = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-    work.left = (uint8_t *)gproji_take(heap, n, sizeof(uint8_t));
-    for (axis = 0; axis < 3; ++axis) {
-        work.order[axis] = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-        if (!work.order[axis]) complete = false;
-    }
-    complete = complete && tree->item && tree->node && work.box && work.spare && work.left;
+    tree->item = (int32_t *)gproji_take(heap, (size_t)count, sizeof(int32_t));
+    tree->node = (gproji_node *)gproji_take(heap, (size_t)count, sizeof(gproji_node));
+    gproji_pool_start(&pool, heap);
+    work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
+    work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
+    for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    complete = tree->item && tree->node && work.box && work.spare && work.left && work.order[0] && work.order[1] &&
+               work.order[2];
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
         for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
         gproji_grow_hierarchy(tree, &work);
-        memcpy(tree->item, work.order[0], n * sizeof(int32_t));
+        /* within a leaf the three lists differ in order only, so any of them will do */
+        memcpy(tree->item, work.order[0], (size_t)count * sizeof(int32_t));
     }
-    for (axis = 0; axis < 3; ++axis) gproji_give(heap, work.order[axis], n, sizeof(int32_t));
-    gproji_give(heap, work.left, n, sizeof(uint8_t));
-    gproji_give(heap, work.spare, n, sizeof(int32_t));
-    gproji_give(heap, work.box, n, 6 * sizeof(double));
+    gproji_pool_give_all(&pool);
     if (!complete) gproji_hierarchy_give(heap, tree);
     return complete;
 }
 
 /* -- searching -- */
 
-/* The squared distance of a point from a node's box, made smaller by more than its own rounding error, so that an item
-   that is as near as another one is looked at. */
+/* The squared distance between a point and a node's box, reduced by more than rounding can add, so that no item as near
+   as the best is missed. */
 GPROJI_INLINE double gproji_box_distance(const gproji_node *node, const double point[3]) {
     double sum = 0;
     int32_t axis;
@@ -14947,6 +14937,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
     int32_t at = 0;
     for (;;) {
         const gproji_node *node = &tree->node[at];
+        /* 1. Descend to the nearer child; the other one waits on the stack. */
         if (here <= best && node->right >= 0) {
             int32_t near_child = at + 1, far_child = node->right;
             double near_distance = gproji_box_distance(&tree->node[near_child], point);
@@ -14961,6 +14952,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
             at = near_child, here = near_distance;
             continue;
         }
+        /* 2. Compare the items in a leaf, unless the box is farther than the best so far. */
         for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
             double d = distance(user, tree->item[i], point);
             if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
@@ -14978,8 +14970,8 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
 /* ============================================================================================================
    >>curve   Polylines and their closest points. Uses platform, memory, error, vector, mesh, hierarchy.
 
-   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats its first point at its end); every
-   tangent is a unit vector, also that of a segment without length, which has the tangent of the segment before it. */
+   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats the first point at the end); every
+   tangent is a unit vector: a segment without length has the tangent of the segment before it. */
 struct gproj_curve {
     gproji_heap heap; /* first: see gproji_create_object */
     int32_t segment_count;
@@ -14988,7 +14980,7 @@ struct gproj_curve {
     gproji_hierarchy tree; /* over the segments */
 };
 
-/* The point a + t (b - a), 0 <= t <= 1, nearest to p, into `out`; returns t. A point that is not finite gives t = 0. */
+/* Writes the point a + t (b - a), 0 <= t <= 1, nearest to p to `out`; returns t. A point that is not finite gives t = 0. */
 GPROJI_INTERNAL double gproji_closest_on_segment(const double a[3], const double b[3], const double p[3],
                                                  double out[3]) {
     double ab[3], ap[3], square, t;
@@ -15028,37 +15020,6 @@ GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, c
     return gproji_square_distance3(out, point);
 }
 
-/* Directions of all segments. Those shorter than 1e-14 of the curve's extent have none of their own and take over that
-   of the segment before (an open curve's first ones: of the first segment that has one). False where none has. */
-GPROJI_INTERNAL bool gproji_curve_tangents(gproj_curve *curve, bool closed) {
-    const double zero[3] = {0, 0, 0};
-    double extent = 0, last[3] = {0, 0, 0}, *t;
-    int32_t s, k, from = -1;
-    for (s = 0; s <= curve->segment_count; ++s) {
-        for (k = 0; k < 3; ++k)
-            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
-    }
-    for (s = 0; s < curve->segment_count; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
-        if (gproji_length3(t) <= 1e-14 * extent)
-            gproji_set3(0, 0, 0, t);
-        else
-            gproji_normalise3(t, zero);
-        if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
-    }
-    if (from < 0) return false;
-    gproji_copy3(curve->tangent + 3 * (size_t)from, last);
-    for (s = 0; s < curve->segment_count; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        if (gproji_dot3(t, t) > 0)
-            gproji_copy3(t, last);
-        else
-            gproji_copy3(last, t);
-    }
-    return true;
-}
-
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     if (!curve) return;
     gproji_hierarchy_give(&curve->heap, &curve->tree);
@@ -15067,7 +15028,7 @@ GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     gproji_destroy_object(curve, sizeof *curve);
 }
 
-/* A curve with room for its points, which the caller fills in before gproji_curve_finish. NULL without memory. */
+/* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
     gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve));
     if (curve) {
@@ -15083,13 +15044,40 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
 
 /* Checks the points and builds the rest; on failure destroys the curve and returns NULL. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    gproj_code code = gproji_check_positions(curve->segment_count + 1, curve->point, "point", error);
-    if (!code && !gproji_curve_tangents(curve, closed)) {
+    const double zero[3] = {0, 0, 0};
+    double extent = 0, last[3] = {0, 0, 0}, *t;
+    int32_t s, k, count = curve->segment_count, from = -1;
+    gproj_code code = gproji_check_positions(count + 1, curve->point, "point", error);
+    /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
+    for (s = 0; s <= count && !code; ++s) {
+        for (k = 0; k < 3; ++k)
+            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
+    }
+    for (s = 0; s < count && !code; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
+        if (gproji_length3(t) <= 1e-14 * extent)
+            gproji_set3(0, 0, 0, t);
+        else
+            gproji_normalise3(t, zero);
+        /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
+        if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
+    }
+    if (!code && from < 0) {
         code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "all %d points of the curve are the same; it needs two different ones",
-                           curve->segment_count + (closed ? 0 : 1));
+                           count + (closed ? 0 : 1));
     }
-    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, curve->segment_count, gproji_segment_box, curve)) {
+    /* 2. Zeros take over the direction before them. */
+    if (!code) gproji_copy3(curve->tangent + 3 * (size_t)from, last);
+    for (s = 0; s < count && !code; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        if (gproji_dot3(t, t) > 0)
+            gproji_copy3(t, last);
+        else
+            gproji_copy3(last, t);
+    }
+    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, count, gproji_segment_box, curve)) {
         code = gproji_fail_memory(error);
     }
     if (!code) return curve;
@@ -15132,9 +15120,9 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
     } while (h != start);
     curve = gproji_curve_begin(count, host, error);
     if (!curve) return NULL;
-    for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h]) { /* against the boundary half-edges */
+    /* with the faces' edges, that is against the boundary half-edges */
+    for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h])
         gproji_copy3(mesh->position + 3 * (size_t)mesh->origin[h], curve->point + 3 * (size_t)count);
-    }
     return gproji_curve_finish(curve, true, error);
 }
 
@@ -15154,15 +15142,19 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     segments = mesh->polyline_start[polyline + 1] - mesh->polyline_start[polyline] - 1;
     curve = gproji_curve_begin(segments, host, error);
     if (!curve) return NULL;
-    for (i = 0; i <= segments; ++i) {
-        gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
-    }
+    for (i = 0; i <= segments; ++i) gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
     return gproji_curve_finish(curve, vertex[0] == vertex[segments], error);
 }
 
+/* Without a curve or a point: segment -1 at infinite distance, and zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]) {
     gproj_curve_hit hit;
     const double *a;
+    if (!curve || !point) {
+        memset(&hit, 0, sizeof hit);
+        hit.segment = -1, hit.distance = HUGE_VAL;
+        return hit;
+    }
     hit.segment = gproji_hierarchy_closest(&curve->tree, point, gproji_segment_distance, curve);
     a = curve->point + 3 * (size_t)hit.segment;
     hit.parameter = gproji_closest_on_segment(a, a + 3, point, hit.point);
