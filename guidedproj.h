@@ -15167,15 +15167,15 @@ GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const do
    >>surface   Polygon meshes as reference surfaces. Uses platform, memory, error, vector, mesh, hierarchy, curve.
 
    Faces are cut into triangles: convex ones into a fan about their first corner, others by cutting ears (Meisters
-   1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only where a face is clearly not
-   convex, so a moved or scaled mesh is cut in the same way. The normal at a point is interpolated from vertex normals,
-   which are means of face normals weighted by the angles of the corners (Thuermer and Wuethrich 1998).
+   1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only if a face is clearly not
+   convex, so a moved or scaled mesh is cut in the same way. The normal at a point is interpolated from vertex normals:
+   means of face normals weighted by the angles at the corners (Thuermer and Wuethrich 1998).
    Invariant: the triangles of a face stand together, in the order of the faces. */
 struct gproj_surface {
     gproji_heap heap; /* first: see gproji_create_object */
     int32_t vertex_count, triangle_count;
     double *position;       /* 3 * vertex_count */
-    double *normal;         /* 3 * vertex_count: unit, or 0 where no face gives one */
+    double *normal;         /* 3 * vertex_count: unit, or 0 if no face gives one */
     int32_t *triangle;      /* 3 * triangle_count: vertices */
     int32_t *triangle_face; /* triangle_count */
     gproji_hierarchy tree;  /* over the triangles */
@@ -15183,22 +15183,23 @@ struct gproj_surface {
 
 /* -- cutting faces -- */
 
-/* Work on one face: its corners in its plane, as a ring from which ears are cut. */
+/* Work on one face: the corners in its plane, as a ring from which ears are cut. */
 typedef struct gproji_polygon {
     double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
-    int32_t *vertex;  /* capacity: their vertices */
-    int32_t *next;    /* capacity: the ring of the corners that are left */
+    int32_t *vertex;  /* capacity: vertices in the mesh */
+    int32_t *next;    /* capacity: the ring of corners that are left */
     int32_t *prev;    /* capacity */
     int32_t capacity; /* the largest degree of a face */
     int32_t count;
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
 
-/* Twice the area of the triangle of corners a, b, c, positive when counter-clockwise. */
+/* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
 GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     return gproji_turn2(polygon->xy, a, b, c);
 }
 
+/* Projects a face to the plane; the ring has all corners. */
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
     const double up[3] = {0, 0, 1};
     double n[3], u[3], v[3], d[3], extent = 0;
@@ -15221,23 +15222,14 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     polygon->tolerance = 1e-9 * extent;
 }
 
-/* Every corner turns left, and the fan about the first one has no triangle that is turned over. */
-GPROJI_INTERNAL bool gproji_polygon_is_convex(const gproji_polygon *polygon) {
-    int32_t i;
-    for (i = 0; i < polygon->count; ++i) {
-        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) < -polygon->tolerance) return false;
-        if (i > 0 && i + 1 < polygon->count && gproji_turn(polygon, 0, i, i + 1) < -polygon->tolerance) return false;
-    }
-    return true;
-}
-
-/* Is corner b an ear: it turns left and no other corner is in the triangle a b c? Only corners that turn right can be
-   in it. Takes each corner looked at from the budget. */
+/* True if corner b is an ear: it turns left and no other corner is in the triangle a b c. Takes each corner looked at
+   from the budget. */
 GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
     int32_t a = polygon->prev[b], c = polygon->next[b], i;
     if (gproji_turn(polygon, a, b, c) <= polygon->tolerance) return false;
     for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
         --*budget;
+        /* if any corner is in the triangle, one that turns right is */
         if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) > 0) continue;
         if (gproji_turn(polygon, a, b, i) >= 0 && gproji_turn(polygon, b, c, i) >= 0 &&
             gproji_turn(polygon, c, a, i) >= 0) {
@@ -15247,7 +15239,7 @@ GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int
     return true;
 }
 
-/* Appends the triangle of three corners. */
+/* Appends the triangle a b c of corners. */
 GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *polygon, int32_t face, int32_t a, int32_t b,
                               int32_t c) {
     int32_t *triangle = surface->triangle + 3 * (size_t)surface->triangle_count;
@@ -15255,11 +15247,25 @@ GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *poly
     surface->triangle_face[surface->triangle_count++] = face;
 }
 
-/* Cuts ears until three corners are left. A corner where no ear is left (a face that crosses itself), or where the
-   budget of 512 looks a corner is used up (so that the time is linear in the mesh), is cut off all the same. */
-GPROJI_INTERNAL void gproji_cut_ears(gproj_surface *surface, gproji_polygon *polygon, int32_t face) {
-    int64_t budget = 512 * (int64_t)polygon->count;
-    int32_t left = polygon->count, b = 1, refused = 0;
+/* Appends a face's triangles. */
+GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
+                                     int32_t face) {
+    double least;
+    int64_t budget;
+    int32_t i, left, b = 1, refused = 0;
+    bool convex = true;
+    gproji_polygon_set(polygon, mesh, face);
+    /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
+    left = polygon->count, least = -polygon->tolerance;
+    for (i = 0; left > 3 && i < left && convex; ++i) {
+        convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
+                 (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
+    }
+    for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
+    if (convex) return;
+    /* 2. Others: cut ears until three corners are left. If none is an ear (the face crosses itself), or 512 looks a
+       corner are used up (so that time is linear in the mesh), a corner is cut off all the same. */
+    budget = 512 * (int64_t)polygon->count;
     while (left > 3) {
         int32_t a = polygon->prev[b], c = polygon->next[b];
         if (refused < left && budget > 0 && !gproji_is_ear(polygon, b, &budget)) {
@@ -15275,119 +15281,38 @@ GPROJI_INTERNAL void gproji_cut_ears(gproj_surface *surface, gproji_polygon *pol
     gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
 }
 
-GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
-                                     int32_t face) {
-    int32_t i;
-    gproji_polygon_set(polygon, mesh, face);
-    if (polygon->count > 3 && !gproji_polygon_is_convex(polygon)) {
-        gproji_cut_ears(surface, polygon, face);
-        return;
-    }
-    for (i = 1; i + 1 < polygon->count; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
-}
-
-GPROJI_INTERNAL bool gproji_cut_faces(gproj_surface *surface, const gproj_mesh *mesh) {
-    gproji_polygon polygon;
-    gproji_heap *heap = &surface->heap;
-    size_t capacity;
-    int32_t f;
-    bool complete;
-    memset(&polygon, 0, sizeof polygon);
-    for (f = 0; f < mesh->face_count; ++f) polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
-    capacity = (size_t)polygon.capacity;
-    polygon.xy = (double *)gproji_take(heap, capacity, 2 * sizeof(double));
-    polygon.vertex = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    polygon.next = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    polygon.prev = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    complete = polygon.xy && polygon.vertex && polygon.next && polygon.prev;
-    surface->triangle_count = 0;
-    for (f = 0; f < mesh->face_count && complete; ++f) gproji_cut_face(surface, &polygon, mesh, f);
-    gproji_give(heap, polygon.prev, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.next, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.vertex, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.xy, capacity, 2 * sizeof(double));
-    return complete;
-}
-
-/* -- normals -- */
-
-/* The angle between the edges from b to a and from b to c; 0 where one has no length. */
-GPROJI_INTERNAL double gproji_angle3(const double a[3], const double b[3], const double c[3]) {
-    double u[3], v[3], w[3];
-    gproji_sub3(a, b, u);
-    gproji_sub3(c, b, v);
-    gproji_cross3(u, v, w);
-    return atan2(gproji_length3(w), gproji_dot3(u, v));
-}
-
-GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
-    const double zero[3] = {0, 0, 0};
-    const double *x = mesh->position;
-    double n[3];
-    int32_t f, h, v;
-    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproj_mesh_face_area_vector(mesh, f, n);
-        if (!gproji_normalise3(n, zero)) continue;
-        h = mesh->face_halfedge[f];
-        do {
-            v = mesh->origin[h];
-            gproji_add_scaled3(gproji_angle3(x + 3 * (size_t)mesh->origin[mesh->prev[h]], x + 3 * (size_t)v,
-                                             x + 3 * (size_t)mesh->origin[mesh->next[h]]),
-                               n, surface->normal + 3 * (size_t)v);
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-    }
-    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
-}
-
 /* -- closest points -- */
 
-/* Barycentric coordinates of the orthogonal projection of p to the plane of a triangle: true where it falls inside.
-   *sure: the triangle is no needle and p not far away, so that the signs of coordinates beyond 1e-9 can be trusted.
-   False, and not sure, for triangles without area. */
-GPROJI_INTERNAL bool gproji_project_to_triangle(const double *const corner[3], const double p[3], double weight[3],
-                                                bool *sure) {
-    double ab[3], ac[3], ap[3], n[3], w[3], square, scale;
+/* The point in a triangle nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
+GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
+                                                  double weight[3]) {
+    double ab[3], ac[3], ap[3], n[3], q[3], w[3] = {0, 0, 0}, square, scale, best = DBL_MAX, d, t;
+    int32_t k;
+    bool sure, inside = false;
+    /* 1. Barycentric coordinates w for the orthogonal projection to the plane, if the triangle has an area. */
     gproji_sub3(corner[1], corner[0], ab);
     gproji_sub3(corner[2], corner[0], ac);
     gproji_sub3(p, corner[0], ap);
     gproji_cross3(ab, ac, n);
     square = gproji_dot3(n, n);
     scale = gproji_fmax(gproji_dot3(ab, ab), gproji_dot3(ac, ac));
-    *sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
-    if (!(square > 1e-28 * scale * scale)) return false;
-    gproji_cross3(ap, ac, w);
-    weight[1] = gproji_dot3(w, n) / square;
-    gproji_cross3(ab, ap, w);
-    weight[2] = gproji_dot3(w, n) / square;
-    weight[0] = 1 - weight[1] - weight[2];
-    return weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
-}
-
-/* corner[0] + w1 (corner[1] - corner[0]) + w2 (corner[2] - corner[0]) */
-GPROJI_INLINE void gproji_triangle_point(const double *const corner[3], const double weight[3], double out[3]) {
-    int32_t k;
-    for (k = 0; k < 3; ++k) {
-        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
+    if (square > 1e-28 * scale * scale) {
+        gproji_cross3(ap, ac, q);
+        w[1] = gproji_dot3(q, n) / square;
+        gproji_cross3(ab, ap, q);
+        w[2] = gproji_dot3(q, n) / square;
+        w[0] = 1 - w[1] - w[2];
+        inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
     }
-}
-
-/* The point of a triangle nearest to p: the projection to its plane if that is inside; else on an edge that separates
-   the projection from the triangle. Of needles, and of triangles that are points, all candidates are compared. Returns
-   the squared distance. */
-GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
-                                                  double weight[3]) {
-    double best = DBL_MAX, q[3], w[3] = {0, 0, 0}, d, t;
-    int32_t k;
-    bool sure, inside = gproji_project_to_triangle(corner, p, w, &sure);
-    if (inside)
-        gproji_copy3(w, weight);
-    else
-        gproji_set3(1, 0, 0, weight);
-    gproji_triangle_point(corner, weight, out);
+    /* signs beyond 1e-9 can be trusted if the triangle is no needle and p not far away */
+    sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
+    gproji_set3(1, 0, 0, weight);
+    if (inside) gproji_copy3(w, weight);
+    for (k = 0; k < 3; ++k)
+        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
     if (inside) best = gproji_square_distance3(out, p);
     if (inside && sure) return best;
+    /* 2. Edges that separate the projection from the triangle; if that is not sure, all three. */
     for (k = 0; k < 3; ++k) {
         int32_t following = k < 2 ? k + 1 : 0, opposite = k > 0 ? k - 1 : 2;
         if (sure && w[opposite] > 1e-9) continue;
@@ -15405,9 +15330,7 @@ GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3],
 
 GPROJI_INLINE void gproji_triangle_corners(const gproj_surface *surface, int32_t item, const double *corner[3]) {
     int32_t k;
-    for (k = 0; k < 3; ++k) {
-        corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
-    }
+    for (k = 0; k < 3; ++k) corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
 }
 
 GPROJI_INTERNAL void gproji_triangle_box(const void *user, int32_t item, double low[3], double high[3]) {
@@ -15427,38 +15350,7 @@ GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, 
     return gproji_closest_on_triangle(corner, point, out, weight);
 }
 
-/* The unit normal at a point of a triangle: interpolated; that of the triangle where the vertex normals cancel; up
-   where the triangle has none either. */
-GPROJI_INTERNAL void gproji_surface_normal(const gproj_surface *surface, int32_t item, const double weight[3],
-                                           double normal[3]) {
-    const double up[3] = {0, 0, 1};
-    const double *corner[3];
-    double ab[3], ac[3];
-    int32_t k;
-    gproji_set3(0, 0, 0, normal);
-    for (k = 0; k < 3; ++k) {
-        const double *n = surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
-        gproji_add_scaled3(weight[k], n, normal);
-    }
-    if (gproji_dot3(normal, normal) > 1e-12) {
-        gproji_normalise3(normal, up);
-        return;
-    }
-    gproji_triangle_corners(surface, item, corner);
-    gproji_sub3(corner[1], corner[0], ab);
-    gproji_sub3(corner[2], corner[0], ac);
-    gproji_cross3(ab, ac, normal);
-    gproji_normalise3(normal, up);
-}
-
 /* -- the object -- */
-
-/* The triangles of all faces: a face of degree d has d - 2. */
-GPROJI_INTERNAL int32_t gproji_count_triangles(const gproj_mesh *mesh) {
-    int32_t f, count = 0;
-    for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] - 2;
-    return count;
-}
 
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     size_t vertices, triangles;
@@ -15472,28 +15364,36 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     gproji_destroy_object(surface, sizeof *surface);
 }
 
-/* Everything but the checks; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_surface_fill(gproj_surface *surface, const gproj_mesh *mesh) {
-    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)gproji_count_triangles(mesh);
-    int32_t triangle_count = (int32_t)triangles;
-    surface->vertex_count = mesh->vertex_count;
-    surface->triangle_count = triangle_count;
-    surface->position = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
-    surface->normal = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
-    surface->triangle = (int32_t *)gproji_take(&surface->heap, triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, triangles, sizeof(int32_t));
-    if (!surface->position || !surface->normal || !surface->triangle || !surface->triangle_face) return false;
-    memcpy(surface->position, mesh->position, vertices * 3 * sizeof(double));
-    gproji_surface_normals(surface, mesh);
-    if (!gproji_cut_faces(surface, mesh)) {
-        surface->triangle_count = triangle_count; /* the size with which the arrays are given back */
-        return false;
+/* Sums face normals, weighted by angles, into vertex normals. */
+GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
+    const double zero[3] = {0, 0, 0};
+    double n[3], a[3], b[3], cross[3];
+    int32_t f, h, v;
+    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, n);
+        if (!gproji_normalise3(n, zero)) continue;
+        h = mesh->face_halfedge[f];
+        do {
+            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            gproji_cross3(a, b, cross);
+            /* by atan2, an edge without length makes the angle 0 */
+            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
+                               surface->normal + 3 * (size_t)mesh->origin[h]);
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
     }
-    return gproji_hierarchy_build(&surface->heap, &surface->tree, triangle_count, gproji_triangle_box, surface);
+    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
 }
 
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproj_surface *surface;
+    gproji_polygon polygon;
+    gproji_pool pool;
+    int32_t f, vertices, triangles = 0;
+    bool complete;
     gproji_error_clear(error);
     if (!mesh || !mesh->face_count) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -15502,24 +15402,67 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     }
     if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
     surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface));
-    if (!surface || !gproji_surface_fill(surface, mesh)) {
+    if (!surface) {
         gproji_fail_memory(error);
-        gproj_surface_destroy(surface);
         return NULL;
     }
-    return surface;
+    memset(&polygon, 0, sizeof polygon);
+    for (f = 0; f < mesh->face_count; ++f) {
+        triangles += mesh->face_degree[f] - 2;
+        polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
+    }
+    surface->vertex_count = vertices = mesh->vertex_count, surface->triangle_count = triangles;
+    surface->position = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
+    surface->normal = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
+    surface->triangle = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, 3 * sizeof(int32_t));
+    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, sizeof(int32_t));
+    gproji_pool_start(&pool, &surface->heap);
+    polygon.xy = (double *)gproji_pool_take(&pool, polygon.capacity, 2 * sizeof(double));
+    polygon.vertex = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    polygon.next = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    polygon.prev = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    complete = surface->position && surface->normal && surface->triangle && surface->triangle_face && polygon.xy &&
+               polygon.vertex && polygon.next && polygon.prev;
+    if (complete) {
+        memcpy(surface->position, mesh->position, (size_t)vertices * 3 * sizeof(double));
+        gproji_surface_normals(surface, mesh);
+        surface->triangle_count = 0; /* counted up again by cutting */
+        for (f = 0; f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
+    }
+    gproji_pool_give_all(&pool);
+    if (complete && gproji_hierarchy_build(&surface->heap, &surface->tree, triangles, gproji_triangle_box, surface)) {
+        return surface;
+    }
+    gproji_fail_memory(error);
+    gproj_surface_destroy(surface);
+    return NULL;
 }
 
+/* Without a surface or a point: face -1 at infinite distance, and zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
+    const double up[3] = {0, 0, 1};
     gproj_surface_hit hit;
     const double *corner[3];
-    double weight[3];
-    int32_t item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
+    double weight[3], ab[3], ac[3];
+    int32_t item, k;
+    memset(&hit, 0, sizeof hit);
+    hit.face = -1, hit.distance = HUGE_VAL;
+    if (!surface || !point) return hit;
+    item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
     gproji_triangle_corners(surface, item, corner);
     gproji_closest_on_triangle(corner, point, hit.point, weight);
-    gproji_surface_normal(surface, item, weight, hit.normal);
     hit.distance = gproji_distance3(hit.point, point);
     hit.face = surface->triangle_face[item];
+    /* The interpolated normal; the triangle's if vertex normals cancel; up if the triangle has no area. */
+    for (k = 0; k < 3; ++k)
+        gproji_add_scaled3(weight[k], surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k],
+                           hit.normal);
+    if (!(gproji_dot3(hit.normal, hit.normal) > 1e-12)) {
+        gproji_sub3(corner[1], corner[0], ab);
+        gproji_sub3(corner[2], corner[0], ac);
+        gproji_cross3(ab, ac, hit.normal);
+    }
+    gproji_normalise3(hit.normal, up);
     return hit;
 }
 
