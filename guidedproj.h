@@ -12776,7 +12776,7 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
    Mantyla's half-edge structure (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are twins, edges
    are numbered as they first appear along the faces. Equal edges are found by counting sort on their smaller vertex and
    a table by the larger one: linear time and no hashing, so the result depends on the input alone. Building takes five
-   steps: check (gproji_mesh_build, gproji_mesh_read_corners), match, orient, link, loops (gproji_mesh_connect).
+   steps: check (gproji_mesh_build, _connect), match, orient, link, loops (_connect).
    Invariants: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`; origin[next[h]] =
    origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it is vertex_halfedge;
    the faces at a vertex form one fan. */
@@ -12859,36 +12859,6 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
     return GPROJ_OK;
 }
 
-/* Fills the corner arrays and face_start; refuses indices beyond the vertices and a vertex twice in a face. */
-GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gproji_mesh_work *work,
-                                                    gproj_error *error) {
-    int32_t f, k, c = 0;
-    gproji_fill(work->mark, soup->vertex_count, -1); /* the last face that named each vertex */
-    for (f = 0; f < soup->face_count; ++f) {
-        work->face_start[f] = c;
-        for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
-            int32_t v = soup->face_vertex[c];
-            if (v < 0 || v >= soup->vertex_count) {
-                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, f,
-                                   "face %d names vertex %d, but the vertices are 0 to %d", f, v,
-                                   soup->vertex_count - 1);
-            }
-            if (work->mark[v] == f) {
-                return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                                   "face %d names vertex %d twice; name each corner once, or split the face there", f,
-                                   v);
-            }
-            work->mark[v] = f;
-            work->corner_vertex[c] = v;
-            work->corner_face[c] = f;
-            work->corner_next[c] = c + 1;
-        }
-        work->corner_next[c - 1] = work->face_start[f];
-    }
-    work->face_start[soup->face_count] = c;
-    return GPROJ_OK;
-}
-
 /* -- edges -- */
 
 /* The vertex at which a corner's edge ends. */
@@ -12896,36 +12866,20 @@ GPROJI_INLINE int32_t gproji_corner_head(const gproji_mesh_work *work, int32_t c
     return work->corner_vertex[work->corner_next[c]];
 }
 
-/* Refuses an edge with more than two faces, given the third corner there; the sentence names three faces. */
-GPROJI_INTERNAL gproj_code gproji_fail_edge(const gproji_soup *soup, const gproji_mesh_work *work, int32_t corner,
-                                            gproj_error *error) {
-    int32_t a = work->corner_vertex[corner], b = gproji_corner_head(work, corner), faces[3] = {0, 0, 0}, count = 0, c;
-    for (c = 0; c < soup->corner_count; ++c) {
-        int32_t u = work->corner_vertex[c], v = gproji_corner_head(work, c);
-        if ((u != a || v != b) && (u != b || v != a)) continue;
-        if (count < 3) faces[count] = work->corner_face[c];
-        ++count;
-    }
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
-        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
-        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
-        count > 3 ? ", ..." : "");
-}
-
 /* Numbers the edges in the order in which they first appear along the faces: fills corner_edge and edge_corner. */
 GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mesh_work *work, int32_t *edge_count,
                                              gproj_error *error) {
-    int32_t i, c, v, sum = 0, edges = 0, third = -1, *slot = work->slot, *mark = work->mark;
+    int32_t i, c, v, a, b, sum = 0, edges = 0, third = -1, count = 0, faces[3] = {0, 0, 0};
+    int32_t *slot = work->slot, *mark = work->mark;
     /* 1. Sort the corners by the smaller vertex of their edge; equal ones keep their order. */
     gproji_fill(slot, soup->vertex_count + 1, 0);
     for (c = 0; c < soup->corner_count; ++c) {
         slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
     }
     for (v = 0; v <= soup->vertex_count; ++v) {
-        int32_t count = slot[v];
+        int32_t corners = slot[v];
         slot[v] = sum;
-        sum += count;
+        sum += corners;
     }
     for (c = 0; c < soup->corner_count; ++c) {
         work->corner_order[slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
@@ -12934,10 +12888,9 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
        the loop passes smaller vertex a, which mark[b] = a says. */
     gproji_fill(mark, soup->vertex_count, -1);
     for (i = 0; i < soup->corner_count; ++i) {
-        int32_t u, a, b;
         c = work->corner_order[i];
-        u = work->corner_vertex[c], v = gproji_corner_head(work, c);
-        a = gproji_min(u, v), b = gproji_max(u, v);
+        a = gproji_min(work->corner_vertex[c], gproji_corner_head(work, c));
+        b = gproji_max(work->corner_vertex[c], gproji_corner_head(work, c));
         if (mark[b] != a) {
             mark[b] = a;
             slot[b] = c;
@@ -12958,7 +12911,21 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
         }
     }
     *edge_count = edges;
-    return third < 0 ? GPROJ_OK : gproji_fail_edge(soup, work, third, error);
+    if (third < 0) return GPROJ_OK;
+    /* 4. An edge with a third corner is refused: name the first three faces there. */
+    a = work->corner_vertex[third], b = gproji_corner_head(work, third);
+    for (c = 0; c < soup->corner_count; ++c) {
+        int32_t u = work->corner_vertex[c];
+        v = gproji_corner_head(work, c);
+        if ((u != a || v != b) && (u != b || v != a)) continue;
+        if (count < 3) faces[count] = work->corner_face[c];
+        ++count;
+    }
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
+        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
+        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
+        count > 3 ? ", ..." : "");
 }
 
 /* Makes all faces in a component agree with the first one. Turned faces change the order of the corners, so the edges
@@ -13114,9 +13081,34 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
 GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
                                                gproji_mesh_work *work, gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
-    int32_t h, i, *loop = work->slot;
-    gproj_code code = gproji_mesh_read_corners(soup, work, error);
-    if (!code) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    int32_t h, i, f, k, c = 0, *loop = work->slot;
+    gproj_code code;
+    /* 1. Corners. mark[v] is the last face that named vertex v. */
+    gproji_fill(work->mark, soup->vertex_count, -1);
+    for (f = 0; f < soup->face_count; ++f) {
+        work->face_start[f] = c;
+        for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
+            int32_t v = soup->face_vertex[c];
+            if (v < 0 || v >= soup->vertex_count) {
+                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, f,
+                                   "face %d names vertex %d, but the vertices are 0 to %d", f, v,
+                                   soup->vertex_count - 1);
+            }
+            if (work->mark[v] == f) {
+                return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                                   "face %d names vertex %d twice; name each corner once, or split the face there", f,
+                                   v);
+            }
+            work->mark[v] = f;
+            work->corner_vertex[c] = v;
+            work->corner_face[c] = f;
+            work->corner_next[c] = c + 1;
+        }
+        work->corner_next[c - 1] = work->face_start[f];
+    }
+    work->face_start[soup->face_count] = c;
+    /* 2. Edges, orientation and half-edges. */
+    code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (!code) code = gproji_mesh_orient(soup, work, mesh, error);
     if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (code) return code;
@@ -13125,7 +13117,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
     code = gproji_mesh_link(object, work, error);
     if (code) return code;
-    /* The boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
+    /* 3. Boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
     gproji_fill(work->mark, mesh->vertex_count, 0);
     for (h = 0; h < mesh->halfedge_count; ++h) {
         if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
@@ -13587,25 +13579,6 @@ GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int64_t degre
 
 /* -- OBJ -- */
 
-/* Reads v x y z; a weight, a colour or both may follow and are passed over. */
-GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
-    double number, x[3] = {0, 0, 0};
-    int32_t count = 0, line = reader->line;
-    gproj_code code;
-    while (gproji_next_word(reader)) {
-        code = gproji_word_number(reader, &number);
-        if (code) return code;
-        if (count < 3) x[count] = number;
-        if (count < 8) ++count; /* 8 stands for all larger counts */
-    }
-    if (count != 3 && count != 4 && count != 6 && count != 7) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                           "line %d: a vertex with %s%d numbers; write 'v x y z'", line, count == 8 ? "more than " : "",
-                           count == 8 ? 7 : count);
-    }
-    return gproji_push_vertex(reader, x, line);
-}
-
 /* Appends the indices in an f or l line, counted from 0, to `ints`; *count is their number. */
 GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
     int64_t index, vertices = (int64_t)reader->vertex_count;
@@ -13658,11 +13631,23 @@ GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
     bool more = true;
     /* Lines that begin with v, f or l; all others are passed over. */
     for (; more && !code; more = gproji_next_line(reader)) {
-        int32_t count, line;
+        int32_t count = 0, line;
         if (!gproji_next_word(reader)) continue;
         line = reader->line;
         if (gproji_word_is(reader, "v")) {
-            code = gproji_obj_vertex(reader);
+            /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
+            double number, x[3] = {0, 0, 0};
+            while (!code && gproji_next_word(reader)) {
+                code = gproji_word_number(reader, &number);
+                if (count < 3) x[count] = number;
+                if (count < 8) ++count;
+            }
+            if (!code && count != 3 && count != 4 && count != 6 && count != 7) {
+                code = gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                                   "line %d: a vertex with %s%d numbers; write 'v x y z'", line,
+                                   count == 8 ? "more than " : "", count == 8 ? 7 : count);
+            }
+            if (!code) code = gproji_push_vertex(reader, x, line);
         } else if (gproji_word_is(reader, "f")) {
             code = gproji_obj_indices(reader, &reader->face_vertex, &count);
             if (!code) code = gproji_push_face(reader, count, line);
@@ -13931,15 +13916,11 @@ GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
     writer->length = 0;
 }
 
-/* Room for a word of up to GPROJ_NUMBER_SIZE characters. */
-GPROJI_INLINE char *gproji_room(gproji_writer *writer) {
-    if (writer->length + GPROJ_NUMBER_SIZE > sizeof writer->buffer) gproji_flush(writer);
-    return writer->buffer + writer->length;
-}
-
-GPROJI_INLINE void gproji_put(gproji_writer *writer, const char *text) {
+/* Appends a word, shorter than the buffer. */
+GPROJI_INTERNAL void gproji_put(gproji_writer *writer, const char *text) {
     size_t length = strlen(text);
-    memcpy(gproji_room(writer), text, length);
+    if (writer->length + length > sizeof writer->buffer) gproji_flush(writer);
+    memcpy(writer->buffer + writer->length, text, length);
     writer->length += length;
 }
 
@@ -13953,6 +13934,7 @@ GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
 GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
                                              void *user) {
     gproji_writer writer;
+    char number[GPROJ_NUMBER_SIZE];
     bool off = format == GPROJ_FORMAT_OFF;
     int32_t v, f, p, h, i, k;
     writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
@@ -13968,7 +13950,8 @@ GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_forma
     for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
         if (!off) gproji_put(&writer, "v ");
         for (k = 0; k < 3; ++k) {
-            writer.length += gproj_number_write(mesh->position[3 * v + k], gproji_room(&writer));
+            gproj_number_write(mesh->position[3 * v + k], number);
+            gproji_put(&writer, number);
             gproji_put(&writer, k < 2 ? " " : "\n");
         }
     }
@@ -14265,17 +14248,13 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 typedef struct gproji_rows {
     gproji_heap *heap; /* gives `place` */
     const gproj_host *host;
-    gproj_stencil *stencil; /* NULL: no memory */
+    gproj_stencil *stencil;
+    bool failed; /* no memory: nothing more is added */
     int32_t column_count;
     int32_t row;    /* the one that is being made */
     int64_t count;  /* all entries so far */
     int64_t *place; /* column_count: the column's entry in this row; older than the row, or -1: none yet */
 } gproji_rows;
-
-GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
-    gproj_stencil_destroy(rows->stencil);
-    rows->stencil = NULL;
-}
 
 GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
                                        const gproj_host *host) {
@@ -14284,20 +14263,18 @@ GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int
     rows->column_count = column_count, rows->row = 0, rows->count = 0;
     rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
     rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
-    if (!rows->place) gproji_rows_drop(rows);
-    for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
+    rows->failed = !rows->place || !rows->stencil;
+    for (j = 0; !rows->failed && j < column_count; ++j) rows->place[j] = -1;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
 GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
     gproji_stencil_object *object;
-    if (!rows->stencil) return;
+    if (rows->failed) return;
     object = gproji_stencil_owner(rows->stencil);
     if (rows->place[column] < object->start[rows->row]) {
-        if (!gproji_stencil_reserve(object, (size_t)rows->count + 1)) {
-            gproji_rows_drop(rows);
-            return;
-        }
+        rows->failed = !gproji_stencil_reserve(object, (size_t)rows->count + 1);
+        if (rows->failed) return;
         object->column[rows->count] = column;
         object->weight[rows->count] = 0;
         rows->place[column] = rows->count++;
@@ -14307,7 +14284,7 @@ GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double w
 
 GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
     rows->row++;
-    if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+    if (!rows->failed) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
 }
 
 /* Finishes the stencil; NULL when there is no memory. */
@@ -14315,8 +14292,8 @@ GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *e
     gproj_stencil *turned = NULL, *sorted = NULL;
     gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
     /* transposing twice sorts the columns in all rows, in linear time */
-    if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
-    gproji_rows_drop(rows);
+    if (!rows->failed) turned = gproji_transposed(rows->stencil, rows->host);
+    gproj_stencil_destroy(rows->stencil);
     if (turned) sorted = gproji_transposed(turned, rows->host);
     gproj_stencil_destroy(turned);
     if (!sorted) gproji_fail_memory(error);
@@ -14339,23 +14316,6 @@ GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, 
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
         gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
-}
-
-/* Adds an edge's vertex: the smooth rule and the sharp one, blended by sharpness. */
-GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
-    const gproj_mesh *mesh = level->mesh;
-    bool loop = level->scheme == GPROJ_LOOP;
-    double sharp = gproji_fmin(level->sharpness[edge], 1), smooth = 1 - sharp;
-    double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
-    int32_t h;
-    for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
-    /* only boundary edges lack a face, and these are sharp */
-    for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
-        if (loop)
-            gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
-        else
-            gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, rows);
-    }
 }
 
 /* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
@@ -14398,25 +14358,6 @@ GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t v
     } while (h != start);
 }
 
-/* Adds a vertex: a corner, or the rules for this level and the next, blended if creases at it end in between. */
-GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
-    int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
-    double sum = 0, now;
-    if (start < 0 || (vertex < level->corner_count && level->corner[vertex])) {
-        gproji_rows_add(rows, vertex, 1);
-        return;
-    }
-    /* the mean sharpness over edges that are sharp here and smooth on the next level */
-    do {
-        double s = level->sharpness[h / 2];
-        if (s > 0 && s <= 1) sum += s, ++count;
-        h = gproji_rotate(level->mesh, h);
-    } while (h != start);
-    now = count ? sum / count : 1;
-    gproji_add_vertex_rule(level, vertex, 0, now, rows);
-    if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
-}
-
 /* -- one level -- */
 
 typedef struct gproji_counts {
@@ -14447,13 +14388,42 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, g
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     gproji_rows rows;
-    int32_t i;
+    int32_t i, h;
+    bool loop = level->scheme == GPROJ_LOOP;
     gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
-    for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
-        gproji_add_vertex_row(level, i, &rows);
-    for (i = 0; rows.stencil && i < mesh->edge_count; ++i, gproji_rows_next(&rows))
-        gproji_add_edge_rule(level, i, &rows);
-    for (i = 0; rows.stencil && level->scheme != GPROJ_LOOP && i < mesh->face_count; ++i, gproji_rows_next(&rows))
+    /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
+       mean sharpness over edges that are sharp now and smooth then. */
+    for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
+        double sum = 0, now;
+        int32_t count = 0;
+        h = mesh->vertex_halfedge[i];
+        if (h < 0 || (i < level->corner_count && level->corner[i])) {
+            gproji_rows_add(&rows, i, 1);
+            continue;
+        }
+        do {
+            double s = level->sharpness[h / 2];
+            if (s > 0 && s <= 1) sum += s, ++count;
+            h = gproji_rotate(mesh, h);
+        } while (h != mesh->vertex_halfedge[i]);
+        now = count ? sum / count : 1;
+        gproji_add_vertex_rule(level, i, 0, now, &rows);
+        if (now < 1) gproji_add_vertex_rule(level, i, 1, 1 - now, &rows);
+    }
+    /* 2. Edges: the smooth rule and the sharp one, blended. Boundary edges, which lack a face, are sharp. */
+    for (i = 0; !rows.failed && i < mesh->edge_count; ++i, gproji_rows_next(&rows)) {
+        double sharp = gproji_fmin(level->sharpness[i], 1), smooth = 1 - sharp;
+        double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
+        for (h = 2 * i; h <= 2 * i + 1; ++h) gproji_rows_add(&rows, mesh->origin[h], end);
+        for (h = 2 * i; smooth > 0 && h <= 2 * i + 1; ++h) {
+            if (loop)
+                gproji_rows_add(&rows, mesh->origin[mesh->prev[h]], smooth / 8);
+            else
+                gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, &rows);
+        }
+    }
+    /* 3. Faces. */
+    for (i = 0; !rows.failed && !loop && i < mesh->face_count; ++i, gproji_rows_next(&rows))
         gproji_add_face_rule(mesh, i, 1, &rows);
     return gproji_rows_end(&rows, error);
 }
@@ -14550,7 +14520,7 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
         return NULL;
     }
     gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
-    for (i = 0; rows.stencil && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+    for (i = 0; !rows.failed && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
             int32_t middle = fine->column[k];
             for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
@@ -15183,7 +15153,7 @@ struct gproj_surface {
 
 /* -- cutting faces -- */
 
-/* Work on one face: the corners in its plane, as a ring from which ears are cut. */
+/* Work on one face: the corners in a plane, as a ring from which ears are cut. */
 typedef struct gproji_polygon {
     double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
     int32_t *vertex;  /* capacity: vertices in the mesh */
