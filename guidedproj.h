@@ -12822,12 +12822,12 @@ typedef struct gproji_mesh_work {
     int32_t *corner_face;   /* corner_count: the corner's face */
     int32_t *corner_next;   /* corner_count: the next corner in the same face */
     int32_t *corner_edge;   /* corner_count: the edge from this corner's vertex to the next one's */
-    int32_t *corner_order; /* corner_count: sorted by the smaller vertex of the corner's edge; later a queue of faces */
-    int32_t *edge_corner;  /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
-    int32_t *face_start;   /* face_count + 1: the first corner of each face */
-    int32_t *face_state;   /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
-    int32_t *mark;         /* vertex_count: scratch that each step sets anew */
-    int32_t *slot;         /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
+    int32_t *corner_order;  /* corner_count: corners by the smaller vertex of their edge; later a queue of faces */
+    int32_t *edge_corner;   /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
+    int32_t *face_start;    /* face_count + 1: the first corner of each face */
+    int32_t *face_state;    /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
+    int32_t *mark;          /* vertex_count: scratch that each step sets anew */
+    int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
