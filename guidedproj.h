@@ -13061,16 +13061,17 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
     }
     /* 4. Rotation stays within a fan: if it misses an outgoing half-edge, there is another fan. */
     for (v = 0; v < mesh->vertex_count; ++v) {
-        if (out[v] < 0) {
+        int32_t start = out[v], missed = outgoing[v];
+        if (start < 0) {
             mesh->isolated_count++;
             continue;
         }
-        h = out[v];
+        h = start;
         do {
-            --outgoing[v];
-            h = gproji_rotate(mesh, h);
-        } while (h != out[v]);
-        if (outgoing[v]) return gproji_fail_fans(v, error);
+            --missed;
+            h = prev[h] ^ 1;
+        } while (h != start);
+        if (missed) return gproji_fail_fans(v, error);
     }
     return GPROJ_OK;
 }
@@ -13916,8 +13917,8 @@ GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
     writer->length = 0;
 }
 
-/* Appends a word, shorter than the buffer. */
-GPROJI_INTERNAL void gproji_put(gproji_writer *writer, const char *text) {
+/* Appends a word, shorter than the buffer. Inline, because most words are literals with a known length. */
+GPROJI_INLINE void gproji_put(gproji_writer *writer, const char *text) {
     size_t length = strlen(text);
     if (writer->length + length > sizeof writer->buffer) gproji_flush(writer);
     memcpy(writer->buffer + writer->length, text, length);
@@ -14820,14 +14821,15 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
         /* 1. Bounds, and the axis along which the centres spread most: their lists are sorted. */
         for (axis = 0; axis < 3; ++axis) {
             const int32_t *list = work->order[axis];
+            double low = DBL_MAX, high = -DBL_MAX;
             spread[axis] = gproji_box_centre(work, list[end - 1], axis) - gproji_box_centre(work, list[begin], axis);
             if (spread[axis] > spread[widest]) widest = axis;
-            node->low[axis] = DBL_MAX, node->high[axis] = -DBL_MAX;
             for (i = begin; i < end; ++i) {
                 const double *box = work->box + 6 * (size_t)list[i] + axis;
-                node->low[axis] = gproji_fmin(node->low[axis], box[0]);
-                node->high[axis] = gproji_fmax(node->high[axis], box[3]);
+                low = gproji_fmin(low, box[0]);
+                high = gproji_fmax(high, box[3]);
             }
+            node->low[axis] = low, node->high[axis] = high;
         }
         /* 2. The left child comes next, the right one after all nodes below the left. */
         if (end - begin > GPROJI_LEAF_ITEMS) {
