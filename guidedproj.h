@@ -12055,17 +12055,17 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
 /* ============================================================================================================
-   >>mesh   Half-edge meshes of any polygons. Uses platform, memory, error, vector.
+   >>mesh   Half-edge meshes from any polygons. Uses platform, memory, error, vector.
 
-   The half-edge structure is Mantyla's (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are
-   twins, edges are numbered as they first appear along the faces. Equal edges are found by counting sort on their
-   smaller vertex and a table of the larger one: linear time and no hashing, so the result depends on the input
-   alone. A mesh is built in steps, each a function below: check, match, orient, link, fans, loops.
-   Invariants of a finished mesh: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`;
-   origin[next[h]] = origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it
-   is vertex_halfedge; the faces of a vertex form one fan. */
+   Mantyla's half-edge structure (1988) in the array form that is usual today: half-edges 2e and 2e + 1 are twins, edges
+   are numbered as they first appear along the faces. Equal edges are found by counting sort on their smaller vertex and
+   a table by the larger one: linear time and no hashing, so the result depends on the input alone. Building takes five
+   steps: check (gproji_mesh_build, _connect), match, orient, link, loops (_connect).
+   Invariants: twin[h] = h ^ 1; next and prev are inverse permutations that keep `face`; origin[next[h]] =
+   origin[twin[h]]; at most one outgoing half-edge of a vertex has face -1, and if there is one it is vertex_halfedge;
+   the faces at a vertex form one fan. */
 
-/* Coordinates beyond this are refused, so that squared areas do not overflow. */
+/* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
 /* 3 * vertices and 2 * (corners of all faces) must be int32_t. */
 enum {
@@ -12073,7 +12073,7 @@ enum {
     GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
 };
 
-/* The owner of a gproj_mesh. The arrays are those that `mesh` shows read-only; their lengths follow from its counts. */
+/* Owns a gproj_mesh: the arrays that `mesh` shows read-only, whose lengths follow from the counts there. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_mesh mesh;
@@ -12090,71 +12090,39 @@ GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
     return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
 }
 
-/* Polygons as they come: the builder's input. */
+/* Polygons without adjacency: the builder's input. */
 typedef struct gproji_soup {
     int32_t vertex_count;
     int32_t face_count;
-    int32_t corner_count;
+    int32_t corner_count; /* set by gproji_mesh_build */
     const double *position;
     const int32_t *face_degree;
     const int32_t *face_vertex;
 } gproji_soup;
 
-/* The work arrays of the builder, all given back before it returns. */
+/* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
-    int32_t *corner_vertex; /* corner_count: face_vertex, with faces turned round where they were against the others */
-    int32_t *corner_face;   /* corner_count: the face of each corner */
-    int32_t *corner_next;   /* corner_count: the next corner of the same face */
+    int32_t *corner_vertex; /* corner_count: face_vertex; turned faces are reversed here */
+    int32_t *corner_face;   /* corner_count: the corner's face */
+    int32_t *corner_next;   /* corner_count: the next corner in the same face */
     int32_t *corner_edge;   /* corner_count: the edge from this corner's vertex to the next one's */
-    int32_t *corner_order;  /* corner_count: the corners sorted by the smaller vertex of their edge; later a queue */
+    int32_t *corner_order;  /* corner_count: corners by the smaller vertex of their edge; later a queue of faces */
     int32_t *edge_corner;   /* 2 * corner_count: the corners of each edge, the second -1 at the boundary */
     int32_t *face_start;    /* face_count + 1: the first corner of each face */
     int32_t *face_state;    /* face_count: -1 not reached, 0 as it came, 1 to be turned round */
-    int32_t *mark;          /* vertex_count: the last element that touched a vertex, -1 at the start of each step */
-    int32_t *slot; /* vertex_count + 1: counters and starts of the counting sort, then edges by larger vertex */
+    int32_t *mark;          /* vertex_count: scratch that each step sets anew */
+    int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
-
-GPROJI_INTERNAL void gproji_mesh_work_give(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
-    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
-           vertices = (size_t)soup->vertex_count;
-    gproji_give(heap, work->corner_vertex, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_face, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_next, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_edge, corners, sizeof(int32_t));
-    gproji_give(heap, work->corner_order, corners, sizeof(int32_t));
-    gproji_give(heap, work->edge_corner, corners, 2 * sizeof(int32_t));
-    gproji_give(heap, work->face_start, faces + 1, sizeof(int32_t));
-    gproji_give(heap, work->face_state, faces, sizeof(int32_t));
-    gproji_give(heap, work->mark, vertices, sizeof(int32_t));
-    gproji_give(heap, work->slot, vertices + 1, sizeof(int32_t));
-    memset(work, 0, sizeof *work);
-}
-
-/* False when there is no memory; what was taken is given back by gproji_mesh_work_give. */
-GPROJI_INTERNAL bool gproji_mesh_work_take(gproji_heap *heap, gproji_mesh_work *work, const gproji_soup *soup) {
-    size_t corners = (size_t)soup->corner_count, faces = (size_t)soup->face_count,
-           vertices = (size_t)soup->vertex_count;
-    memset(work, 0, sizeof *work);
-    return (work->corner_vertex = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_face = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_next = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_edge = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->corner_order = (int32_t *)gproji_take(heap, corners, sizeof(int32_t))) != NULL &&
-           (work->edge_corner = (int32_t *)gproji_take(heap, corners, 2 * sizeof(int32_t))) != NULL &&
-           (work->face_start = (int32_t *)gproji_take(heap, faces + 1, sizeof(int32_t))) != NULL &&
-           (work->face_state = (int32_t *)gproji_take(heap, faces, sizeof(int32_t))) != NULL &&
-           (work->mark = (int32_t *)gproji_take(heap, vertices, sizeof(int32_t))) != NULL &&
-           (work->slot = (int32_t *)gproji_take(heap, vertices + 1, sizeof(int32_t))) != NULL;
-}
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
     for (i = 0; i < count; ++i) array[i] = value;
 }
 
-/* -- the checks -- */
+/* -- checks -- */
 
-GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *what,
+/* Refuses coordinates that are not finite or too large; the sentence calls the points `noun`. */
+GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *noun,
                                                   gproj_error *error) {
     int32_t i, k;
     for (i = 0; i < count; ++i) {
@@ -12163,11 +12131,11 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
             if (!gproji_is_finite(x)) {
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                                   "coordinate %s of %s %d is %g; give it a finite value", axis, what, i, x);
+                                   "coordinate %s of %s %d is %g; give it a finite value", axis, noun, i, x);
             }
             if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX) {
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                                   "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, what,
+                                   "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, noun,
                                    i, x);
             }
         }
@@ -12175,30 +12143,232 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
     return GPROJ_OK;
 }
 
-/* Degrees and their sum, before any corner is read. Sets corner_count. */
-GPROJI_INTERNAL gproj_code gproji_check_degrees(gproji_soup *soup, gproj_error *error) {
-    int64_t sum = 0;
-    int32_t f;
-    for (f = 0; f < soup->face_count; ++f) {
-        if (soup->face_degree[f] < 3) {
-            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
+/* -- edges -- */
+
+/* The vertex at which a corner's edge ends. */
+GPROJI_INLINE int32_t gproji_corner_head(const gproji_mesh_work *work, int32_t c) {
+    return work->corner_vertex[work->corner_next[c]];
+}
+
+/* Numbers the edges in the order in which they first appear along the faces: fills corner_edge and edge_corner. */
+GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mesh_work *work, int32_t *edge_count,
+                                             gproj_error *error) {
+    int32_t i, c, v, a, b, sum = 0, edges = 0, third = -1, count = 0, faces[3] = {0, 0, 0};
+    int32_t *slot = work->slot, *mark = work->mark;
+    /* 1. Sort the corners by the smaller vertex of their edge; equal ones keep their order. */
+    gproji_fill(slot, soup->vertex_count + 1, 0);
+    for (c = 0; c < soup->corner_count; ++c) {
+        slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
+    }
+    for (v = 0; v <= soup->vertex_count; ++v) {
+        int32_t corners = slot[v];
+        slot[v] = sum;
+        sum += corners;
+    }
+    for (c = 0; c < soup->corner_count; ++c) {
+        work->corner_order[slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
+    }
+    /* 2. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
+       the loop passes smaller vertex a, which mark[b] = a says. */
+    gproji_fill(mark, soup->vertex_count, -1);
+    for (i = 0; i < soup->corner_count; ++i) {
+        c = work->corner_order[i];
+        a = gproji_min(work->corner_vertex[c], gproji_corner_head(work, c));
+        b = gproji_max(work->corner_vertex[c], gproji_corner_head(work, c));
+        if (mark[b] != a) {
+            mark[b] = a;
+            slot[b] = c;
         }
-        sum += soup->face_degree[f];
-        if (sum > GPROJI_CORNERS_MAX) {
-            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
-                               "the faces up to face %d have more than %d corners; split the mesh", f,
-                               (int32_t)GPROJI_CORNERS_MAX);
+        work->corner_edge[c] = slot[b];
+    }
+    /* 3. Number the first corners in order, and give the others their edge. */
+    for (c = 0; c < soup->corner_count; ++c) {
+        int32_t first = work->corner_edge[c], e = first == c ? edges++ : work->corner_edge[first];
+        work->corner_edge[c] = e;
+        if (first == c) {
+            work->edge_corner[2 * e] = c;
+            work->edge_corner[2 * e + 1] = -1;
+        } else if (work->edge_corner[2 * e + 1] < 0) {
+            work->edge_corner[2 * e + 1] = c;
+        } else if (third < 0) {
+            third = c;
         }
     }
-    soup->corner_count = (int32_t)sum;
+    *edge_count = edges;
+    if (third < 0) return GPROJ_OK;
+    /* 4. An edge with a third corner is refused: name the first three faces there. */
+    a = work->corner_vertex[third], b = gproji_corner_head(work, third);
+    for (c = 0; c < soup->corner_count; ++c) {
+        int32_t u = work->corner_vertex[c];
+        v = gproji_corner_head(work, c);
+        if ((u != a || v != b) && (u != b || v != a)) continue;
+        if (count < 3) faces[count] = work->corner_face[c];
+        ++count;
+    }
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
+        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
+        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
+        count > 3 ? ", ..." : "");
+}
+
+/* Makes all faces in a component agree with the first one. Turned faces change the order of the corners, so the edges
+   must then be matched again. */
+GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_mesh_work *work, gproj_mesh *mesh,
+                                              gproj_error *error) {
+    int32_t *queue = work->corner_order, *state = work->face_state, first, f, c;
+    /* 1. Breadth-first search from the first face of each component. */
+    gproji_fill(state, soup->face_count, -1);
+    for (first = 0; first < soup->face_count; ++first) {
+        int32_t head = 0, tail = 0;
+        if (state[first] >= 0) continue;
+        mesh->component_count++;
+        state[first] = 0;
+        queue[tail++] = first;
+        while (head < tail) {
+            f = queue[head++];
+            for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
+                int32_t e = work->corner_edge[c], other = work->edge_corner[2 * e], g, wanted;
+                if (other == c) other = work->edge_corner[2 * e + 1];
+                if (other < 0) continue;
+                g = work->corner_face[other];
+                /* neighbours agree when they run along their edge in opposite directions */
+                wanted = state[f] ^ (work->corner_vertex[other] == work->corner_vertex[c] ? 1 : 0);
+                if (state[g] < 0) {
+                    state[g] = wanted;
+                    queue[tail++] = g;
+                } else if (state[g] != wanted) {
+                    return gproji_fail(error, GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, g,
+                                       "faces %d and %d cannot agree on an outer side at their edge %d-%d, as on a "
+                                       "Moebius strip; cut the mesh open there",
+                                       gproji_min(f, g), gproji_max(f, g), work->corner_vertex[c],
+                                       gproji_corner_head(work, c));
+                }
+            }
+        }
+    }
+    /* 2. Turn faces round. The first corner stays, so that face_halfedge begins as the input does. */
+    for (f = 0; f < soup->face_count; ++f) {
+        int32_t i = work->face_start[f] + 1, j = work->face_start[f + 1] - 1;
+        if (!state[f]) continue;
+        mesh->reoriented_count++;
+        for (; i < j; ++i, --j) {
+            int32_t v = work->corner_vertex[i];
+            work->corner_vertex[i] = work->corner_vertex[j];
+            work->corner_vertex[j] = v;
+        }
+    }
     return GPROJ_OK;
 }
 
-/* Indices in range, no vertex twice in a face; fills the corner arrays. */
-GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gproji_mesh_work *work,
-                                                    gproj_error *error) {
-    int32_t f, k, c = 0;
+/* -- half-edges -- */
+
+/* Takes the arrays whose lengths are known, and shows them in the public struct. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
+    gproj_mesh *mesh = &object->mesh;
+    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, n = (size_t)mesh->halfedge_count;
+    mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
+    mesh->vertex_halfedge = object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
+    mesh->face_halfedge = object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    mesh->face_degree = object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
+    mesh->twin = object->halfedge = (int32_t *)gproji_take(&object->heap, n, 6 * sizeof(int32_t));
+    if (!mesh->position || !mesh->vertex_halfedge || !mesh->face_halfedge || !mesh->face_degree || !mesh->twin) {
+        return false;
+    }
+    mesh->next = mesh->twin + n;
+    mesh->prev = mesh->next + n;
+    mesh->origin = mesh->prev + n;
+    mesh->face = mesh->origin + n;
+    mesh->edge = mesh->face + n;
+    return true;
+}
+
+/* The half-edge of corner c: even at the first corner of the edge, odd at the second. */
+GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32_t c) {
+    int32_t e = work->corner_edge[c];
+    return work->edge_corner[2 * e] == c ? 2 * e : 2 * e + 1;
+}
+
+/* The outgoing half-edge after h around the same vertex, counter-clockwise. */
+GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
+
+GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
+    return gproji_fail(
+        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
+        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
+        "of its own",
+        vertex);
+}
+
+/* Fills the half-edges from matched and oriented corners; refuses vertices with more than one fan. */
+GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gproji_mesh_work *work,
+                                            gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
+    int32_t n = mesh->halfedge_count, h, f, c, v, *out = object->vertex_halfedge, *outgoing = work->mark;
+    int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
+            *edge = face + n;
+    /* 1. Half-edges in faces. Their twins at the boundary keep face -1 and get an origin only. */
+    for (h = 0; h < n; ++h) {
+        twin[h] = h ^ 1;
+        edge[h] = h / 2;
+        next[h] = prev[h] = face[h] = -1;
+    }
+    for (f = 0; f < mesh->face_count; ++f) {
+        object->face_degree[f] = work->face_start[f + 1] - work->face_start[f];
+        object->face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
+        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
+            int32_t following = gproji_corner_halfedge(work, work->corner_next[c]);
+            h = gproji_corner_halfedge(work, c);
+            next[h] = following;
+            prev[following] = h;
+            face[h] = f;
+            origin[h] = work->corner_vertex[c];
+            origin[h ^ 1] = gproji_corner_head(work, c); /* written again by the face on the other side, if any */
+        }
+    }
+    /* 2. vertex_halfedge: the boundary half-edge, else the first outgoing one. A fan that is open has one boundary
+       half-edge going out, so two of them are two fans. */
+    gproji_fill(out, mesh->vertex_count, -1);
+    gproji_fill(outgoing, mesh->vertex_count, 0);
+    for (h = 0; h < n; ++h) {
+        v = origin[h];
+        outgoing[v]++;
+        if (out[v] >= 0 && face[h] >= 0) continue;
+        if (out[v] >= 0 && face[out[v]] < 0) return gproji_fail_fans(v, error);
+        out[v] = h;
+    }
+    /* 3. Boundary loops: next[h] is the boundary half-edge that leaves the end of h. */
+    for (h = 0; h < n; ++h) {
+        if (face[h] >= 0) continue;
+        next[h] = out[origin[h ^ 1]];
+        prev[next[h]] = h;
+    }
+    /* 4. Rotation stays within a fan: if it misses an outgoing half-edge, there is another fan. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = out[v], missed = outgoing[v];
+        if (start < 0) {
+            mesh->isolated_count++;
+            continue;
+        }
+        h = start;
+        do {
+            --missed;
+            h = prev[h] ^ 1;
+        } while (h != start);
+        if (missed) return gproji_fail_fans(v, error);
+    }
+    return GPROJ_OK;
+}
+
+/* -- building -- */
+
+/* Builds the mesh after the soup's counts, degrees and positions have been checked. */
+GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
+                                               gproji_mesh_work *work, gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
+    int32_t h, i, f, k, c = 0, *loop = work->slot;
+    gproj_code code;
+    /* 1. Corners. mark[v] is the last face that named vertex v. */
     gproji_fill(work->mark, soup->vertex_count, -1);
     for (f = 0; f < soup->face_count; ++f) {
         work->face_start[f] = c;
@@ -12222,341 +12392,76 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_corners(const gproji_soup *soup, gpr
         work->corner_next[c - 1] = work->face_start[f];
     }
     work->face_start[soup->face_count] = c;
-    return GPROJ_OK;
-}
-
-/* -- edges -- */
-
-GPROJI_INLINE int32_t gproji_corner_head(const gproji_mesh_work *work, int32_t c) {
-    return work->corner_vertex[work->corner_next[c]];
-}
-
-GPROJI_INTERNAL gproj_code gproji_fail_edge(const gproji_soup *soup, const gproji_mesh_work *work, int32_t corner,
-                                            gproj_error *error) {
-    int32_t a = work->corner_vertex[corner], b = gproji_corner_head(work, corner), faces[3] = {0, 0, 0}, count = 0, c;
-    for (c = 0; c < soup->corner_count; ++c) {
-        int32_t u = work->corner_vertex[c], v = gproji_corner_head(work, c);
-        if ((u != a || v != b) && (u != b || v != a)) continue;
-        if (count < 3) faces[count] = work->corner_face[c];
-        ++count;
-    }
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
-        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
-        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
-        count > 3 ? ", ..." : "");
-}
-
-/* Sorts the corners by the smaller vertex of their edge, keeping their order within a vertex (counting sort). On return
-   slot[v]..slot[v + 1] - 1 are the places of v in corner_order. */
-GPROJI_INTERNAL void gproji_mesh_sort_corners(const gproji_soup *soup, gproji_mesh_work *work) {
-    int32_t c, v, sum = 0, count;
-    memset(work->slot, 0, ((size_t)soup->vertex_count + 1) * sizeof(int32_t));
-    for (c = 0; c < soup->corner_count; ++c) {
-        work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
-    }
-    for (v = 0; v <= soup->vertex_count; ++v) {
-        count = work->slot[v];
-        work->slot[v] = sum;
-        sum += count;
-    }
-    for (c = 0; c < soup->corner_count; ++c) {
-        work->corner_order[work->slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
-    }
-}
-
-/* Numbers the edges in the order in which they first appear along the faces: fills corner_edge and edge_corner. */
-GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mesh_work *work, int32_t *edge_count,
-                                             gproj_error *error) {
-    int32_t i, c, edges = 0, third = -1;
-    gproji_mesh_sort_corners(soup, work);
-    /* 1. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
-       the corners of the smaller vertex a are passed, which mark[b] = a says. */
-    gproji_fill(work->mark, soup->vertex_count, -1);
-    for (i = 0; i < soup->corner_count; ++i) {
-        int32_t u, v, a, b;
-        c = work->corner_order[i];
-        u = work->corner_vertex[c], v = gproji_corner_head(work, c);
-        a = gproji_min(u, v), b = gproji_max(u, v);
-        if (work->mark[b] != a) {
-            work->mark[b] = a;
-            work->slot[b] = c;
-        }
-        work->corner_edge[c] = work->slot[b];
-    }
-    /* 2. Number those in order, and give the others their edge. */
-    for (c = 0; c < soup->corner_count; ++c) {
-        int32_t first = work->corner_edge[c], e;
-        if (first == c) {
-            work->corner_edge[c] = edges;
-            work->edge_corner[2 * edges] = c;
-            work->edge_corner[2 * edges + 1] = -1;
-            ++edges;
-            continue;
-        }
-        e = work->corner_edge[first];
-        work->corner_edge[c] = e;
-        if (work->edge_corner[2 * e + 1] < 0)
-            work->edge_corner[2 * e + 1] = c;
-        else if (third < 0)
-            third = c;
-    }
-    *edge_count = edges;
-    return third < 0 ? GPROJ_OK : gproji_fail_edge(soup, work, third, error);
-}
-
-/* -- orientation -- */
-
-/* Reaches all faces of the first face's component and decides which must be turned round. `queue` has room for all
-   faces. */
-GPROJI_INTERNAL gproj_code gproji_mesh_orient_component(gproji_mesh_work *work, int32_t first, int32_t *queue,
-                                                        gproj_error *error) {
-    int32_t head = 0, tail = 0, c;
-    queue[tail++] = first;
-    work->face_state[first] = 0;
-    while (head < tail) {
-        int32_t f = queue[head++];
-        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
-            int32_t e = work->corner_edge[c], other = work->edge_corner[2 * e], g, state;
-            if (other == c) other = work->edge_corner[2 * e + 1];
-            if (other < 0) continue;
-            g = work->corner_face[other];
-            /* neighbours agree when they run along their edge in opposite directions */
-            state = work->face_state[f] ^ (work->corner_vertex[other] == work->corner_vertex[c] ? 1 : 0);
-            if (work->face_state[g] < 0) {
-                work->face_state[g] = state;
-                queue[tail++] = g;
-            } else if (work->face_state[g] != state) {
-                return gproji_fail(error, GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, g,
-                                   "faces %d and %d cannot agree on an outer side at their edge %d-%d, as on a Moebius "
-                                   "strip; cut the mesh open there",
-                                   gproji_min(f, g), gproji_max(f, g), work->corner_vertex[c],
-                                   gproji_corner_head(work, c));
-            }
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* Turns a face's corners round; the first one stays. */
-GPROJI_INTERNAL void gproji_mesh_turn_face(gproji_mesh_work *work, int32_t f) {
-    int32_t i = work->face_start[f] + 1, j = work->face_start[f + 1] - 1, v;
-    for (; i < j; ++i, --j) {
-        v = work->corner_vertex[i];
-        work->corner_vertex[i] = work->corner_vertex[j];
-        work->corner_vertex[j] = v;
-    }
-}
-
-/* Makes all faces of each component agree with its first one. Turned faces change the order of the corners, so the
-   edges must then be matched again. */
-GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_mesh_work *work, gproj_mesh *mesh,
-                                              gproj_error *error) {
-    int32_t f;
-    gproj_code code;
-    gproji_fill(work->face_state, soup->face_count, -1);
-    for (f = 0; f < soup->face_count; ++f) {
-        if (work->face_state[f] >= 0) continue;
-        code = gproji_mesh_orient_component(work, f, work->corner_order, error);
-        if (code) return code;
-        mesh->component_count++;
-    }
-    for (f = 0; f < soup->face_count; ++f) {
-        if (!work->face_state[f]) continue;
-        gproji_mesh_turn_face(work, f);
-        mesh->reoriented_count++;
-    }
-    return GPROJ_OK;
-}
-
-/* -- half-edges -- */
-
-/* Takes the arrays that last; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
-    gproj_mesh *mesh = &object->mesh;
-    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
-    mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
-    object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
-    object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    object->halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
-    return mesh->position && object->vertex_halfedge && object->face_halfedge && object->face_degree &&
-           object->halfedge;
-}
-
-/* Shows the owner's arrays in the public struct. */
-GPROJI_INTERNAL void gproji_mesh_publish(gproji_mesh_object *object) {
-    gproj_mesh *mesh = &object->mesh;
-    size_t n = (size_t)mesh->halfedge_count;
-    mesh->vertex_halfedge = object->vertex_halfedge;
-    mesh->face_halfedge = object->face_halfedge;
-    mesh->face_degree = object->face_degree;
-    mesh->loop_halfedge = object->loop_halfedge;
-    mesh->twin = object->halfedge;
-    mesh->next = object->halfedge + n;
-    mesh->prev = object->halfedge + 2 * n;
-    mesh->origin = object->halfedge + 3 * n;
-    mesh->face = object->halfedge + 4 * n;
-    mesh->edge = object->halfedge + 5 * n;
-    mesh->polyline_start = object->polyline_start;
-    mesh->polyline_vertex = object->polyline_vertex;
-}
-
-/* The half-edge of corner c: the even one where the edge appeared first. */
-GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32_t c) {
-    int32_t e = work->corner_edge[c];
-    return work->edge_corner[2 * e] == c ? 2 * e : 2 * e + 1;
-}
-
-/* Fills twin, origin, face, edge, and next and prev within faces. Boundary half-edges get next = prev = -1. */
-GPROJI_INTERNAL void gproji_mesh_link_faces(gproji_mesh_object *object, const gproji_mesh_work *work) {
-    const gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h, f, c;
-    int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
-            *edge = face + n;
-    for (h = 0; h < n; ++h) {
-        twin[h] = h ^ 1;
-        edge[h] = h / 2;
-        next[h] = prev[h] = face[h] = -1;
-    }
-    for (f = 0; f < mesh->face_count; ++f) {
-        object->face_degree[f] = work->face_start[f + 1] - work->face_start[f];
-        object->face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
-        for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
-            int32_t following = gproji_corner_halfedge(work, work->corner_next[c]);
-            h = gproji_corner_halfedge(work, c);
-            next[h] = following;
-            prev[following] = h;
-            face[h] = f;
-            origin[h] = work->corner_vertex[c];
-            origin[h ^ 1] = gproji_corner_head(work, c); /* written again by the face on the other side, if any */
-        }
-    }
-}
-
-GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
-        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
-        "of its own",
-        vertex);
-}
-
-/* Chooses vertex_halfedge: the boundary half-edge, else the first outgoing one. Links the boundary. A second outgoing
-   boundary half-edge is a second fan. */
-GPROJI_INTERNAL gproj_code gproji_mesh_link_boundary(gproji_mesh_object *object, gproj_error *error) {
-    const gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h;
-    int32_t *next = object->halfedge + n, *prev = next + n, *out = object->vertex_halfedge;
-    const int32_t *origin = prev + n, *face = origin + n;
-    gproji_fill(out, mesh->vertex_count, -1);
-    for (h = 0; h < n; ++h) {
-        int32_t v = origin[h];
-        if (out[v] < 0) {
-            out[v] = h;
-        } else if (face[h] < 0) {
-            if (face[out[v]] < 0) return gproji_fail_fans(v, error);
-            out[v] = h;
-        }
-    }
-    for (h = 0; h < n; ++h) {
-        if (face[h] >= 0) continue;
-        next[h] = out[origin[h ^ 1]];
-        prev[next[h]] = h;
-    }
-    return GPROJ_OK;
-}
-
-/* The outgoing half-edge that follows h around its origin, counter-clockwise. */
-GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
-
-/* All outgoing half-edges of a vertex are met by rotating: else there are several fans. `outgoing` has an entry a
-   vertex. */
-GPROJI_INTERNAL gproj_code gproji_mesh_check_fans(gproj_mesh *mesh, int32_t *outgoing, gproj_error *error) {
-    int32_t v, h;
-    memset(outgoing, 0, (size_t)mesh->vertex_count * sizeof(int32_t));
-    for (h = 0; h < mesh->halfedge_count; ++h) outgoing[mesh->origin[h]]++;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], met = 0;
-        if (start < 0) {
-            mesh->isolated_count++;
-            continue;
-        }
-        h = start;
-        do {
-            ++met;
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
-        if (met != outgoing[v]) return gproji_fail_fans(v, error);
-    }
-    return GPROJ_OK;
-}
-
-/* Passes through the boundary loops in the order of their lowest half-edges; writes one of each to `loop` unless that
-   is NULL. `seen` has an entry a vertex: a vertex is in one loop at most. Returns their number. */
-GPROJI_INTERNAL int32_t gproji_mesh_loops(const gproj_mesh *mesh, int32_t *seen, int32_t *loop) {
-    int32_t h, i, count = 0;
-    gproji_fill(seen, mesh->vertex_count, 0);
-    for (h = 0; h < mesh->halfedge_count; ++h) {
-        if (mesh->face[h] >= 0 || seen[mesh->origin[h]]) continue;
-        for (i = h; !seen[mesh->origin[i]]; i = mesh->next[i]) seen[mesh->origin[i]] = 1;
-        if (loop) loop[count] = h;
-        ++count;
-    }
-    return count;
-}
-
-/* -- building -- */
-
-/* From matched and oriented corners to the finished mesh. */
-GPROJI_INTERNAL gproj_code gproji_mesh_finish(gproji_mesh_object *object, const gproji_soup *soup,
-                                              gproji_mesh_work *work, gproj_error *error) {
-    gproj_mesh *mesh = &object->mesh;
-    gproj_code code;
-    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
-    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
-    gproji_mesh_link_faces(object, work);
-    code = gproji_mesh_link_boundary(object, error);
-    if (code) return code;
-    gproji_mesh_publish(object);
-    code = gproji_mesh_check_fans(mesh, work->mark, error);
-    if (code) return code;
-    mesh->loop_count = gproji_mesh_loops(mesh, work->mark, NULL);
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!object->loop_halfedge) return gproji_fail_memory(error);
-    gproji_mesh_loops(mesh, work->mark, object->loop_halfedge);
-    gproji_mesh_publish(object);
-    return GPROJ_OK;
-}
-
-GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
-                                               gproji_mesh_work *work, gproj_error *error) {
-    gproj_mesh *mesh = &object->mesh;
-    gproj_code code = gproji_mesh_read_corners(soup, work, error);
-    if (!code) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    /* 2. Edges, orientation and half-edges. */
+    code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (!code) code = gproji_mesh_orient(soup, work, mesh, error);
     if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
+    if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
-    return code ? code : gproji_mesh_finish(object, soup, work, error);
+    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
+    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
+    code = gproji_mesh_link(object, work, error);
+    if (code) return code;
+    /* 3. Boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
+    gproji_fill(work->mark, mesh->vertex_count, 0);
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
+        for (i = h; !work->mark[mesh->origin[i]]; i = mesh->next[i]) work->mark[mesh->origin[i]] = 1;
+        loop[mesh->loop_count++] = h;
+    }
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
+    if (!object->loop_halfedge) return gproji_fail_memory(error);
+    memcpy(object->loop_halfedge, loop, (size_t)mesh->loop_count * sizeof(int32_t));
+    mesh->loop_halfedge = object->loop_halfedge;
+    return GPROJ_OK;
 }
 
-/* Builds the mesh of an object that has none yet. After a failure the object can only be destroyed. */
+/* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
 GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_soup *soup, gproj_error *error) {
+    gproji_pool pool;
     gproji_mesh_work work;
     gproj_code code;
+    int64_t corners = 0;
+    int32_t f;
     if (soup->vertex_count > GPROJI_VERTICES_MAX) {
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     }
-    code = gproji_check_degrees(soup, error);
-    if (!code) code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
+    /* Degrees come first, because they say how long face_vertex is. */
+    for (f = 0; f < soup->face_count; ++f) {
+        if (soup->face_degree[f] < 3) {
+            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
+        }
+        corners += soup->face_degree[f];
+        if (corners > GPROJI_CORNERS_MAX) {
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
+                               "the faces up to face %d have more than %d corners; split the mesh", f,
+                               (int32_t)GPROJI_CORNERS_MAX);
+        }
+    }
+    code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
     if (code) return code;
+    soup->corner_count = (int32_t)corners;
     object->mesh.vertex_count = soup->vertex_count;
     object->mesh.face_count = soup->face_count;
-    code = gproji_mesh_work_take(&object->heap, &work, soup) ? gproji_mesh_connect(object, soup, &work, error)
-                                                             : gproji_fail_memory(error);
-    gproji_mesh_work_give(&object->heap, &work, soup);
+    gproji_pool_start(&pool, &object->heap);
+    work.corner_vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_face = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_next = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_edge = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.corner_order = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
+    work.edge_corner = (int32_t *)gproji_pool_take(&pool, 2 * corners, sizeof(int32_t));
+    work.face_start = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->face_count + 1, sizeof(int32_t));
+    work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
+    work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
+    work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
+    code = work.corner_vertex && work.corner_face && work.corner_next && work.corner_edge && work.corner_order &&
+                   work.edge_corner && work.face_start && work.face_state && work.mark && work.slot
+               ? gproji_mesh_connect(object, soup, &work, error)
+               : gproji_fail_memory(error);
+    gproji_pool_give_all(&pool);
     return code;
 }
 
@@ -12585,26 +12490,28 @@ GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
 /* Stores polylines: `start` has count + 1 entries, start[0] = 0. */
 GPROJI_INTERNAL gproj_code gproji_mesh_set_polylines(gproji_mesh_object *object, int32_t count, const int32_t *start,
                                                      const int32_t *vertex, gproj_error *error) {
+    gproj_mesh *mesh = &object->mesh;
     size_t total = count ? (size_t)start[count] : 0;
     object->polyline_vertex = (int32_t *)gproji_take(&object->heap, total, sizeof(int32_t));
     if (!object->polyline_vertex) return gproji_fail_memory(error);
     object->polyline_start = (int32_t *)gproji_take(&object->heap, (size_t)count + 1, sizeof(int32_t));
     if (!object->polyline_start) {
+        /* gproj_mesh_destroy cannot give polyline_vertex back, for polyline_start has the length */
         gproji_give(&object->heap, object->polyline_vertex, total, sizeof(int32_t));
         object->polyline_vertex = NULL;
         return gproji_fail_memory(error);
     }
-    object->mesh.polyline_count = count;
     object->polyline_start[0] = 0;
     if (count) {
         memcpy(object->polyline_start, start, ((size_t)count + 1) * sizeof(int32_t));
         memcpy(object->polyline_vertex, vertex, total * sizeof(int32_t));
     }
-    gproji_mesh_publish(object);
+    mesh->polyline_count = count;
+    mesh->polyline_start = object->polyline_start, mesh->polyline_vertex = object->polyline_vertex;
     return GPROJ_OK;
 }
 
-/* The end of every function that makes a mesh: the mesh, or NULL and nothing kept. */
+/* Ends every function that makes a mesh: returns the mesh, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
     if (!code) return &object->mesh;
     gproj_mesh_destroy(&object->mesh);
@@ -12646,8 +12553,8 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
     gproj_mesh *copy;
-    gproj_code code = GPROJ_OK;
-    size_t vertices, faces;
+    gproj_code code;
+    size_t vertices, faces, loops;
     gproji_error_clear(error);
     if (!mesh) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to copy is NULL");
@@ -12658,19 +12565,19 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
     copy = &object->mesh;
     *copy = *mesh;
     copy->polyline_count = 0; /* set below, when there is memory for them */
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!gproji_mesh_take(object) || !object->loop_halfedge) code = gproji_fail_memory(error);
-    if (!code) {
-        code =
-            gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex, error);
-    }
+    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, loops = (size_t)mesh->loop_count;
+    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, loops, sizeof(int32_t));
+    copy->loop_halfedge = object->loop_halfedge;
+    code = gproji_mesh_take(object) && object->loop_halfedge
+               ? gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex,
+                                           error)
+               : gproji_fail_memory(error);
     if (!code) {
         memcpy(copy->position, mesh->position, vertices * 3 * sizeof(double));
         memcpy(object->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
         memcpy(object->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
         memcpy(object->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-        memcpy(object->loop_halfedge, mesh->loop_halfedge, (size_t)mesh->loop_count * sizeof(int32_t));
+        memcpy(object->loop_halfedge, mesh->loop_halfedge, loops * sizeof(int32_t));
         memcpy(object->halfedge, mesh->twin, (size_t)mesh->halfedge_count * 6 * sizeof(int32_t));
     }
     return gproji_mesh_done(object, code);
@@ -12680,18 +12587,18 @@ GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
     return gproji_account_of(mesh, offsetof(gproji_mesh_object, mesh));
 }
 
-/* -- questions -- */
+/* -- questions: NULL is answered like an index out of range -- */
 
 GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex) {
-    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return false;
+    if (!mesh || vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return false;
     return mesh->face[mesh->vertex_halfedge[vertex]] < 0;
 }
 
 GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity) {
     int32_t valence = 0, start, h;
-    if (vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return 0;
+    if (!mesh || vertex < 0 || vertex >= mesh->vertex_count || mesh->vertex_halfedge[vertex] < 0) return 0;
     start = mesh->vertex_halfedge[vertex];
-    /* the outgoing boundary half-edge is the last of its vertex: its left side is outside */
+    /* the boundary half-edge has the outside on the left, so it is the last one counter-clockwise */
     if (mesh->face[start] < 0) start = gproji_rotate(mesh, start);
     h = start;
     do {
@@ -12717,7 +12624,8 @@ GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t 
     return -1;
 }
 
-/* Does a polyline turn by more than 45 degrees at a point with these neighbours? Not where one of them is the same. */
+/* True if a polyline turns by more than 45 degrees at a point between two neighbours; false if one of them is the same
+   point. */
 GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], const double after[3]) {
     static const double none[3] = {0, 0, 0};
     double in[3], out[3];
@@ -12727,19 +12635,18 @@ GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], co
     return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
 }
 
-/* See gproj_form_is_corner; with other positions. The half-edges with face -1 that leave and enter a boundary vertex
-   are h and prev[h]. */
+/* See gproj_form_is_corner; with other positions. */
 GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *position, int32_t vertex) {
     int32_t h;
     if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
     if (gproj_mesh_valence(mesh, vertex) == 2) return true;
-    h = mesh->vertex_halfedge[vertex];
+    h = mesh->vertex_halfedge[vertex]; /* leaves along the boundary; prev[h] enters along it */
     return gproji_turns(position + 3 * (size_t)mesh->origin[mesh->prev[h]], position + 3 * (size_t)vertex,
                         position + 3 * (size_t)mesh->origin[h ^ 1]);
 }
 
-/* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), the same sum as in the
-   interface, without cancellation far from the coordinates' origin. */
+/* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), which equals the sum in the
+   interface but has no cancellation far from the origin. */
 GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
     int32_t start = mesh->face_halfedge[face], h;
     const double *base = position + 3 * (size_t)mesh->origin[start];
@@ -12753,16 +12660,25 @@ GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *po
     }
 }
 
+/* No face, no area: zeros. */
 GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]) {
+    if (!area) return;
     gproji_set3(0, 0, 0, area);
-    if (face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
+    if (mesh && face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
 }
 
-/* The mean edge length with other positions, measured in a unit of `unit`. */
-GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double *position, double unit) {
+/* The mean edge length with other positions; 0 without edges. */
+GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
+    const double unit = 1e-210;
     double sum = 0, d[3];
     int32_t h, k;
-    for (h = 0; h < mesh->halfedge_count; h += 2) {
+    if (mesh->edge_count == 0) return 0;
+    for (h = 0; h < mesh->halfedge_count; h += 2)
+        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
+    sum /= mesh->edge_count;
+    if (!(sum < 1e-140)) return sum;
+    /* squares underflow in edges as short as these: measure them again in a smaller unit */
+    for (sum = 0, h = 0; h < mesh->halfedge_count; h += 2) {
         gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
         for (k = 0; k < 3; ++k) d[k] /= unit;
         sum += gproji_length3(d);
@@ -12770,26 +12686,17 @@ GPROJI_INTERNAL double gproji_mean_edge_in(const gproj_mesh *mesh, const double 
     return sum * unit / mesh->edge_count;
 }
 
-/* The mean edge length with other positions; 0 without edges. Edges whose squares would underflow are measured in a smaller
-   unit. */
-GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
-    double sum = 0;
-    int32_t h;
-    for (h = 0; h < mesh->halfedge_count; h += 2)
-        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
-    if (mesh->edge_count == 0) return 0;
-    sum /= mesh->edge_count;
-    return sum < 1e-140 ? gproji_mean_edge_in(mesh, position, 1e-210) : sum;
+GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
+    return mesh ? gproji_mean_edge(mesh, mesh->position) : 0;
 }
 
-GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
 /* ============================================================================================================
    >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
 
    Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
-   Both readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
-   builder's complaints can name the line too. Nothing is allocated because a text promises it: arrays grow as the
-   elements appear.
+   The readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
+   builder's complaints can name the line too. Arrays grow as elements appear: counts that a text promises allocate
+   nothing.
    Invariant: the scanner never reads text[size] or beyond; `line` is the line of the character at `at`. */
 
 typedef struct gproji_reader {
@@ -12803,7 +12710,7 @@ typedef struct gproji_reader {
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
     gproji_ints vertex_line, face_line, face_degree;
-    gproji_ints face_vertex; /* OBJ: as far as the text says, checked against the vertex count at the end */
+    gproji_ints face_vertex; /* from 0; in an OBJ they may point forward until all is read */
     gproji_ints polyline_start, polyline_vertex, polyline_line;
 } gproji_reader;
 
@@ -12819,12 +12726,12 @@ GPROJI_INLINE void gproji_skip_line_end(gproji_reader *reader) {
     if (reader->line < INT32_MAX) reader->line++;
 }
 
-/* Is there a backslash with a line end behind it at position i: the line goes on? */
+/* True if a backslash and a line end stand at position i: the line goes on. */
 GPROJI_INLINE bool gproji_is_continuation(const gproji_reader *reader, size_t i) {
     return reader->text[i] == '\\' && i + 1 < reader->size && gproji_is_line_end(reader->text[i + 1]);
 }
 
-/* The next word of the line; false at the line's end, where a comment counts as the end. */
+/* Scans the next word in the line; false at the line's end, for which a comment counts too. */
 GPROJI_INTERNAL bool gproji_next_word(gproji_reader *reader) {
     size_t end;
     while (reader->at < reader->size) {
@@ -12858,7 +12765,7 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
     return true;
 }
 
-/* The next word of the text, over line ends and comments; false at the end of the text. */
+/* Scans the next word, over line ends and comments; false at the end of the text. */
 GPROJI_NOINLINE bool gproji_next_word_anywhere(gproji_reader *reader) {
     while (!gproji_next_word(reader)) {
         if (!gproji_next_line(reader)) return false;
@@ -12885,9 +12792,9 @@ GPROJI_INTERNAL const char *gproji_quote(const gproji_reader *reader, char quote
     return quote;
 }
 
-/* -- numbers and indices -- */
+/* -- numbers and elements -- */
 
-/* The word as a number. */
+/* Reads the word as a number. */
 GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *value) {
     char quote[GPROJI_QUOTE_SIZE];
     size_t used = gproj_number_read(reader->word, reader->word_size, value);
@@ -12897,7 +12804,7 @@ GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *val
                        used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
 }
 
-/* The word as an integer, clamped to +-10^12; with `slashes`, what follows a '/' (texture, normal) is passed over. */
+/* Reads the word as an integer, clamped to +-10^12. With `slashes`, texture and normal behind a '/' are passed over. */
 GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes, int64_t *value) {
     const char *word = reader->word;
     char quote[GPROJI_QUOTE_SIZE];
@@ -12918,7 +12825,7 @@ GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes
                        slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
 }
 
-/* Appends to a growing array of the text. */
+/* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
     if (gproji_ints_add(reader->heap, ints, value)) return GPROJ_OK;
     if (ints->count < GPROJI_INTS_MAX) return gproji_fail_memory(reader->error);
@@ -12942,29 +12849,22 @@ GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const doubl
     return gproji_push(reader, &reader->vertex_line, line);
 }
 
-/* -- OBJ -- */
-
-/* v x y z, maybe with a weight, a colour or both, which are passed over. */
-GPROJI_INTERNAL gproj_code gproji_obj_vertex(gproji_reader *reader) {
-    double number, x[3] = {0, 0, 0};
-    int32_t count = 0, line = reader->line;
+/* Appends a face; the caller appends the corners. */
+GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
     gproj_code code;
-    while (gproji_next_word(reader)) {
-        code = gproji_word_number(reader, &number);
-        if (code) return code;
-        if (count < 3) x[count] = number;
-        if (count < 8) ++count;
+    if (degree < 3) {
+        return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                           "line %d: a face with %d corners; a face needs at least 3", line,
+                           (int32_t)(degree < -9 ? -9 : degree));
     }
-    if (count != 3 && count != 4 && count != 6 && count != 7) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                           "line %d: a vertex with %s%d numbers; write 'v x y z'", line, count == 8 ? "more than " : "",
-                           count == 8 ? 7 : count);
-    }
-    return gproji_push_vertex(reader, x, line);
+    /* no text has the corners for a degree beyond int32_t, so a wrong number here is never used */
+    code = gproji_push(reader, &reader->face_degree, (int32_t)degree);
+    return code ? code : gproji_push(reader, &reader->face_line, line);
 }
 
-/* The indices of an f or l line, from 0, into `ints`; *count is their number. Positive ones may point forward, so they
-   are compared with the vertex count at the end. */
+/* -- OBJ -- */
+
+/* Appends the indices in an f or l line, counted from 0, to `ints`; *count is their number. */
 GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
     int64_t index, vertices = (int64_t)reader->vertex_count;
     gproj_code code;
@@ -12980,6 +12880,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints
             return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
                                "line %d: index %l, but only %l vertices stand above", reader->line, index, vertices);
         }
+        /* negative ones count back from here; positive ones may point forward: gproji_obj_check_indices */
         index = index < 0 ? index + vertices : index - 1;
         if (index >= GPROJI_VERTICES_MAX) {
             return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
@@ -12993,35 +12894,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_corners(gproji_reader *reader, int32_t count, int32_t line) {
-    return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                       "line %d: a face with %d corners; a face needs at least 3", line, count);
-}
-
-GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int32_t degree, int32_t line) {
-    gproj_code code = gproji_push(reader, &reader->face_degree, degree);
-    return code ? code : gproji_push(reader, &reader->face_line, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_obj_face(gproji_reader *reader) {
-    int32_t count, line = reader->line;
-    gproj_code code = gproji_obj_indices(reader, &reader->face_vertex, &count);
-    if (code) return code;
-    return count < 3 ? gproji_fail_corners(reader, count, line) : gproji_push_face(reader, count, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_obj_polyline(gproji_reader *reader) {
-    int32_t count, line = reader->line;
-    gproj_code code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
-    if (!code && count < 2) {
-        code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                           "line %d: a polyline with %d points; it needs at least 2", line, count);
-    }
-    if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
-    return code ? code : gproji_push(reader, &reader->polyline_line, line);
-}
-
-/* Are all indices of the elements, of which each has degree[i] or ends at start[i], below the vertex count? */
+/* Refuses indices beyond the vertices. Element e has degree[e] of them, or ends before number end[e + 1]. */
 GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints,
                                                     const gproji_ints *line, const int32_t *degree,
                                                     const int32_t *end) {
@@ -13041,17 +12914,39 @@ GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const
 GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
     gproj_code code = gproji_push(reader, &reader->polyline_start, 0);
     bool more = true;
-    while (more && !code) {
-        if (gproji_next_word(reader)) {
-            if (gproji_word_is(reader, "v"))
-                code = gproji_obj_vertex(reader);
-            else if (gproji_word_is(reader, "f"))
-                code = gproji_obj_face(reader);
-            else if (gproji_word_is(reader, "l"))
-                code = gproji_obj_polyline(reader);
+    /* Lines that begin with v, f or l; all others are passed over. */
+    for (; more && !code; more = gproji_next_line(reader)) {
+        int32_t count = 0, line;
+        if (!gproji_next_word(reader)) continue;
+        line = reader->line;
+        if (gproji_word_is(reader, "v")) {
+            /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
+            double number, x[3] = {0, 0, 0};
+            while (!code && gproji_next_word(reader)) {
+                code = gproji_word_number(reader, &number);
+                if (count < 3) x[count] = number;
+                if (count < 8) ++count;
+            }
+            if (!code && count != 3 && count != 4 && count != 6 && count != 7) {
+                code = gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                                   "line %d: a vertex with %s%d numbers; write 'v x y z'", line,
+                                   count == 8 ? "more than " : "", count == 8 ? 7 : count);
+            }
+            if (!code) code = gproji_push_vertex(reader, x, line);
+        } else if (gproji_word_is(reader, "f")) {
+            code = gproji_obj_indices(reader, &reader->face_vertex, &count);
+            if (!code) code = gproji_push_face(reader, count, line);
+        } else if (gproji_word_is(reader, "l")) {
+            code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
+            if (!code && count < 2) {
+                code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
+                                   "line %d: a polyline with %d points; it needs at least 2", line, count);
+            }
+            if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
+            if (!code) code = gproji_push(reader, &reader->polyline_line, line);
         }
-        more = gproji_next_line(reader);
     }
+    /* Indices may point forward, so they are compared with the vertex count when that is known. */
     if (!code) {
         code =
             gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
@@ -13065,7 +12960,7 @@ GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
 
 /* -- OFF -- */
 
-/* Is the word [ST][C][N][4][n]OFF? The 4 and the n (other dimensions than 3) set *plain to false. */
+/* True if the word is [ST][C][N][4][n]OFF. The 4 and the n (other dimensions than 3) set *plain to false. */
 GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain) {
     const char *word = reader->word;
     size_t size = reader->word_size, i = 0;
@@ -13078,18 +12973,45 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
     return size - i == 3 && !memcmp(word + i, "OFF", 3);
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t of, const char *what) {
+GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t promised,
+                                               const char *noun) {
     return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count, of,
-                       what);
+                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count,
+                       promised, noun);
 }
 
-/* The header up to the counts of vertices and faces. */
-GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t count[2]) {
+/* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
+GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
+    int64_t degree, index, k, vertices = (int64_t)reader->vertex_count;
+    gproj_code code = gproji_word_index(reader, false, &degree);
+    if (!code) code = gproji_push_face(reader, degree, reader->line);
+    for (k = 0; !code && k < degree; ++k) {
+        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
+        code = gproji_word_index(reader, false, &index);
+        if (code) return code;
+        if (index < 0 || index >= vertices) {
+            /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
+            bool from_one = index == vertices;
+            size_t c;
+            for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
+            return gproji_fail(
+                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
+                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index, vertices - 1,
+                from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index" : "");
+        }
+        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
+    }
+    if (!code) gproji_next_line(reader);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
+    int64_t count[2] = {0, 0}, i;
     bool plain, have_word = gproji_next_word_anywhere(reader);
-    int32_t k;
-    gproj_code code;
+    int32_t k, line;
+    gproj_code code = GPROJ_OK;
+    /* 1. The word OFF, which may be missing if the counts are there. */
     if (have_word && gproji_is_off_word(reader, &plain)) {
         have_word = gproji_next_word_anywhere(reader);
         if (!plain || (have_word && gproji_word_is(reader, "BINARY"))) {
@@ -13101,7 +13023,9 @@ GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t coun
         return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
                            "line %d: '%s' where an OFF text says OFF", reader->line, gproji_quote(reader, quote));
     }
-    for (k = 0; k < 2; ++k, have_word = gproji_next_word_anywhere(reader)) {
+    /* 2. Counts of vertices and faces; that of edges, which many writers leave 0, is passed over. */
+    for (k = 0; k < 2; ++k) {
+        if (k) have_word = gproji_next_word_anywhere(reader);
         if (!have_word) return gproji_fail_cut_off(reader, k, 2, "counts");
         code = gproji_word_index(reader, false, &count[k]);
         if (code) return code;
@@ -13109,72 +13033,25 @@ GPROJI_INTERNAL gproj_code gproji_off_header(gproji_reader *reader, int64_t coun
             return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
                                "line %d: a count of %l %s", reader->line, count[k], k ? "faces" : "vertices");
         }
-        if (k == 1) break;
-    }
-    gproji_next_line(reader); /* the count of edges is not needed */
-    return GPROJ_OK;
-}
-
-/* One line: x y z; colours, normals and texture coordinates behind them are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_vertex(gproji_reader *reader) {
-    double x[3];
-    int32_t k, line = reader->line;
-    gproj_code code;
-    for (k = 0; k < 3; ++k) {
-        if (k && !gproji_next_word(reader)) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                               "line %d: a vertex with %d numbers; write x y z on one line", line, k);
-        }
-        code = gproji_word_number(reader, &x[k]);
-        if (code) return code;
     }
     gproji_next_line(reader);
-    return gproji_push_vertex(reader, x, line);
-}
-
-/* Could the faces so far count vertices from 1: is this index one too large, and was none 0? */
-GPROJI_INTERNAL bool gproji_counts_from_one(const gproji_reader *reader, int64_t index) {
-    size_t c;
-    if (index != (int64_t)reader->vertex_count) return false;
-    for (c = 0; c < reader->face_vertex.count; ++c)
-        if (reader->face_vertex.data[c] == 0) return false;
-    return true;
-}
-
-/* degree, then the corners; colours behind them are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree, index, k;
-    int32_t line = reader->line;
-    gproj_code code = gproji_word_index(reader, false, &degree);
-    if (code) return code;
-    if (degree < 3) return gproji_fail_corners(reader, (int32_t)(degree < -9 ? -9 : degree), line);
-    for (k = 0; k < degree; ++k) {
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
-        code = gproji_word_index(reader, false, &index);
-        if (code) return code;
-        if (index < 0 || index >= (int64_t)reader->vertex_count) {
-            return gproji_fail(
-                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index,
-                (int64_t)reader->vertex_count - 1,
-                gproji_counts_from_one(reader, index)
-                    ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
-                    : "");
-        }
-        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
-        if (code) return code;
-    }
-    gproji_next_line(reader);
-    return gproji_push_face(reader, (int32_t)degree, line);
-}
-
-GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
-    int64_t count[2] = {0, 0}, i;
-    gproj_code code = gproji_off_header(reader, count);
+    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
     for (i = 0; i < count[0] && !code; ++i) {
-        code = gproji_next_word_anywhere(reader) ? gproji_off_vertex(reader)
-                                                 : gproji_fail_cut_off(reader, i, count[0], "vertices");
+        double x[3];
+        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, i, count[0], "vertices");
+        line = reader->line;
+        for (k = 0; k < 3; ++k) {
+            if (k && !gproji_next_word(reader)) {
+                return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
+                                   "line %d: a vertex with %d numbers; write x y z on one line", line, k);
+            }
+            code = gproji_word_number(reader, &x[k]);
+            if (code) return code;
+        }
+        gproji_next_line(reader);
+        code = gproji_push_vertex(reader, x, line);
     }
+    /* 4. Faces: the degree, then the corners. */
     for (i = 0; i < count[1] && !code; ++i) {
         code = gproji_next_word_anywhere(reader) ? gproji_off_face(reader, i, count[1])
                                                  : gproji_fail_cut_off(reader, i, count[1], "faces");
@@ -13184,25 +13061,7 @@ GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
 
 /* -- reading -- */
 
-/* A zero byte is never in a text: a binary file, or one in UTF-16. */
-GPROJI_INTERNAL gproj_code gproji_check_text(gproji_reader *reader) {
-    const char *zero = reader->size ? (const char *)memchr(reader->text, 0, reader->size) : NULL;
-    if (!reader->size) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                           "the text is empty; it needs at least one vertex");
-    }
-    if (!zero) return GPROJ_OK;
-    while (reader->text + reader->at < zero) {
-        if (gproji_is_line_end(reader->text[reader->at]))
-            gproji_skip_line_end(reader);
-        else
-            reader->at++;
-    }
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text", reader->line);
-}
-
-/* Which other format this is, by the way that it begins; NULL: none that is known. */
+/* Names another format that begins like this text; NULL: none that is known. */
 GPROJI_INTERNAL const char *gproji_foreign_format(const char *text, size_t size) {
     static const struct {
         const char *begins, *name;
@@ -13229,75 +13088,78 @@ GPROJI_INTERNAL const char *gproji_foreign_format(const char *text, size_t size)
     return NULL;
 }
 
-/* Says of what could not be read as OBJ or OFF what it is, where that is known. */
-GPROJI_INTERNAL void gproji_tell_foreign(const char *text, size_t size, gproj_error *error) {
-    const char *name = gproji_foreign_format(text, size);
-    if (!name || !error || error->code != GPROJ_ERROR_SYNTAX) return;
-    gproji_error_clear(error);
-    gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                "this is %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, MeshLab or "
-                "assimp",
-                name);
-}
-
-/* By the first word: [ST][C][N]OFF or OBJ. */
-GPROJI_INTERNAL gproj_format gproji_detect_format(const gproji_reader *reader) {
-    gproji_reader look = *reader;
-    bool plain;
-    return gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-}
-
-/* Puts "line 203: " in front of the mesh builder's sentence about a vertex or face. */
-GPROJI_INTERNAL void gproji_add_line(const gproji_reader *reader) {
-    gproj_error *error = reader->error;
-    const gproji_ints *lines = &reader->face_line;
-    char message[GPROJ_MESSAGE_SIZE];
-    if (!error) return;
-    if (error->place == GPROJ_PLACE_VERTEX)
-        lines = &reader->vertex_line;
-    else if (error->place != GPROJ_PLACE_FACE)
-        return;
-    if (error->index < 0 || (size_t)error->index >= lines->count) return;
-    gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
-    memcpy(error->message, message, sizeof message);
-}
-
-/* From what the text said to the mesh. */
-GPROJI_INTERNAL gproj_code gproji_reader_build(const gproji_reader *reader, gproji_mesh_object *object) {
+/* Reads the text and builds the mesh. */
+GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format format, gproji_mesh_object *object) {
+    const char *zero;
     gproji_soup soup;
+    gproj_error *error = reader->error;
     gproj_code code;
+    if (!reader->size) {
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                           "the text is empty; it needs at least one vertex");
+    }
+    /* 1. No text has a zero byte; count the lines up to it. */
+    zero = (const char *)memchr(reader->text, 0, reader->size);
+    if (zero) {
+        while (reader->text + reader->at < zero) {
+            if (gproji_is_line_end(reader->text[reader->at]))
+                gproji_skip_line_end(reader);
+            else
+                reader->at++;
+        }
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
+                           "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text",
+                           reader->line);
+    }
+    /* 2. Polygons, after the byte order mark if there is one. */
+    if (reader->size >= 3 && !memcmp(reader->text, "\xef\xbb\xbf", 3)) reader->at = 3;
+    if (format == GPROJ_FORMAT_DETECT) {
+        gproji_reader look = *reader;
+        bool plain;
+        format =
+            gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
+    }
+    code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
+    if (code) return code;
     if (!reader->vertex_count) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
     }
+    /* 3. The mesh. The builder's sentence about a vertex or face gets "line 203: " in front. */
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
     soup.face_degree = reader->face_degree.data, soup.face_vertex = reader->face_vertex.data;
-    code = gproji_mesh_build(object, &soup, reader->error);
-    if (code) {
-        gproji_add_line(reader);
-        return code;
+    code = gproji_mesh_build(object, &soup, error);
+    if (code && error && (error->place == GPROJ_PLACE_VERTEX || error->place == GPROJ_PLACE_FACE)) {
+        const gproji_ints *lines = error->place == GPROJ_PLACE_VERTEX ? &reader->vertex_line : &reader->face_line;
+        char message[GPROJ_MESSAGE_SIZE];
+        gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
+        memcpy(error->message, message, sizeof message);
     }
+    if (code) return code;
     return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
-                                     reader->polyline_vertex.data, reader->error);
+                                     reader->polyline_vertex.data, error);
 }
 
 /* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
 GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, const char *text, size_t size,
                                                  gproj_format format, gproj_error *error) {
     gproji_reader reader;
+    const char *foreign;
     gproj_code code;
     memset(&reader, 0, sizeof reader);
     reader.text = text, reader.size = size, reader.line = 1;
     reader.heap = &object->heap, reader.error = error;
-    code = gproji_check_text(&reader);
-    if (size >= 3 && !memcmp(text, "\xef\xbb\xbf", 3)) reader.at = 3; /* byte order mark */
-    if (!code) {
-        if (format == GPROJ_FORMAT_DETECT) format = gproji_detect_format(&reader);
-        code = format == GPROJ_FORMAT_OFF ? gproji_read_off(&reader) : gproji_read_obj(&reader);
+    code = gproji_read_text(&reader, format, object);
+    /* Only after a failure: an OBJ may begin with anything. */
+    foreign = code ? gproji_foreign_format(text, size) : NULL;
+    if (foreign && error && error->code == GPROJ_ERROR_SYNTAX) {
+        gproji_error_clear(error);
+        gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
+                    "this is %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, MeshLab "
+                    "or assimp",
+                    foreign);
     }
-    if (!code) code = gproji_reader_build(&reader, object);
-    if (code) gproji_tell_foreign(text, size, error);
     gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
     gproji_ints_give(reader.heap, &reader.vertex_line);
     gproji_ints_give(reader.heap, &reader.face_line);
@@ -13327,7 +13189,7 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
 typedef struct gproji_writer {
     gproj_write write;
     void *user;
-    bool failed;
+    bool failed; /* `write` has returned false; it is not called again */
     size_t length;
     char buffer[4096];
 } gproji_writer;
@@ -13339,15 +13201,11 @@ GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
     writer->length = 0;
 }
 
-/* Room for a word of up to GPROJ_NUMBER_SIZE characters. */
-GPROJI_INLINE char *gproji_room(gproji_writer *writer) {
-    if (writer->length + GPROJ_NUMBER_SIZE > sizeof writer->buffer) gproji_flush(writer);
-    return writer->buffer + writer->length;
-}
-
+/* Appends a word, shorter than the buffer. Inline, because most words are literals with a known length. */
 GPROJI_INLINE void gproji_put(gproji_writer *writer, const char *text) {
     size_t length = strlen(text);
-    memcpy(gproji_room(writer), text, length);
+    if (writer->length + length > sizeof writer->buffer) gproji_flush(writer);
+    memcpy(writer->buffer + writer->length, text, length);
     writer->length += length;
 }
 
@@ -13357,50 +13215,13 @@ GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
     gproji_put(writer, text);
 }
 
-GPROJI_INTERNAL void gproji_put_position(gproji_writer *writer, const double x[3]) {
-    int32_t k;
-    for (k = 0; k < 3; ++k) {
-        writer->length += gproj_number_write(x[k], gproji_room(writer));
-        gproji_put(writer, k < 2 ? " " : "\n");
-    }
-}
-
-/* The corners of all faces; `base` is 1 for OBJ. */
-GPROJI_INTERNAL void gproji_put_faces(gproji_writer *writer, const gproj_mesh *mesh, bool off) {
-    int32_t f, h;
-    for (f = 0; f < mesh->face_count && !writer->failed; ++f) {
-        if (off)
-            gproji_put_integer(writer, mesh->face_degree[f]);
-        else
-            gproji_put(writer, "f");
-        h = mesh->face_halfedge[f];
-        do {
-            gproji_put(writer, " ");
-            gproji_put_integer(writer, mesh->origin[h] + (off ? 0 : 1));
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-        gproji_put(writer, "\n");
-    }
-}
-
-GPROJI_INTERNAL void gproji_put_polylines(gproji_writer *writer, const gproj_mesh *mesh) {
-    int32_t p, i;
-    for (p = 0; p < mesh->polyline_count && !writer->failed; ++p) {
-        gproji_put(writer, "l");
-        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            gproji_put(writer, " ");
-            gproji_put_integer(writer, mesh->polyline_vertex[i] + 1);
-        }
-        gproji_put(writer, "\n");
-    }
-}
-
-/* After the arguments have been checked. */
+/* Writes a mesh after the arguments have been checked. */
 GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
                                              void *user) {
     gproji_writer writer;
+    char number[GPROJ_NUMBER_SIZE];
     bool off = format == GPROJ_FORMAT_OFF;
-    int32_t v;
+    int32_t v, f, p, h, i, k;
     writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
     if (off) {
         gproji_put(&writer, "OFF\n");
@@ -13413,10 +13234,33 @@ GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_forma
     }
     for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
         if (!off) gproji_put(&writer, "v ");
-        gproji_put_position(&writer, mesh->position + 3 * v);
+        for (k = 0; k < 3; ++k) {
+            gproj_number_write(mesh->position[3 * v + k], number);
+            gproji_put(&writer, number);
+            gproji_put(&writer, k < 2 ? " " : "\n");
+        }
     }
-    gproji_put_faces(&writer, mesh, off);
-    if (!off) gproji_put_polylines(&writer, mesh);
+    for (f = 0; f < mesh->face_count && !writer.failed; ++f) {
+        if (off)
+            gproji_put_integer(&writer, mesh->face_degree[f]);
+        else
+            gproji_put(&writer, "f");
+        h = mesh->face_halfedge[f];
+        do {
+            gproji_put(&writer, " ");
+            gproji_put_integer(&writer, mesh->origin[h] + (off ? 0 : 1)); /* OBJ counts from 1 */
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
+        gproji_put(&writer, "\n");
+    }
+    for (p = 0; p < mesh->polyline_count && !off && !writer.failed; ++p) {
+        gproji_put(&writer, "l");
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            gproji_put(&writer, " ");
+            gproji_put_integer(&writer, mesh->polyline_vertex[i] + 1);
+        }
+        gproji_put(&writer, "\n");
+    }
     gproji_flush(&writer);
     return writer.failed ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
@@ -13576,19 +13420,19 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
    subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
    for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
-   Truong: Subdivision surfaces in character animation (1998) for creases that end. Products and transposition of
-   matrices are Gustavson's (1978).
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Sparse products and transposition are
+   Gustavson's (1978).
 
-   A level is its stencil, made row by row from the rules of the interface; the positions are the stencil times the
-   coarse ones, and the faces go to the mesh builder as any others do.
-   Invariant: boundary edges are sharp, on all levels; their sharpness outlasts them. */
+   Each level makes a stencil row by row from the rules in the interface; fine positions are the stencil times the coarse
+   ones, and the mesh builder gets the faces.
+   Invariant: boundary edges are sharp on all levels, because GPROJI_SHARP outlasts them. */
 
 enum {
     GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
     GPROJI_SHARP = 2 * GPROJI_LEVELS_MAX /* stands for infinite sharpness: more than 1 is left on all levels */
 };
 
-/* The owner of a gproj_stencil; its arrays are those that `stencil` shows read-only. */
+/* Owns a gproj_stencil and the arrays that `stencil` shows read-only. */
 typedef struct gproji_stencil_object {
     gproji_heap heap; /* first: see gproji_create_object */
     gproj_stencil stencil;
@@ -13626,7 +13470,7 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
     return enough;
 }
 
-/* A stencil of zeros with room for `entries` entries; NULL when there is no memory. */
+/* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
                                                     const gproj_host *host) {
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
@@ -13640,30 +13484,32 @@ GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t column
     return NULL;
 }
 
-/* The transposed matrix, with its columns in ascending order; NULL when there is no memory. */
+/* Creates the transposed matrix, columns in ascending order; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
-    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, count;
+    int64_t k, entries = stencil->start[stencil->row_count], sum = 0, *start;
     gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
     gproji_stencil_object *object;
     int32_t i;
     if (!out) return NULL;
     object = gproji_stencil_owner(out);
-    /* start[j] counts, then is where row j begins, then, as row j fills, where it ends; which is start[j + 1] */
-    for (k = 0; k < entries; ++k) object->start[stencil->column[k]]++;
+    start = object->start;
+    /* 1. start[j] counts the entries in row j, then becomes the place at which row j begins. */
+    for (k = 0; k < entries; ++k) start[stencil->column[k]]++;
     for (i = 0; i <= out->row_count; ++i) {
-        count = object->start[i];
-        object->start[i] = sum;
+        int64_t count = start[i];
+        start[i] = sum;
         sum += count;
     }
+    /* 2. Scatter by rows, so that columns ascend; start[j] then has moved to the end, at which row j + 1 begins. */
     for (i = 0; i < stencil->row_count; ++i) {
         for (k = stencil->start[i]; k < stencil->start[i + 1]; ++k) {
-            int64_t to = object->start[stencil->column[k]]++;
+            int64_t to = start[stencil->column[k]]++;
             object->column[to] = i;
             object->weight[to] = stencil->weight[k];
         }
     }
-    memmove(object->start + 1, object->start, (size_t)out->row_count * sizeof *object->start);
-    object->start[0] = 0;
+    memmove(start + 1, start, (size_t)out->row_count * sizeof *start);
+    start[0] = 0;
     return out;
 }
 
@@ -13683,21 +13529,17 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* -- rows -- */
 
-/* A stencil that is made row by row. Memory that is missing is noticed at the end. */
+/* A stencil that is made row by row; gproji_rows_end reports missing memory. */
 typedef struct gproji_rows {
-    gproji_heap *heap; /* of `place` */
+    gproji_heap *heap; /* gives `place` */
     const gproj_host *host;
-    gproj_stencil *stencil; /* NULL: no memory */
+    gproj_stencil *stencil;
+    bool failed; /* no memory: nothing more is added */
     int32_t column_count;
     int32_t row;    /* the one that is being made */
-    int64_t count;  /* of all entries so far */
-    int64_t *place; /* of each column, its entry in this row; one of an earlier row, or -1: it has none */
+    int64_t count;  /* all entries so far */
+    int64_t *place; /* column_count: the column's entry in this row; older than the row, or -1: none yet */
 } gproji_rows;
-
-GPROJI_INTERNAL void gproji_rows_drop(gproji_rows *rows) {
-    gproj_stencil_destroy(rows->stencil);
-    rows->stencil = NULL;
-}
 
 GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
                                        const gproj_host *host) {
@@ -13706,20 +13548,18 @@ GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int
     rows->column_count = column_count, rows->row = 0, rows->count = 0;
     rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
     rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
-    if (!rows->place) gproji_rows_drop(rows);
-    for (j = 0; rows->place && j < column_count; ++j) rows->place[j] = -1;
+    rows->failed = !rows->place || !rows->stencil;
+    for (j = 0; !rows->failed && j < column_count; ++j) rows->place[j] = -1;
 }
 
-/* Adds a weight to an entry of the row. */
+/* Adds a weight to an entry in the row, which is appended when it is new. */
 GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
     gproji_stencil_object *object;
-    if (!rows->stencil) return;
+    if (rows->failed) return;
     object = gproji_stencil_owner(rows->stencil);
     if (rows->place[column] < object->start[rows->row]) {
-        if (!gproji_stencil_reserve(object, (size_t)rows->count + 1)) {
-            gproji_rows_drop(rows);
-            return;
-        }
+        rows->failed = !gproji_stencil_reserve(object, (size_t)rows->count + 1);
+        if (rows->failed) return;
         object->column[rows->count] = column;
         object->weight[rows->count] = 0;
         rows->place[column] = rows->count++;
@@ -13729,61 +13569,65 @@ GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double w
 
 GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
     rows->row++;
-    if (rows->stencil) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+    if (!rows->failed) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
 }
 
-/* The finished stencil with its columns in ascending order: the transposed of the transposed. NULL without memory. */
+/* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
     gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
-    if (rows->stencil) turned = gproji_transposed(rows->stencil, rows->host);
-    gproji_rows_drop(rows);
+    /* transposing twice sorts the columns in all rows, in linear time */
+    if (!rows->failed) turned = gproji_transposed(rows->stencil, rows->host);
+    gproj_stencil_destroy(rows->stencil);
     if (turned) sorted = gproji_transposed(turned, rows->host);
     gproj_stencil_destroy(turned);
     if (!sorted) gproji_fail_memory(error);
     return sorted;
 }
 
-/* -- the rules -- */
+/* -- rules -- */
 
-/* The mesh of a level and what the rules need besides it. */
+/* A mesh to be refined, and the data that the rules need besides. */
 typedef struct gproji_level {
     const gproj_mesh *mesh;
     gproj_scheme scheme;
-    double *sharpness;  /* of each edge, > 1 at the boundary */
-    const bool *corner; /* of the vertices of the first level: it stays. Later vertices are no corners */
-    int32_t corner_count;
+    double *sharpness;    /* edge_count: > 1 at the boundary */
+    const bool *corner;   /* corner_count: vertices that stay */
+    int32_t corner_count; /* vertices on the first level; later ones are no corners */
 } gproji_level;
 
-/* The mean of a face's corners. */
+/* Adds `share` times the mean of a face's corners. */
 GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
         gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
 }
 
-/* An edge: the smooth rule and the sharp one, blended by its sharpness. */
-GPROJI_INTERNAL void gproji_add_edge_rule(const gproji_level *level, int32_t edge, gproji_rows *rows) {
-    const gproj_mesh *mesh = level->mesh;
-    bool loop = level->scheme == GPROJ_LOOP;
-    double sharp = gproji_fmin(level->sharpness[edge], 1), smooth = 1 - sharp;
-    double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
-    int32_t h;
-    for (h = 2 * edge; h <= 2 * edge + 1; ++h) gproji_rows_add(rows, mesh->origin[h], end);
-    for (h = 2 * edge; smooth > 0 && h <= 2 * edge + 1; ++h) {
-        if (loop)
-            gproji_rows_add(rows, mesh->origin[mesh->prev[h]], smooth / 8);
-        else
-            gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, rows);
-    }
-}
-
-/* A vertex without a corner or crease, inside. */
-GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t vertex, double share,
+/* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
                                             gproji_rows *rows) {
     const gproj_mesh *mesh = level->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    double n = gproj_mesh_valence(mesh, vertex), ring;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
+    double n = 0, ring;
+    do {
+        if (level->sharpness[h / 2] > least) {
+            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
+            ++sharp;
+        }
+        ++n;
+        h = gproji_rotate(mesh, h);
+    } while (h != start);
+    if (sharp > 2) { /* a corner */
+        gproji_rows_add(rows, vertex, share);
+        return;
+    }
+    if (sharp == 2) { /* on a crease: cubic B-spline */
+        gproji_rows_add(rows, end[0], 0.125 * share);
+        gproji_rows_add(rows, vertex, 0.75 * share);
+        gproji_rows_add(rows, end[1], 0.125 * share);
+        return;
+    }
+    /* smooth, inside the mesh: `ring` is the weight for each neighbour, and with Catmull-Clark for each face's vertex */
     if (level->scheme == GPROJ_LOOP) {
         double c = 0.375 + 0.25 * cos(2 * GPROJI_PI / n);
         ring = share * (0.625 - c * c) / n;
@@ -13799,203 +13643,136 @@ GPROJI_INTERNAL void gproji_add_smooth_rule(const gproji_level *level, int32_t v
     } while (h != start);
 }
 
-/* A vertex whose edges of more than this sharpness are sharp: smooth, on a crease, or a corner. */
-GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
-                                            gproji_rows *rows) {
-    const gproj_mesh *mesh = level->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
-    do {
-        if (level->sharpness[h / 2] > least) {
-            if (sharp < 2) end[sharp] = mesh->origin[h ^ 1];
-            ++sharp;
-        }
-        h = gproji_rotate(mesh, h);
-    } while (h != start);
-    if (sharp < 2) {
-        gproji_add_smooth_rule(level, vertex, share, rows);
-    } else if (sharp == 2) {
-        gproji_rows_add(rows, end[0], 0.125 * share);
-        gproji_rows_add(rows, vertex, 0.75 * share);
-        gproji_rows_add(rows, end[1], 0.125 * share);
-    } else {
-        gproji_rows_add(rows, vertex, share);
-    }
-}
-
-/* The mean sharpness of the edges at a vertex that are sharp on this level and smooth on the next; 1 without any. */
-GPROJI_INTERNAL double gproji_ending_sharpness(const gproji_level *level, int32_t vertex) {
-    int32_t start = level->mesh->vertex_halfedge[vertex], h = start, count = 0;
-    double sum = 0;
-    do {
-        double s = level->sharpness[h / 2];
-        if (s > 0 && s <= 1) sum += s, ++count;
-        h = gproji_rotate(level->mesh, h);
-    } while (h != start);
-    return count ? sum / count : 1;
-}
-
-GPROJI_INTERNAL void gproji_add_vertex_row(const gproji_level *level, int32_t vertex, gproji_rows *rows) {
-    double now;
-    if (level->mesh->vertex_halfedge[vertex] < 0 || (vertex < level->corner_count && level->corner[vertex])) {
-        gproji_rows_add(rows, vertex, 1);
-        return;
-    }
-    now = gproji_ending_sharpness(level, vertex);
-    gproji_add_vertex_rule(level, vertex, 0, now, rows);
-    if (now < 1) gproji_add_vertex_rule(level, vertex, 1, 1 - now, rows);
-}
-
 /* -- one level -- */
 
-/* How large a level is. */
 typedef struct gproji_counts {
     int64_t vertices, edges, faces, corners;
-    int64_t polyline_vertices; /* at most: if all polylines run along edges */
+    int64_t polyline_vertices; /* at most: reached when all polylines run along edges */
 } gproji_counts;
 
-GPROJI_INTERNAL gproji_counts gproji_count(const gproj_mesh *mesh) {
-    gproji_counts counts = {0, 0, 0, 0, 0};
+/* Counts the elements after some levels. */
+GPROJI_INTERNAL gproji_counts gproji_count_levels(const gproj_mesh *mesh, gproj_scheme scheme, int32_t levels) {
+    gproji_counts counts;
     int32_t f;
-    counts.vertices = mesh->vertex_count;
-    counts.edges = mesh->edge_count;
-    counts.faces = mesh->face_count;
-    for (f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    counts.vertices = mesh->vertex_count, counts.edges = mesh->edge_count, counts.faces = mesh->face_count;
     counts.polyline_vertices = mesh->polyline_start[mesh->polyline_count];
+    for (counts.corners = 0, f = 0; f < mesh->face_count; ++f) counts.corners += mesh->face_degree[f];
+    for (; levels > 0; --levels) {
+        counts.vertices += counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
+        counts.edges = 2 * counts.edges + counts.corners;
+        counts.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
+        counts.corners *= 4;
+        counts.polyline_vertices *= 2;
+    }
     return counts;
 }
 
-GPROJI_INTERNAL gproji_counts gproji_count_next(gproji_counts counts, gproj_scheme scheme) {
-    gproji_counts next;
-    next.vertices = counts.vertices + counts.edges + (scheme == GPROJ_LOOP ? 0 : counts.faces);
-    next.edges = 2 * counts.edges + counts.corners;
-    next.faces = scheme == GPROJ_LOOP ? 4 * counts.faces : counts.corners;
-    next.corners = 4 * counts.corners;
-    next.polyline_vertices = 2 * counts.polyline_vertices;
-    return next;
-}
-
+/* Creates the stencil from a level to the next, with rows in the order vertices, edges, faces. */
 GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
                                                     const gproj_host *host, gproj_error *error) {
     const gproj_mesh *mesh = level->mesh;
+    gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     gproji_rows rows;
-    int32_t i;
-    gproji_counts next = gproji_count_next(gproji_count(mesh), level->scheme);
+    int32_t i, h;
+    bool loop = level->scheme == GPROJ_LOOP;
     gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
-    for (i = 0; rows.stencil && i < mesh->vertex_count; ++i, gproji_rows_next(&rows))
-        gproji_add_vertex_row(level, i, &rows);
-    for (i = 0; rows.stencil && i < mesh->edge_count; ++i, gproji_rows_next(&rows))
-        gproji_add_edge_rule(level, i, &rows);
-    for (i = 0; rows.stencil && level->scheme != GPROJ_LOOP && i < mesh->face_count; ++i, gproji_rows_next(&rows))
+    /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
+       mean sharpness over edges that are sharp now and smooth then. */
+    for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
+        double sum = 0, now;
+        int32_t count = 0;
+        h = mesh->vertex_halfedge[i];
+        if (h < 0 || (i < level->corner_count && level->corner[i])) {
+            gproji_rows_add(&rows, i, 1);
+            continue;
+        }
+        do {
+            double s = level->sharpness[h / 2];
+            if (s > 0 && s <= 1) sum += s, ++count;
+            h = gproji_rotate(mesh, h);
+        } while (h != mesh->vertex_halfedge[i]);
+        now = count ? sum / count : 1;
+        gproji_add_vertex_rule(level, i, 0, now, &rows);
+        if (now < 1) gproji_add_vertex_rule(level, i, 1, 1 - now, &rows);
+    }
+    /* 2. Edges: the smooth rule and the sharp one, blended. Boundary edges, which lack a face, are sharp. */
+    for (i = 0; !rows.failed && i < mesh->edge_count; ++i, gproji_rows_next(&rows)) {
+        double sharp = gproji_fmin(level->sharpness[i], 1), smooth = 1 - sharp;
+        double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
+        for (h = 2 * i; h <= 2 * i + 1; ++h) gproji_rows_add(&rows, mesh->origin[h], end);
+        for (h = 2 * i; smooth > 0 && h <= 2 * i + 1; ++h) {
+            if (loop)
+                gproji_rows_add(&rows, mesh->origin[mesh->prev[h]], smooth / 8);
+            else
+                gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, &rows);
+        }
+    }
+    /* 3. Faces. */
+    for (i = 0; !rows.failed && !loop && i < mesh->face_count; ++i, gproji_rows_next(&rows))
         gproji_add_face_rule(mesh, i, 1, &rows);
     return gproji_rows_end(&rows, error);
 }
 
-/* The faces of the next level: their degrees and corners, one after the other. */
-GPROJI_INTERNAL void gproji_level_faces(const gproji_level *level, int32_t *degree, int32_t *corner) {
+/* Builds the next level's mesh. */
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
+                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
     const gproj_mesh *mesh = level->mesh;
-    int32_t f, k, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
+    int32_t p, i, f, h, k, c = 0, d = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
+    gproji_mesh_object *object;
+    gproji_soup soup;
+    gproji_pool pool;
+    gproj_code code;
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+    gproji_pool_start(&pool, heap);
+    position = (double *)gproji_pool_take(&pool, next.vertices, 3 * sizeof(double));
+    degree = (int32_t *)gproji_pool_take(&pool, next.faces, sizeof(int32_t));
+    corner = (int32_t *)gproji_pool_take(&pool, next.corners, sizeof(int32_t));
+    start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
+    vertex = (int32_t *)gproji_pool_take(&pool, next.polyline_vertices, sizeof(int32_t));
+    object = position && degree && corner && start && vertex ? gproji_mesh_begin(host, error) : NULL;
+    if (!object) {
+        gproji_pool_give_all(&pool);
+        gproji_fail_memory(error);
+        return NULL;
+    }
+    gproj_stencil_apply(stencil, 3, mesh->position, position);
+    /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
     for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f];
+        h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            *corner++ = mesh->origin[h];
-            *corner++ = edges + h / 2;
-            if (!loop) *corner++ = faces + f;
-            *corner++ = edges + mesh->prev[h] / 2;
-            *degree++ = loop ? 3 : 4;
+            corner[c++] = mesh->origin[h];
+            corner[c++] = edges + h / 2;
+            if (!loop) corner[c++] = faces + f;
+            corner[c++] = edges + mesh->prev[h] / 2;
+            degree[d++] = loop ? 3 : 4;
         }
         if (!loop) continue;
-        for (k = 0; k < 3; ++k, h = mesh->next[h]) *corner++ = edges + h / 2;
-        *degree++ = 3;
+        for (k = 0; k < 3; ++k, h = mesh->next[h]) corner[c++] = edges + h / 2;
+        degree[d++] = 3;
     }
-}
-
-/* The polylines of the next level: `start`, polyline_count + 1 entries, and `vertex`, unless that is NULL. Returns the
-   number of their vertices. */
-GPROJI_INTERNAL int32_t gproji_level_polylines(const gproj_mesh *mesh, int32_t *start, int32_t *vertex) {
-    int32_t p, i, h, count = 0;
+    /* 2. Polylines: a vertex more between two that have an edge. */
     for (p = 0; p < mesh->polyline_count; ++p) {
         start[p] = count;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            int32_t v = mesh->polyline_vertex[i];
             bool last = i + 1 == mesh->polyline_start[p + 1];
-            if (vertex) vertex[count] = v;
-            ++count;
-            h = last ? -1 : gproji_halfedge_between(mesh, v, mesh->polyline_vertex[i + 1]);
-            if (h < 0) continue;
-            if (vertex) vertex[count] = mesh->vertex_count + h / 2;
-            ++count;
+            vertex[count++] = mesh->polyline_vertex[i];
+            h = last ? -1 : gproji_halfedge_between(mesh, mesh->polyline_vertex[i], mesh->polyline_vertex[i + 1]);
+            if (h >= 0) vertex[count++] = edges + h / 2;
         }
     }
     start[p] = count;
-    return count;
+    soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
+    soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
+    code = gproji_mesh_build(object, &soup, error);
+    if (!code) code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    gproji_pool_give_all(&pool);
+    return gproji_mesh_done(object, code);
 }
 
-GPROJI_INTERNAL gproj_code gproji_set_level_polylines(gproji_mesh_object *object, const gproj_mesh *mesh,
-                                                      gproji_heap *heap, gproj_error *error) {
-    size_t starts = (size_t)mesh->polyline_count + 1, vertices = 0;
-    int32_t *start = (int32_t *)gproji_take(heap, starts, sizeof *start), *vertex = NULL;
-    gproj_code code;
-    if (start) {
-        vertices = (size_t)gproji_level_polylines(mesh, start, NULL);
-        vertex = (int32_t *)gproji_take(heap, vertices, sizeof *vertex);
-    }
-    if (vertex) {
-        gproji_level_polylines(mesh, start, vertex);
-        code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
-    } else {
-        code = gproji_fail_memory(error);
-    }
-    gproji_give(heap, vertex, vertices, sizeof *vertex);
-    gproji_give(heap, start, starts, sizeof *start);
-    return code;
-}
-
-/* The mesh of the next level. */
-GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
-                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
-    gproji_counts next = gproji_count_next(gproji_count(level->mesh), level->scheme);
-    size_t vertices = (size_t)next.vertices, faces = (size_t)next.faces, corners = (size_t)next.corners;
-    gproji_mesh_object *object = gproji_mesh_begin(host, error);
-    double *position = (double *)gproji_take(heap, vertices, 3 * sizeof *position);
-    int32_t *degree = (int32_t *)gproji_take(heap, faces, sizeof *degree);
-    int32_t *corner = (int32_t *)gproji_take(heap, corners, sizeof *corner);
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    if (object && position && degree && corner) {
-        gproji_soup soup;
-        gproj_stencil_apply(stencil, 3, level->mesh->position, position);
-        gproji_level_faces(level, degree, corner);
-        soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
-        soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
-        code = gproji_mesh_build(object, &soup, error);
-        if (!code) code = gproji_set_level_polylines(object, level->mesh, heap, error);
-    } else {
-        gproji_fail_memory(error);
-    }
-    gproji_give(heap, position, vertices, 3 * sizeof *position);
-    gproji_give(heap, degree, faces, sizeof *degree);
-    gproji_give(heap, corner, corners, sizeof *corner);
-    return object ? gproji_mesh_done(object, code) : NULL;
-}
-
-/* What is left of the sharpness on the next level: of each half of an edge one less, of new edges nothing. Each coarse
-   corner's face there begins with the halves of two edges, the last one and the first one of its corner. */
-GPROJI_INTERNAL void gproji_level_creases(const gproji_level *level, const gproj_mesh *fine, double *sharpness) {
-    const gproj_mesh *mesh = level->mesh;
-    int32_t f, k, e, at = 0;
-    for (e = 0; e < fine->edge_count; ++e) sharpness[e] = 0;
-    for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f];
-        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
-            int32_t half = fine->face_halfedge[at];
-            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
-            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
-        }
-        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
-    }
-}
-
-/* -- the stencil's functions -- */
+/* -- functions on stencils -- */
 
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error) {
@@ -14028,7 +13805,7 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
         return NULL;
     }
     gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
-    for (i = 0; rows.stencil && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+    for (i = 0; !rows.failed && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
             int32_t middle = fine->column[k];
             for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
@@ -14038,62 +13815,9 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
     return gproji_rows_end(&rows, error);
 }
 
-/* -- all levels -- */
+/* -- checks -- */
 
-/* The state between two levels. Meshes and stencils have their own memory. */
-typedef struct gproji_subdivision {
-    gproji_heap heap; /* of the work arrays */
-    const gproj_host *host;
-    gproj_error *error;
-    const gproj_subdivide_options *options;
-    gproji_level level;
-    bool *corner;           /* of each vertex of the first mesh */
-    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
-    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
-} gproji_subdivision;
-
-GPROJI_INTERNAL gproj_code gproji_check_level_counts(const gproj_mesh *mesh, const gproj_subdivide_options *options,
-                                                     gproj_error *error) {
-    gproji_counts counts = gproji_count(mesh);
-    int32_t level;
-    for (level = 1; level <= options->levels; ++level) {
-        counts = gproji_count_next(counts, options->scheme);
-        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > INT32_MAX) {
-            return gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
-                "can have; take fewer levels",
-                level, counts.vertices, counts.faces, counts.polyline_vertices);
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* Loop's scheme takes triangles, no two of them with the same corners: those of the next level would share edges. */
-GPROJI_INTERNAL gproj_code gproji_check_triangles(const gproj_mesh *mesh, gproj_error *error) {
-    int32_t f;
-    for (f = 0; f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
-        if (mesh->face_degree[f] != 3) {
-            return gproji_fail(
-                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
-                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
-                "or cut the faces into triangles",
-                f, mesh->face_degree[f]);
-        }
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
-            return gproji_fail(
-                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
-                "edges; use Catmull-Clark, or remove them",
-                f, other);
-        }
-    }
-    return GPROJ_OK;
-}
-
-/* The sharpness of a crease of the options, at most GPROJI_SHARP; < 0 where it is no such number. */
+/* A crease's sharpness, at most GPROJI_SHARP; < 0 if it is no such number. */
 GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *options, int32_t crease) {
     double x = GPROJI_SHARP;
     uint64_t bits;
@@ -14135,8 +13859,10 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
 
 GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                     gproj_error *error) {
+    bool loop = options->scheme == GPROJ_LOOP;
+    int32_t level, f;
     gproj_code code;
-    if (options->scheme != GPROJ_CATMULL_CLARK && options->scheme != GPROJ_LOOP) {
+    if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
                            (int32_t)options->scheme);
     }
@@ -14151,76 +13877,101 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
                            options->levels, options->levels - 1);
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
-    if (!code && options->scheme == GPROJ_LOOP) code = gproji_check_triangles(mesh, error);
-    if (!code) code = gproji_check_creases(mesh, options, error);
-    return code ? code : gproji_check_level_counts(mesh, options, error);
-}
-
-/* The first level: corners, and the sharpness of the edges. */
-GPROJI_INTERNAL gproj_code gproji_subdivision_begin(gproji_subdivision *s, const gproj_mesh *mesh) {
-    const gproj_subdivide_options *options = s->options;
-    double *sharpness = (double *)gproji_take(&s->heap, (size_t)mesh->edge_count, sizeof *sharpness);
-    int32_t k;
-    s->level.mesh = mesh, s->level.scheme = options->scheme, s->level.sharpness = sharpness;
-    s->level.corner_count = mesh->vertex_count;
-    s->level.corner = s->corner = (bool *)gproji_take_zeroed(&s->heap, (size_t)mesh->vertex_count, sizeof *s->corner);
-    if (!sharpness || !s->corner) return gproji_fail_memory(s->error);
-    for (k = 0; k < mesh->edge_count; ++k)
-        sharpness[k] = mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0 ? GPROJI_SHARP : 0;
-    for (k = 0; k < options->crease_count; ++k) {
-        double *edge = sharpness + (options->creases ? options->creases[k] : k);
-        *edge = gproji_fmax(*edge, gproji_crease_sharpness(options, k));
+    if (code) return code;
+    /* Two triangles with the same corners have three edges in common, and so would their fine faces in the middle. */
+    for (f = 0; loop && f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3) {
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        }
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+        }
     }
-    for (k = 0; k < options->corner_count; ++k) s->corner[options->corners ? options->corners[k] : k] = true;
-    for (k = 0; k < mesh->vertex_count && !options->round_corners; ++k)
-        if (gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2) s->corner[k] = true;
-    return GPROJ_OK;
-}
-
-/* Takes a level's stencil into that of all levels; it is given away. */
-GPROJI_INTERNAL gproj_code gproji_take_stencil(gproji_subdivision *s, gproj_stencil *step) {
-    gproj_stencil *both = step;
-    if (s->stencil) {
-        both = gproj_stencil_multiply(step, s->stencil, s->host, s->error);
-        gproj_stencil_destroy(step);
-        gproj_stencil_destroy(s->stencil);
+    code = gproji_check_creases(mesh, options, error);
+    for (level = 1; !code && level <= options->levels; ++level) {
+        gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
+        if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
+            counts.polyline_vertices > INT32_MAX) {
+            code = gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
+                "can have; take fewer levels",
+                level, counts.vertices, counts.faces, counts.polyline_vertices);
+        }
     }
-    s->stencil = both;
-    return both ? GPROJ_OK : GPROJ_ERROR_MEMORY;
+    return code;
 }
 
-/* From a level to the next one. */
+/* -- all levels -- */
+
+/* The state between two levels. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* gives level.sharpness and level.corner */
+    const gproj_host *host;
+    gproj_error *error;
+    gproji_level level;
+    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
+
+/* Goes from a level to the next one. */
 GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
     gproji_level *level = &s->level;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error);
+    const gproj_mesh *mesh = level->mesh;
+    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error), *both;
     gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
-    double *sharpness = NULL;
-    if (fine) {
-        sharpness = (double *)gproji_take(&s->heap, (size_t)fine->edge_count, sizeof *sharpness);
-        code = sharpness ? GPROJ_OK : gproji_fail_memory(s->error);
-    }
-    if (code) {
+    double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
+    int32_t f, k, at = 0;
+    if (!sharpness) {
         gproj_mesh_destroy(fine);
         gproj_stencil_destroy(step);
-        return code;
+        return gproji_fail_memory(s->error);
     }
-    gproji_level_creases(level, fine, sharpness);
-    gproji_give(&s->heap, level->sharpness, (size_t)level->mesh->edge_count, sizeof *level->sharpness);
+    /* 1. Sharpness falls by one on the halves of an edge, and is 0 on new edges. The fine face at a corner begins with a
+       half of the corner's edge and ends with a half of the edge before. */
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
+            int32_t half = fine->face_halfedge[at];
+            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+        }
+        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+    }
+    /* 2. The fine mesh takes the coarse one's place. */
+    gproji_give(&s->heap, level->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
     level->sharpness = sharpness;
     level->mesh = s->own = fine;
-    if (keep_stencil) return gproji_take_stencil(s, step);
+    /* 3. The stencil from stencil_level to here. */
+    if (keep_stencil && !s->stencil) {
+        s->stencil = step;
+        return GPROJ_OK;
+    }
+    both = keep_stencil ? gproj_stencil_multiply(step, s->stencil, s->host, s->error) : NULL;
     gproj_stencil_destroy(step);
-    return GPROJ_OK;
+    gproj_stencil_destroy(s->stencil);
+    s->stencil = both;
+    return keep_stencil && !both ? GPROJ_ERROR_MEMORY : GPROJ_OK;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
     gproj_subdivide_options given;
     gproji_subdivision s;
-    gproj_code code;
-    int32_t level;
+    gproj_code code = GPROJ_OK;
+    double *sharpness;
+    bool *corner;
+    int32_t level, k;
     gproji_error_clear(error);
     if (stencil) *stencil = NULL;
     if (!mesh) {
@@ -14233,12 +13984,26 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     if (gproji_check_subdivision(mesh, &given, error)) return NULL;
     memset(&s, 0, sizeof s);
     s.heap = gproji_heap_of(host);
-    s.host = host, s.error = error, s.options = &given;
-    code = gproji_subdivision_begin(&s, mesh);
+    s.host = host, s.error = error;
+    s.level.mesh = mesh, s.level.scheme = given.scheme, s.level.corner_count = mesh->vertex_count;
+    s.level.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
+    s.level.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
+    if (!sharpness || !corner) code = gproji_fail_memory(error);
+    /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
+    for (k = 0; !code && k < mesh->edge_count; ++k)
+        if (mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
+    for (k = 0; !code && k < mesh->vertex_count && !given.round_corners; ++k)
+        corner[k] = gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2;
+    for (k = 0; !code && k < given.crease_count; ++k) {
+        double *edge = sharpness + (given.creases ? given.creases[k] : k);
+        *edge = gproji_fmax(*edge, gproji_crease_sharpness(&given, k));
+    }
+    for (k = 0; !code && k < given.corner_count; ++k) corner[given.corners ? given.corners[k] : k] = true;
+    /* 2. The levels. */
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
-    gproji_give(&s.heap, s.corner, (size_t)mesh->vertex_count, sizeof *s.corner);
-    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof *s.level.sharpness);
+    gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
+    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof(double));
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
@@ -14251,12 +14016,12 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
 /* ============================================================================================================
    >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory.
 
-   A binary tree of axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median of the box centres
-   along the longest axis of the node's centres, down to leaves of at most four items; searched depth first, the nearer
-   child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis and
-   then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
+   A binary tree with axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median box centre along
+   the axis on which the node's centres spread most, down to leaves with at most four items; searched depth first, the
+   nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis
+   and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
    Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
-   item[begin..end-1]; the halves differ by one item at most, so no path is longer than 32 nodes. */
+   item[begin..end-1]; two children differ by one item at most, so no path is longer than 32 nodes. */
 typedef struct gproji_node {
     double low[3], high[3];
     int32_t begin, end;
@@ -14265,7 +14030,7 @@ typedef struct gproji_node {
 
 typedef struct gproji_hierarchy {
     int32_t item_count, node_count;
-    int32_t *item;     /* item_count: a permutation of the items */
+    int32_t *item;     /* item_count: a permutation */
     gproji_node *node; /* room for item_count */
 } gproji_hierarchy;
 
@@ -14274,7 +14039,7 @@ enum {
     GPROJI_TREE_DEPTH = 64
 };
 
-/* The box of an item; its squared distance from a point. */
+/* An item's box; the squared distance between an item and a point. */
 typedef void (*gproji_item_box)(const void *user, int32_t item, double low[3], double high[3]);
 typedef double (*gproji_item_distance)(const void *user, int32_t item, const double point[3]);
 
@@ -14283,8 +14048,8 @@ typedef double (*gproji_item_distance)(const void *user, int32_t item, const dou
 typedef struct gproji_hierarchy_work {
     double *box;       /* 6 * item_count: low and high of each item */
     int32_t *order[3]; /* item_count each: the items by centre along x, y, z (then by number), within every node */
-    int32_t *spare;    /* item_count: scratch of sorting and splitting */
-    uint8_t *left;     /* item_count: 1 where an item goes to the left child of the node at hand */
+    int32_t *spare;    /* item_count: scratch for sorting and splitting */
+    uint8_t *left;     /* item_count: 1 if the item goes to the left child of the node at hand */
 } gproji_hierarchy_work;
 
 /* Twice the centre. */
@@ -14314,7 +14079,7 @@ GPROJI_INTERNAL void gproji_sort_axis(gproji_hierarchy_work *work, int32_t count
     work->spare = to;
 }
 
-/* Moves the items with left = 1 to the front of list[begin..end-1], both parts keeping their order. */
+/* Moves the items with left = 1 to the front of list[begin..end-1]; items on each side keep their order. */
 GPROJI_INTERNAL void gproji_split_list(const gproji_hierarchy_work *work, int32_t *list, int32_t begin, int32_t end) {
     int32_t i, front = begin, back = 0;
     for (i = begin; i < end; ++i) {
@@ -14326,41 +14091,36 @@ GPROJI_INTERNAL void gproji_split_list(const gproji_hierarchy_work *work, int32_
     memcpy(list + front, work->spare, (size_t)back * sizeof list[0]);
 }
 
-/* The node's box, and the axis along which the centres of its items spread most. */
-GPROJI_INTERNAL int32_t gproji_bound_node(const gproji_hierarchy_work *work, gproji_node *node) {
-    int32_t axis, widest = 0, i;
-    double spread[3];
-    for (axis = 0; axis < 3; ++axis) {
-        const int32_t *list = work->order[axis];
-        spread[axis] =
-            gproji_box_centre(work, list[node->end - 1], axis) - gproji_box_centre(work, list[node->begin], axis);
-        node->low[axis] = DBL_MAX, node->high[axis] = -DBL_MAX;
-        for (i = node->begin; i < node->end; ++i) {
-            const double *box = work->box + 6 * (size_t)list[i] + axis;
-            node->low[axis] = gproji_fmin(node->low[axis], box[0]);
-            node->high[axis] = gproji_fmax(node->high[axis], box[3]);
-        }
-        if (spread[axis] > spread[widest]) widest = axis;
-    }
-    return widest;
-}
-
-/* Builds the nodes in preorder with an explicit stack of the right children still to be made. */
+/* Builds the nodes in preorder with an explicit stack for the right children that are still to be made. */
 GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierarchy_work *work) {
     int32_t stack_begin[GPROJI_TREE_DEPTH], stack_end[GPROJI_TREE_DEPTH], stack_parent[GPROJI_TREE_DEPTH], depth = 0;
     int32_t begin = 0, end = tree->item_count, parent = -1;
     for (;;) {
         gproji_node *node = &tree->node[tree->node_count];
-        int32_t axis, other, middle, i;
+        int32_t axis, widest = 0, middle, i;
+        double spread[3];
         if (parent >= 0) tree->node[parent].right = tree->node_count;
         tree->node_count++;
         node->begin = begin, node->end = end, node->right = -1;
-        axis = gproji_bound_node(work, node);
+        /* 1. Bounds, and the axis along which the centres spread most: their lists are sorted. */
+        for (axis = 0; axis < 3; ++axis) {
+            const int32_t *list = work->order[axis];
+            double low = DBL_MAX, high = -DBL_MAX;
+            spread[axis] = gproji_box_centre(work, list[end - 1], axis) - gproji_box_centre(work, list[begin], axis);
+            if (spread[axis] > spread[widest]) widest = axis;
+            for (i = begin; i < end; ++i) {
+                const double *box = work->box + 6 * (size_t)list[i] + axis;
+                low = gproji_fmin(low, box[0]);
+                high = gproji_fmax(high, box[3]);
+            }
+            node->low[axis] = low, node->high[axis] = high;
+        }
+        /* 2. The left child comes next, the right one after all nodes below the left. */
         if (end - begin > GPROJI_LEAF_ITEMS) {
             middle = begin + (end - begin) / 2;
-            for (i = begin; i < end; ++i) work->left[work->order[axis][i]] = i < middle;
-            for (other = 0; other < 3; ++other) {
-                if (other != axis) gproji_split_list(work, work->order[other], begin, end);
+            for (i = begin; i < end; ++i) work->left[work->order[widest][i]] = i < middle;
+            for (axis = 0; axis < 3; ++axis) {
+                if (axis != widest) gproji_split_list(work, work->order[axis], begin, end);
             }
             stack_begin[depth] = middle, stack_end[depth] = end, stack_parent[depth] = tree->node_count - 1;
             ++depth;
@@ -14380,44 +14140,40 @@ GPROJI_INTERNAL void gproji_hierarchy_give(gproji_heap *heap, gproji_hierarchy *
     tree->item = NULL, tree->node = NULL;
 }
 
-/* False when there is no memory. Needs count >= 1. */
+/* Builds the tree over `count` >= 1 items; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy *tree, int32_t count,
                                             gproji_item_box item_box, const void *user) {
     gproji_hierarchy_work work;
-    size_t n = (size_t)count;
+    gproji_pool pool;
     int32_t i, axis;
-    bool complete = true;
+    bool complete;
     memset(tree, 0, sizeof *tree);
-    memset(&work, 0, sizeof work);
     tree->item_count = count;
-    tree->item = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-    tree->node = (gproji_node *)gproji_take(heap, n, sizeof(gproji_node));
-    work.box = (double *)gproji_take(heap, n, 6 * sizeof(double));
-    work.spare = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-    work.left = (uint8_t *)gproji_take(heap, n, sizeof(uint8_t));
-    for (axis = 0; axis < 3; ++axis) {
-        work.order[axis] = (int32_t *)gproji_take(heap, n, sizeof(int32_t));
-        if (!work.order[axis]) complete = false;
-    }
-    complete = complete && tree->item && tree->node && work.box && work.spare && work.left;
+    tree->item = (int32_t *)gproji_take(heap, (size_t)count, sizeof(int32_t));
+    tree->node = (gproji_node *)gproji_take(heap, (size_t)count, sizeof(gproji_node));
+    gproji_pool_start(&pool, heap);
+    work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
+    work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
+    for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    complete = tree->item && tree->node && work.box && work.spare && work.left && work.order[0] && work.order[1] &&
+               work.order[2];
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
         for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
         gproji_grow_hierarchy(tree, &work);
-        memcpy(tree->item, work.order[0], n * sizeof(int32_t));
+        /* within a leaf the three lists differ in order only, so any of them will do */
+        memcpy(tree->item, work.order[0], (size_t)count * sizeof(int32_t));
     }
-    for (axis = 0; axis < 3; ++axis) gproji_give(heap, work.order[axis], n, sizeof(int32_t));
-    gproji_give(heap, work.left, n, sizeof(uint8_t));
-    gproji_give(heap, work.spare, n, sizeof(int32_t));
-    gproji_give(heap, work.box, n, 6 * sizeof(double));
+    gproji_pool_give_all(&pool);
     if (!complete) gproji_hierarchy_give(heap, tree);
     return complete;
 }
 
 /* -- searching -- */
 
-/* The squared distance of a point from a node's box, made smaller by more than its own rounding error, so that an item
-   that is as near as another one is looked at. */
+/* The squared distance between a point and a node's box, reduced by more than rounding can add, so that no item as near
+   as the best is missed. */
 GPROJI_INLINE double gproji_box_distance(const gproji_node *node, const double point[3]) {
     double sum = 0;
     int32_t axis;
@@ -14437,6 +14193,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
     int32_t at = 0;
     for (;;) {
         const gproji_node *node = &tree->node[at];
+        /* 1. Descend to the nearer child; the other one waits on the stack. */
         if (here <= best && node->right >= 0) {
             int32_t near_child = at + 1, far_child = node->right;
             double near_distance = gproji_box_distance(&tree->node[near_child], point);
@@ -14451,6 +14208,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
             at = near_child, here = near_distance;
             continue;
         }
+        /* 2. Compare the items in a leaf, unless the box is farther than the best so far. */
         for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
             double d = distance(user, tree->item[i], point);
             if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
@@ -14468,8 +14226,8 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
 /* ============================================================================================================
    >>curve   Polylines and their closest points. Uses platform, memory, error, vector, mesh, hierarchy.
 
-   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats its first point at its end); every
-   tangent is a unit vector, also that of a segment without length, which has the tangent of the segment before it. */
+   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats the first point at the end); every
+   tangent is a unit vector: a segment without length has the tangent of the segment before it. */
 struct gproj_curve {
     gproji_heap heap; /* first: see gproji_create_object */
     int32_t segment_count;
@@ -14478,7 +14236,7 @@ struct gproj_curve {
     gproji_hierarchy tree; /* over the segments */
 };
 
-/* The point a + t (b - a), 0 <= t <= 1, nearest to p, into `out`; returns t. A point that is not finite gives t = 0. */
+/* Writes the point a + t (b - a), 0 <= t <= 1, nearest to p to `out`; returns t. A point that is not finite gives t = 0. */
 GPROJI_INTERNAL double gproji_closest_on_segment(const double a[3], const double b[3], const double p[3],
                                                  double out[3]) {
     double ab[3], ap[3], square, t;
@@ -14518,37 +14276,6 @@ GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, c
     return gproji_square_distance3(out, point);
 }
 
-/* Directions of all segments. Those shorter than 1e-14 of the curve's extent have none of their own and take over that
-   of the segment before (an open curve's first ones: of the first segment that has one). False where none has. */
-GPROJI_INTERNAL bool gproji_curve_tangents(gproj_curve *curve, bool closed) {
-    const double zero[3] = {0, 0, 0};
-    double extent = 0, last[3] = {0, 0, 0}, *t;
-    int32_t s, k, from = -1;
-    for (s = 0; s <= curve->segment_count; ++s) {
-        for (k = 0; k < 3; ++k)
-            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
-    }
-    for (s = 0; s < curve->segment_count; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
-        if (gproji_length3(t) <= 1e-14 * extent)
-            gproji_set3(0, 0, 0, t);
-        else
-            gproji_normalise3(t, zero);
-        if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
-    }
-    if (from < 0) return false;
-    gproji_copy3(curve->tangent + 3 * (size_t)from, last);
-    for (s = 0; s < curve->segment_count; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        if (gproji_dot3(t, t) > 0)
-            gproji_copy3(t, last);
-        else
-            gproji_copy3(last, t);
-    }
-    return true;
-}
-
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     if (!curve) return;
     gproji_hierarchy_give(&curve->heap, &curve->tree);
@@ -14557,7 +14284,7 @@ GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     gproji_destroy_object(curve, sizeof *curve);
 }
 
-/* A curve with room for its points, which the caller fills in before gproji_curve_finish. NULL without memory. */
+/* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
     gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve));
     if (curve) {
@@ -14573,13 +14300,40 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
 
 /* Checks the points and builds the rest; on failure destroys the curve and returns NULL. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    gproj_code code = gproji_check_positions(curve->segment_count + 1, curve->point, "point", error);
-    if (!code && !gproji_curve_tangents(curve, closed)) {
+    const double zero[3] = {0, 0, 0};
+    double extent = 0, last[3] = {0, 0, 0}, *t;
+    int32_t s, k, count = curve->segment_count, from = -1;
+    gproj_code code = gproji_check_positions(count + 1, curve->point, "point", error);
+    /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
+    for (s = 0; s <= count && !code; ++s) {
+        for (k = 0; k < 3; ++k)
+            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
+    }
+    for (s = 0; s < count && !code; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
+        if (gproji_length3(t) <= 1e-14 * extent)
+            gproji_set3(0, 0, 0, t);
+        else
+            gproji_normalise3(t, zero);
+        /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
+        if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
+    }
+    if (!code && from < 0) {
         code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "all %d points of the curve are the same; it needs two different ones",
-                           curve->segment_count + (closed ? 0 : 1));
+                           count + (closed ? 0 : 1));
     }
-    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, curve->segment_count, gproji_segment_box, curve)) {
+    /* 2. Zeros take over the direction before them. */
+    if (!code) gproji_copy3(curve->tangent + 3 * (size_t)from, last);
+    for (s = 0; s < count && !code; ++s) {
+        t = curve->tangent + 3 * (size_t)s;
+        if (gproji_dot3(t, t) > 0)
+            gproji_copy3(t, last);
+        else
+            gproji_copy3(last, t);
+    }
+    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, count, gproji_segment_box, curve)) {
         code = gproji_fail_memory(error);
     }
     if (!code) return curve;
@@ -14622,9 +14376,9 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
     } while (h != start);
     curve = gproji_curve_begin(count, host, error);
     if (!curve) return NULL;
-    for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h]) { /* against the boundary half-edges */
+    /* with the faces' edges, that is against the boundary half-edges */
+    for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h])
         gproji_copy3(mesh->position + 3 * (size_t)mesh->origin[h], curve->point + 3 * (size_t)count);
-    }
     return gproji_curve_finish(curve, true, error);
 }
 
@@ -14644,15 +14398,19 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     segments = mesh->polyline_start[polyline + 1] - mesh->polyline_start[polyline] - 1;
     curve = gproji_curve_begin(segments, host, error);
     if (!curve) return NULL;
-    for (i = 0; i <= segments; ++i) {
-        gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
-    }
+    for (i = 0; i <= segments; ++i) gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
     return gproji_curve_finish(curve, vertex[0] == vertex[segments], error);
 }
 
+/* Without a curve or a point: segment -1 at infinite distance, and zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]) {
     gproj_curve_hit hit;
     const double *a;
+    if (!curve || !point) {
+        memset(&hit, 0, sizeof hit);
+        hit.segment = -1, hit.distance = HUGE_VAL;
+        return hit;
+    }
     hit.segment = gproji_hierarchy_closest(&curve->tree, point, gproji_segment_distance, curve);
     a = curve->point + 3 * (size_t)hit.segment;
     hit.parameter = gproji_closest_on_segment(a, a + 3, point, hit.point);
@@ -14665,15 +14423,15 @@ GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const do
    >>surface   Polygon meshes as reference surfaces. Uses platform, memory, error, vector, mesh, hierarchy, curve.
 
    Faces are cut into triangles: convex ones into a fan about their first corner, others by cutting ears (Meisters
-   1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only where a face is clearly not
-   convex, so a moved or scaled mesh is cut in the same way. The normal at a point is interpolated from vertex normals,
-   which are means of face normals weighted by the angles of the corners (Thuermer and Wuethrich 1998).
+   1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only if a face is clearly not
+   convex, so a moved or scaled mesh is cut in the same way. The normal at a point is interpolated from vertex normals:
+   means of face normals weighted by the angles at the corners (Thuermer and Wuethrich 1998).
    Invariant: the triangles of a face stand together, in the order of the faces. */
 struct gproj_surface {
     gproji_heap heap; /* first: see gproji_create_object */
     int32_t vertex_count, triangle_count;
     double *position;       /* 3 * vertex_count */
-    double *normal;         /* 3 * vertex_count: unit, or 0 where no face gives one */
+    double *normal;         /* 3 * vertex_count: unit, or 0 if no face gives one */
     int32_t *triangle;      /* 3 * triangle_count: vertices */
     int32_t *triangle_face; /* triangle_count */
     gproji_hierarchy tree;  /* over the triangles */
@@ -14681,22 +14439,23 @@ struct gproj_surface {
 
 /* -- cutting faces -- */
 
-/* Work on one face: its corners in its plane, as a ring from which ears are cut. */
+/* Work on one face: the corners in a plane, as a ring from which ears are cut. */
 typedef struct gproji_polygon {
     double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
-    int32_t *vertex;  /* capacity: their vertices */
-    int32_t *next;    /* capacity: the ring of the corners that are left */
+    int32_t *vertex;  /* capacity: vertices in the mesh */
+    int32_t *next;    /* capacity: the ring of corners that are left */
     int32_t *prev;    /* capacity */
     int32_t capacity; /* the largest degree of a face */
     int32_t count;
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
 
-/* Twice the area of the triangle of corners a, b, c, positive when counter-clockwise. */
+/* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
 GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
     return gproji_turn2(polygon->xy, a, b, c);
 }
 
+/* Projects a face to the plane; the ring has all corners. */
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
     const double up[3] = {0, 0, 1};
     double n[3], u[3], v[3], d[3], extent = 0;
@@ -14719,23 +14478,14 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     polygon->tolerance = 1e-9 * extent;
 }
 
-/* Every corner turns left, and the fan about the first one has no triangle that is turned over. */
-GPROJI_INTERNAL bool gproji_polygon_is_convex(const gproji_polygon *polygon) {
-    int32_t i;
-    for (i = 0; i < polygon->count; ++i) {
-        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) < -polygon->tolerance) return false;
-        if (i > 0 && i + 1 < polygon->count && gproji_turn(polygon, 0, i, i + 1) < -polygon->tolerance) return false;
-    }
-    return true;
-}
-
-/* Is corner b an ear: it turns left and no other corner is in the triangle a b c? Only corners that turn right can be
-   in it. Takes each corner looked at from the budget. */
+/* True if corner b is an ear: it turns left and no other corner is in the triangle a b c. Takes each corner looked at
+   from the budget. */
 GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
     int32_t a = polygon->prev[b], c = polygon->next[b], i;
     if (gproji_turn(polygon, a, b, c) <= polygon->tolerance) return false;
     for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
         --*budget;
+        /* if any corner is in the triangle, one that turns right is */
         if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) > 0) continue;
         if (gproji_turn(polygon, a, b, i) >= 0 && gproji_turn(polygon, b, c, i) >= 0 &&
             gproji_turn(polygon, c, a, i) >= 0) {
@@ -14745,7 +14495,7 @@ GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int
     return true;
 }
 
-/* Appends the triangle of three corners. */
+/* Appends the triangle a b c of corners. */
 GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *polygon, int32_t face, int32_t a, int32_t b,
                               int32_t c) {
     int32_t *triangle = surface->triangle + 3 * (size_t)surface->triangle_count;
@@ -14753,11 +14503,25 @@ GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *poly
     surface->triangle_face[surface->triangle_count++] = face;
 }
 
-/* Cuts ears until three corners are left. A corner where no ear is left (a face that crosses itself), or where the
-   budget of 512 looks a corner is used up (so that the time is linear in the mesh), is cut off all the same. */
-GPROJI_INTERNAL void gproji_cut_ears(gproj_surface *surface, gproji_polygon *polygon, int32_t face) {
-    int64_t budget = 512 * (int64_t)polygon->count;
-    int32_t left = polygon->count, b = 1, refused = 0;
+/* Appends a face's triangles. */
+GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
+                                     int32_t face) {
+    double least;
+    int64_t budget;
+    int32_t i, left, b = 1, refused = 0;
+    bool convex = true;
+    gproji_polygon_set(polygon, mesh, face);
+    /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
+    left = polygon->count, least = -polygon->tolerance;
+    for (i = 0; left > 3 && i < left && convex; ++i) {
+        convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
+                 (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
+    }
+    for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
+    if (convex) return;
+    /* 2. Others: cut ears until three corners are left. If none is an ear (the face crosses itself), or 512 looks a
+       corner are used up (so that time is linear in the mesh), a corner is cut off all the same. */
+    budget = 512 * (int64_t)polygon->count;
     while (left > 3) {
         int32_t a = polygon->prev[b], c = polygon->next[b];
         if (refused < left && budget > 0 && !gproji_is_ear(polygon, b, &budget)) {
@@ -14773,119 +14537,38 @@ GPROJI_INTERNAL void gproji_cut_ears(gproj_surface *surface, gproji_polygon *pol
     gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
 }
 
-GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
-                                     int32_t face) {
-    int32_t i;
-    gproji_polygon_set(polygon, mesh, face);
-    if (polygon->count > 3 && !gproji_polygon_is_convex(polygon)) {
-        gproji_cut_ears(surface, polygon, face);
-        return;
-    }
-    for (i = 1; i + 1 < polygon->count; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
-}
-
-GPROJI_INTERNAL bool gproji_cut_faces(gproj_surface *surface, const gproj_mesh *mesh) {
-    gproji_polygon polygon;
-    gproji_heap *heap = &surface->heap;
-    size_t capacity;
-    int32_t f;
-    bool complete;
-    memset(&polygon, 0, sizeof polygon);
-    for (f = 0; f < mesh->face_count; ++f) polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
-    capacity = (size_t)polygon.capacity;
-    polygon.xy = (double *)gproji_take(heap, capacity, 2 * sizeof(double));
-    polygon.vertex = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    polygon.next = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    polygon.prev = (int32_t *)gproji_take(heap, capacity, sizeof(int32_t));
-    complete = polygon.xy && polygon.vertex && polygon.next && polygon.prev;
-    surface->triangle_count = 0;
-    for (f = 0; f < mesh->face_count && complete; ++f) gproji_cut_face(surface, &polygon, mesh, f);
-    gproji_give(heap, polygon.prev, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.next, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.vertex, capacity, sizeof(int32_t));
-    gproji_give(heap, polygon.xy, capacity, 2 * sizeof(double));
-    return complete;
-}
-
-/* -- normals -- */
-
-/* The angle between the edges from b to a and from b to c; 0 where one has no length. */
-GPROJI_INTERNAL double gproji_angle3(const double a[3], const double b[3], const double c[3]) {
-    double u[3], v[3], w[3];
-    gproji_sub3(a, b, u);
-    gproji_sub3(c, b, v);
-    gproji_cross3(u, v, w);
-    return atan2(gproji_length3(w), gproji_dot3(u, v));
-}
-
-GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
-    const double zero[3] = {0, 0, 0};
-    const double *x = mesh->position;
-    double n[3];
-    int32_t f, h, v;
-    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproj_mesh_face_area_vector(mesh, f, n);
-        if (!gproji_normalise3(n, zero)) continue;
-        h = mesh->face_halfedge[f];
-        do {
-            v = mesh->origin[h];
-            gproji_add_scaled3(gproji_angle3(x + 3 * (size_t)mesh->origin[mesh->prev[h]], x + 3 * (size_t)v,
-                                             x + 3 * (size_t)mesh->origin[mesh->next[h]]),
-                               n, surface->normal + 3 * (size_t)v);
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-    }
-    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
-}
-
 /* -- closest points -- */
 
-/* Barycentric coordinates of the orthogonal projection of p to the plane of a triangle: true where it falls inside.
-   *sure: the triangle is no needle and p not far away, so that the signs of coordinates beyond 1e-9 can be trusted.
-   False, and not sure, for triangles without area. */
-GPROJI_INTERNAL bool gproji_project_to_triangle(const double *const corner[3], const double p[3], double weight[3],
-                                                bool *sure) {
-    double ab[3], ac[3], ap[3], n[3], w[3], square, scale;
+/* The point in a triangle nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
+GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
+                                                  double weight[3]) {
+    double ab[3], ac[3], ap[3], n[3], q[3], w[3] = {0, 0, 0}, square, scale, best = DBL_MAX, d, t;
+    int32_t k;
+    bool sure, inside = false;
+    /* 1. Barycentric coordinates w for the orthogonal projection to the plane, if the triangle has an area. */
     gproji_sub3(corner[1], corner[0], ab);
     gproji_sub3(corner[2], corner[0], ac);
     gproji_sub3(p, corner[0], ap);
     gproji_cross3(ab, ac, n);
     square = gproji_dot3(n, n);
     scale = gproji_fmax(gproji_dot3(ab, ab), gproji_dot3(ac, ac));
-    *sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
-    if (!(square > 1e-28 * scale * scale)) return false;
-    gproji_cross3(ap, ac, w);
-    weight[1] = gproji_dot3(w, n) / square;
-    gproji_cross3(ab, ap, w);
-    weight[2] = gproji_dot3(w, n) / square;
-    weight[0] = 1 - weight[1] - weight[2];
-    return weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
-}
-
-/* corner[0] + w1 (corner[1] - corner[0]) + w2 (corner[2] - corner[0]) */
-GPROJI_INLINE void gproji_triangle_point(const double *const corner[3], const double weight[3], double out[3]) {
-    int32_t k;
-    for (k = 0; k < 3; ++k) {
-        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
+    if (square > 1e-28 * scale * scale) {
+        gproji_cross3(ap, ac, q);
+        w[1] = gproji_dot3(q, n) / square;
+        gproji_cross3(ab, ap, q);
+        w[2] = gproji_dot3(q, n) / square;
+        w[0] = 1 - w[1] - w[2];
+        inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
     }
-}
-
-/* The point of a triangle nearest to p: the projection to its plane if that is inside; else on an edge that separates
-   the projection from the triangle. Of needles, and of triangles that are points, all candidates are compared. Returns
-   the squared distance. */
-GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
-                                                  double weight[3]) {
-    double best = DBL_MAX, q[3], w[3] = {0, 0, 0}, d, t;
-    int32_t k;
-    bool sure, inside = gproji_project_to_triangle(corner, p, w, &sure);
-    if (inside)
-        gproji_copy3(w, weight);
-    else
-        gproji_set3(1, 0, 0, weight);
-    gproji_triangle_point(corner, weight, out);
+    /* signs beyond 1e-9 can be trusted if the triangle is no needle and p not far away */
+    sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
+    gproji_set3(1, 0, 0, weight);
+    if (inside) gproji_copy3(w, weight);
+    for (k = 0; k < 3; ++k)
+        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
     if (inside) best = gproji_square_distance3(out, p);
     if (inside && sure) return best;
+    /* 2. Edges that separate the projection from the triangle; if that is not sure, all three. */
     for (k = 0; k < 3; ++k) {
         int32_t following = k < 2 ? k + 1 : 0, opposite = k > 0 ? k - 1 : 2;
         if (sure && w[opposite] > 1e-9) continue;
@@ -14903,9 +14586,7 @@ GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3],
 
 GPROJI_INLINE void gproji_triangle_corners(const gproj_surface *surface, int32_t item, const double *corner[3]) {
     int32_t k;
-    for (k = 0; k < 3; ++k) {
-        corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
-    }
+    for (k = 0; k < 3; ++k) corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
 }
 
 GPROJI_INTERNAL void gproji_triangle_box(const void *user, int32_t item, double low[3], double high[3]) {
@@ -14925,38 +14606,7 @@ GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, 
     return gproji_closest_on_triangle(corner, point, out, weight);
 }
 
-/* The unit normal at a point of a triangle: interpolated; that of the triangle where the vertex normals cancel; up
-   where the triangle has none either. */
-GPROJI_INTERNAL void gproji_surface_normal(const gproj_surface *surface, int32_t item, const double weight[3],
-                                           double normal[3]) {
-    const double up[3] = {0, 0, 1};
-    const double *corner[3];
-    double ab[3], ac[3];
-    int32_t k;
-    gproji_set3(0, 0, 0, normal);
-    for (k = 0; k < 3; ++k) {
-        const double *n = surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
-        gproji_add_scaled3(weight[k], n, normal);
-    }
-    if (gproji_dot3(normal, normal) > 1e-12) {
-        gproji_normalise3(normal, up);
-        return;
-    }
-    gproji_triangle_corners(surface, item, corner);
-    gproji_sub3(corner[1], corner[0], ab);
-    gproji_sub3(corner[2], corner[0], ac);
-    gproji_cross3(ab, ac, normal);
-    gproji_normalise3(normal, up);
-}
-
 /* -- the object -- */
-
-/* The triangles of all faces: a face of degree d has d - 2. */
-GPROJI_INTERNAL int32_t gproji_count_triangles(const gproj_mesh *mesh) {
-    int32_t f, count = 0;
-    for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] - 2;
-    return count;
-}
 
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     size_t vertices, triangles;
@@ -14970,28 +14620,36 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     gproji_destroy_object(surface, sizeof *surface);
 }
 
-/* Everything but the checks; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_surface_fill(gproj_surface *surface, const gproj_mesh *mesh) {
-    size_t vertices = (size_t)mesh->vertex_count, triangles = (size_t)gproji_count_triangles(mesh);
-    int32_t triangle_count = (int32_t)triangles;
-    surface->vertex_count = mesh->vertex_count;
-    surface->triangle_count = triangle_count;
-    surface->position = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
-    surface->normal = (double *)gproji_take(&surface->heap, vertices, 3 * sizeof(double));
-    surface->triangle = (int32_t *)gproji_take(&surface->heap, triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, triangles, sizeof(int32_t));
-    if (!surface->position || !surface->normal || !surface->triangle || !surface->triangle_face) return false;
-    memcpy(surface->position, mesh->position, vertices * 3 * sizeof(double));
-    gproji_surface_normals(surface, mesh);
-    if (!gproji_cut_faces(surface, mesh)) {
-        surface->triangle_count = triangle_count; /* the size with which the arrays are given back */
-        return false;
+/* Sums face normals, weighted by angles, into vertex normals. */
+GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
+    const double zero[3] = {0, 0, 0};
+    double n[3], a[3], b[3], cross[3];
+    int32_t f, h, v;
+    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, n);
+        if (!gproji_normalise3(n, zero)) continue;
+        h = mesh->face_halfedge[f];
+        do {
+            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            gproji_cross3(a, b, cross);
+            /* by atan2, an edge without length makes the angle 0 */
+            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
+                               surface->normal + 3 * (size_t)mesh->origin[h]);
+            h = mesh->next[h];
+        } while (h != mesh->face_halfedge[f]);
     }
-    return gproji_hierarchy_build(&surface->heap, &surface->tree, triangle_count, gproji_triangle_box, surface);
+    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
 }
 
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproj_surface *surface;
+    gproji_polygon polygon;
+    gproji_pool pool;
+    int32_t f, vertices, triangles = 0;
+    bool complete;
     gproji_error_clear(error);
     if (!mesh || !mesh->face_count) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -15000,24 +14658,67 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     }
     if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
     surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface));
-    if (!surface || !gproji_surface_fill(surface, mesh)) {
+    if (!surface) {
         gproji_fail_memory(error);
-        gproj_surface_destroy(surface);
         return NULL;
     }
-    return surface;
+    memset(&polygon, 0, sizeof polygon);
+    for (f = 0; f < mesh->face_count; ++f) {
+        triangles += mesh->face_degree[f] - 2;
+        polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
+    }
+    surface->vertex_count = vertices = mesh->vertex_count, surface->triangle_count = triangles;
+    surface->position = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
+    surface->normal = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
+    surface->triangle = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, 3 * sizeof(int32_t));
+    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, sizeof(int32_t));
+    gproji_pool_start(&pool, &surface->heap);
+    polygon.xy = (double *)gproji_pool_take(&pool, polygon.capacity, 2 * sizeof(double));
+    polygon.vertex = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    polygon.next = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    polygon.prev = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
+    complete = surface->position && surface->normal && surface->triangle && surface->triangle_face && polygon.xy &&
+               polygon.vertex && polygon.next && polygon.prev;
+    if (complete) {
+        memcpy(surface->position, mesh->position, (size_t)vertices * 3 * sizeof(double));
+        gproji_surface_normals(surface, mesh);
+        surface->triangle_count = 0; /* counted up again by cutting */
+        for (f = 0; f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
+    }
+    gproji_pool_give_all(&pool);
+    if (complete && gproji_hierarchy_build(&surface->heap, &surface->tree, triangles, gproji_triangle_box, surface)) {
+        return surface;
+    }
+    gproji_fail_memory(error);
+    gproj_surface_destroy(surface);
+    return NULL;
 }
 
+/* Without a surface or a point: face -1 at infinite distance, and zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
+    const double up[3] = {0, 0, 1};
     gproj_surface_hit hit;
     const double *corner[3];
-    double weight[3];
-    int32_t item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
+    double weight[3], ab[3], ac[3];
+    int32_t item, k;
+    memset(&hit, 0, sizeof hit);
+    hit.face = -1, hit.distance = HUGE_VAL;
+    if (!surface || !point) return hit;
+    item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
     gproji_triangle_corners(surface, item, corner);
     gproji_closest_on_triangle(corner, point, hit.point, weight);
-    gproji_surface_normal(surface, item, weight, hit.normal);
     hit.distance = gproji_distance3(hit.point, point);
     hit.face = surface->triangle_face[item];
+    /* The interpolated normal; the triangle's if vertex normals cancel; up if the triangle has no area. */
+    for (k = 0; k < 3; ++k)
+        gproji_add_scaled3(weight[k], surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k],
+                           hit.normal);
+    if (!(gproji_dot3(hit.normal, hit.normal) > 1e-12)) {
+        gproji_sub3(corner[1], corner[0], ab);
+        gproji_sub3(corner[2], corner[0], ac);
+        gproji_cross3(ab, ac, hit.normal);
+    }
+    gproji_normalise3(hit.normal, up);
     return hit;
 }
 

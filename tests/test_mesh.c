@@ -164,6 +164,27 @@ GPROJT_TEST(areas_and_lengths) {
     gprojt_soup_free(&s);
 }
 
+/* NULL answers as an index out of range does. */
+GPROJT_TEST(nothing_is_asked) {
+    gprojt_soup s = gprojt_quad_grid(2, 2);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    int32_t ring[4] = {7, 7, 7, 7};
+    double area[3] = {1, 1, 1};
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gproj_mesh_valence(NULL, 0) == 0 && gproj_mesh_valence(mesh, -1) == 0);
+    GPROJT_CHECK(gproj_mesh_valence(mesh, mesh->vertex_count) == 0);
+    GPROJT_CHECK(gproj_mesh_one_ring(NULL, 0, ring, 4) == 0 && gproj_mesh_one_ring(mesh, 99, ring, 4) == 0);
+    GPROJT_CHECK(gproj_mesh_one_ring(mesh, 4, NULL, 4) == 4 && gproj_mesh_one_ring(mesh, 4, ring, -1) == 4);
+    GPROJT_CHECK(ring[0] == 7);
+    GPROJT_CHECK(!gproj_mesh_is_boundary_vertex(NULL, 0) && !gproj_mesh_is_boundary_vertex(mesh, -1));
+    gproj_mesh_face_area_vector(NULL, 0, area);
+    GPROJT_CHECK(area[0] == 0 && area[1] == 0 && area[2] == 0);
+    gproj_mesh_face_area_vector(mesh, 0, NULL);
+    GPROJT_CHECK(gproj_mesh_mean_edge_length(NULL) == 0);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+}
+
 /* One refused array each: code, place, index and a piece of the sentence. */
 static void gprojt_refused(const gprojt_soup *s, gproj_code code, gproj_place place, int64_t index, const char *piece) {
     gproj_error error;
@@ -383,6 +404,7 @@ int main(void) {
     GPROJT_RUN(flipped_faces_are_turned);
     GPROJT_RUN(odd_but_accepted);
     GPROJT_RUN(areas_and_lengths);
+    GPROJT_RUN(nothing_is_asked);
     GPROJT_RUN(refused_arrays);
     GPROJT_RUN(random_faces);
     GPROJT_RUN(huge_valence);

@@ -147,6 +147,28 @@ GPROJT_TEST(curve_errors) {
     GPROJT_CHECK(!gproj_surface_create(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
 }
 
+GPROJT_TEST(nothing_is_near_nothing) {
+    static const double x[6] = {1, 2, 3, 4, 5, 6};
+    gprojt_soup s = gprojt_quad_grid(2, 2);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    gproj_curve *curve = gproj_curve_create(2, x, false, NULL, NULL);
+    gproj_surface *surface = gproj_surface_create(mesh, NULL, NULL);
+    int32_t i;
+    GPROJT_REQUIRE(curve && surface);
+    for (i = 0; i < 3; ++i) { /* no object, no point, neither */
+        gproj_curve_hit c = gproj_curve_closest(i == 1 ? curve : NULL, i == 0 ? x : NULL);
+        gproj_surface_hit f = gproj_surface_closest(i == 1 ? surface : NULL, i == 0 ? x : NULL);
+        GPROJT_CHECK(c.segment == -1 && c.distance > DBL_MAX && c.parameter == 0 && c.point[0] == 0 && c.tangent[2] == 0);
+        GPROJT_CHECK(f.face == -1 && f.distance > DBL_MAX && f.point[0] == 0 && f.normal[2] == 0);
+    }
+    gproj_curve_destroy(NULL);
+    gproj_surface_destroy(NULL);
+    gproj_curve_destroy(curve);
+    gproj_surface_destroy(surface);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+}
+
 GPROJT_TEST(curves_from_meshes) {
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nf 1 2 3 4\nl 1 3 5\nl 1 2 3 1\nl 5 5\n";
     gproj_error error;
@@ -420,6 +442,7 @@ int main(void) {
     GPROJT_RUN(curves_against_brute_force);
     GPROJT_RUN(curve_details);
     GPROJT_RUN(curve_errors);
+    GPROJT_RUN(nothing_is_near_nothing);
     GPROJT_RUN(curves_from_meshes);
     GPROJT_RUN(surfaces_against_brute_force);
     GPROJT_RUN(needles);
