@@ -93,6 +93,7 @@
        >>schur          steps by multipliers, compilation
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
+       >>file           files that are replaced whole or not at all
        >>text           OBJ and OFF
        >>subdivide      subdivision by stencils
        >>hierarchy      bounding boxes
@@ -713,8 +714,10 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 #ifndef GPROJ_NO_STDIO
 /* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
-/* Writes to a new file beside `path` and renames it, so an old file at `path` is lost only when the new one is
-   complete. The format follows the ending: .obj or .off. */
+/* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
+   or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
+   renames it. An existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format
+   follows the ending: .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
 
@@ -1521,8 +1524,30 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+/* Files by POSIX (1), by Windows (2) or by the C library alone (0). */
 #ifndef GPROJ_NO_STDIO
 #include <stdio.h>
+#ifndef GPROJI_FILES
+#if defined(_WIN32)
+#define GPROJI_FILES 2
+#elif defined(__unix__) || defined(__APPLE__) || defined(__HAIKU__)
+#define GPROJI_FILES 1
+#else
+#define GPROJI_FILES 0
+#endif
+#endif
+#if GPROJI_FILES
+#include <fcntl.h>
+#include <sys/stat.h>
+#endif
+#if GPROJI_FILES == 1
+#include <sys/types.h>
+#include <unistd.h>
+#elif GPROJI_FILES == 2
+#include <io.h>
+#include <process.h>
+#include <share.h>
+#endif
 #endif
 #ifdef GPROJ_USE_CBLAS
 #include <cblas.h>
@@ -13500,7 +13525,364 @@ GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *po
 
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gproji_mean_edge(mesh, mesh->position); }
 /* ============================================================================================================
-   >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
+   >>file   Files that are replaced whole or not at all. Uses platform.
+
+   Saving takes five steps, whose order no stop of the program or of the machine can turn into a damaged file: make a new
+   file beside the old one, write it, flush it to the disk, rename it over the old one, flush the folder. Exclusive
+   creation opens no file that exists and follows no symbolic link, so two programs never share a temporary name.
+   Each system has one block of functions with the same declarations: POSIX, Windows (UTF-8 paths of any length) and
+   plain C, which can neither flush to the disk nor keep permissions, and on some systems not replace.
+   Invariant: the old file is as it was until the rename, and what is renamed is complete. */
+#ifndef GPROJ_NO_STDIO
+
+enum {
+    GPROJI_PATH_MAX = 4096,       /* with the final NUL */
+    GPROJI_TEMPORARY_SIZE = 19,   /* of "gproj-01234567.tmp" */
+    GPROJI_TEMPORARY_TRIES = 100, /* names before the folder is taken to be closed to us */
+    GPROJI_LINKS_MAX = 40         /* symbolic links that lead from one to the next */
+};
+
+/* An open file. */
+typedef struct gproji_file {
+#if GPROJI_FILES
+    int descriptor;
+#else
+    FILE *stream;
+#endif
+} gproji_file;
+
+/* The file that a save replaces. */
+typedef struct gproji_old_file {
+    bool exists, regular;
+#if GPROJI_FILES == 1
+    struct stat info;
+#endif
+} gproji_old_file;
+
+#if GPROJI_FILES == 1
+
+#if defined(__STRICT_ANSI__) && !defined(__cplusplus) /* headers hide these under -std=c99 */
+ssize_t readlink(const char *path, char *target, size_t size);
+int fchmod(int descriptor, mode_t mode);
+int fchown(int descriptor, uid_t user, gid_t group);
+#endif
+#ifdef O_CLOEXEC /* a program that is started meanwhile does not inherit the file */
+#define GPROJI_OPEN_FLAGS O_CLOEXEC
+#else
+#define GPROJI_OPEN_FLAGS 0
+#endif
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    file->descriptor = open(path, O_RDONLY | GPROJI_OPEN_FLAGS);
+    return file->descriptor >= 0;
+}
+
+/* Makes a new file, with the owner and the permissions of the old one as far as the system lets us. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    mode_t mode;
+    file->descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | GPROJI_OPEN_FLAGS, old->exists ? 0600 : 0666);
+    if (file->descriptor < 0) return false;
+    if (!old->exists) return true;
+    /* Only root gives files away, others choose among their groups. A group that is not kept gets no rights. */
+    mode = old->info.st_mode & 0777;
+    if (fchown(file->descriptor, old->info.st_uid, old->info.st_gid) != 0 &&
+        fchown(file->descriptor, (uid_t)-1, old->info.st_gid) != 0) {
+        mode &= 0707;
+    }
+    fchmod(file->descriptor, mode); /* last, for fchown takes bits away */
+    return true;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    return read(file->descriptor, text, size);
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    const gproji_file *file = (const gproji_file *)user;
+    while (size > 0) {
+        ssize_t written = write(file->descriptor, text, size);
+        if (written <= 0) return false;
+        text += written, size -= (size_t)written;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return close(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fsync(file->descriptor) == 0; }
+
+/* Renames a file; the disk keeps the new name when its folder is flushed, which some file systems refuse. */
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    gproji_file names;
+    if (rename(from, to) != 0) return false;
+    if (gproji_file_open(&names, folder)) {
+        gproji_file_flush(&names);
+        gproji_file_close(&names);
+    }
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
+
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    old->exists = stat(path, &old->info) == 0;
+    old->regular = old->exists && S_ISREG(old->info.st_mode);
+}
+
+/* The length of a path's folder, with the slash at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    char target[GPROJI_PATH_MAX];
+    int32_t links;
+    for (links = 0; links < GPROJI_LINKS_MAX; ++links) {
+        ssize_t length = readlink(path, target, sizeof target);
+        size_t folder = gproji_folder_length(path);
+        if (length <= 0) return true; /* no link */
+        if (target[0] == '/') folder = 0;
+        if (folder + (size_t)length >= GPROJI_PATH_MAX) return false;
+        memcpy(path + folder, target, (size_t)length);
+        path[folder + (size_t)length] = 0;
+    }
+    return false;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)getpid(); }
+
+#elif GPROJI_FILES == 2
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+/* From <windows.h>, whose macros (near, far, small, min, ...) are not for everyone. */
+__declspec(dllimport) int __stdcall MultiByteToWideChar(unsigned int page, unsigned long flags, const char *text,
+                                                        int size, wchar_t *wide, int wide_size);
+__declspec(dllimport) unsigned long __stdcall GetFullPathNameW(const wchar_t *path, unsigned long size, wchar_t *full,
+                                                               wchar_t **name);
+__declspec(dllimport) int __stdcall MoveFileExW(const wchar_t *from, const wchar_t *to, unsigned long flags);
+__declspec(dllimport) unsigned long __stdcall GetFileAttributesW(const wchar_t *path);
+__declspec(dllimport) int __stdcall DeleteFileW(const wchar_t *path);
+#ifdef __cplusplus
+}
+#endif
+
+enum {
+    GPROJI_WIDE_PREFIX = 8 /* room for \\?\UNC\, which lifts the limit of 260 characters */
+};
+typedef struct gproji_wide_path {
+    wchar_t room[GPROJI_WIDE_PREFIX + GPROJI_PATH_MAX];
+    const wchar_t *text;
+} gproji_wide_path;
+
+/* Turns UTF-8 into an absolute path of any length; false where it is no UTF-8, or too long. */
+GPROJI_INTERNAL bool gproji_widen_path(gproji_wide_path *wide, const char *path) {
+    static const wchar_t lifted[] = L"\\\\?\\", share[] = L"\\\\?\\UNC";
+    wchar_t text[GPROJI_PATH_MAX], *full = wide->room + GPROJI_WIDE_PREFIX, *begin = full;
+    const unsigned int utf8 = 65001, strict = 8;
+    unsigned long length;
+    if (!MultiByteToWideChar(utf8, strict, path, -1, text, GPROJI_PATH_MAX)) return false;
+    length = GetFullPathNameW(text, GPROJI_PATH_MAX, full, NULL);
+    if (!length || length >= GPROJI_PATH_MAX) return false;
+    if (full[0] != L'\\' || full[1] != L'\\') { /* C:\folder\file */
+        begin = full - 4;
+        memcpy(begin, lifted, 4 * sizeof(wchar_t));
+    } else if (full[2] != L'?' && full[2] != L'.') { /* \\server\share\file keeps its second backslash */
+        begin = full - 6;
+        memcpy(begin, share, 7 * sizeof(wchar_t));
+    }
+    wide->text = begin;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    gproji_wide_path wide;
+    return gproji_widen_path(&wide, path) &&
+           _wsopen_s(&file->descriptor, wide.text, _O_RDONLY | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD) == 0;
+}
+
+/* Makes a new file. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    gproji_wide_path wide;
+    (void)old;
+    return gproji_widen_path(&wide, path) &&
+           _wsopen_s(&file->descriptor, wide.text, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                     _SH_DENYNO, _S_IREAD | _S_IWRITE) == 0;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    return _read(file->descriptor, text, size < INT32_MAX ? (unsigned int)size : INT32_MAX);
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    const gproji_file *file = (const gproji_file *)user;
+    return _write(file->descriptor, text, (unsigned int)size) == (int)size; /* a piece of a writer's buffer */
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return _close(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return _commit(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    const unsigned long replace_existing = 1, write_through = 8;
+    gproji_wide_path wide_from, wide_to;
+    (void)folder; /* MoveFileEx writes it through */
+    return gproji_widen_path(&wide_from, from) && gproji_widen_path(&wide_to, to) &&
+           MoveFileExW(wide_from.text, wide_to.text, replace_existing | write_through);
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) {
+    gproji_wide_path wide;
+    if (gproji_widen_path(&wide, path)) DeleteFileW(wide.text);
+}
+
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    const unsigned long none = 0xffffffff, directory = 0x10, device = 0x40;
+    gproji_wide_path wide;
+    unsigned long attributes = gproji_widen_path(&wide, path) ? GetFileAttributesW(wide.text) : none;
+    old->exists = attributes != none;
+    old->regular = old->exists && !(attributes & (directory | device));
+}
+
+/* The length of a path's folder, with the separator at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    size_t length = strlen(path);
+    while (length > 0 && !strchr("/\\:", path[length - 1])) --length;
+    return length;
+}
+
+/* MoveFileEx replaces a link itself. */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    (void)path;
+    return true;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
+
+#else
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    file->stream = fopen(path, "rb");
+    return file->stream != NULL;
+}
+
+/* Makes a new file: exclusively in C11, before that one that is not there yet. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    (void)old;
+#if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L) || (defined(__cplusplus) && __cplusplus >= 201703L)
+    file->stream = fopen(path, "wbx");
+#else
+    if (gproji_file_open(file, path)) {
+        fclose(file->stream);
+        return false;
+    }
+    file->stream = fopen(path, "wb");
+#endif
+    return file->stream != NULL;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    size_t got = fread(text, 1, size, file->stream);
+    return got == 0 && ferror(file->stream) ? -1 : (int64_t)got;
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    return fwrite(text, 1, size, ((gproji_file *)user)->stream) == size;
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return fclose(file->stream) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fflush(file->stream) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    (void)folder;
+    return rename(from, to) == 0;
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) { remove(path); }
+
+/* Nobody can tell; a rename will. */
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    (void)path;
+    old->exists = old->regular = false;
+}
+
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    (void)path;
+    return true;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
+
+#endif /* GPROJI_FILES */
+
+/* A save under way. */
+typedef struct gproji_saving {
+    gproji_file file;
+    size_t folder_length;
+    char target[GPROJI_PATH_MAX], temporary[GPROJI_PATH_MAX];
+} gproji_saving;
+
+/* Makes a new file in the folder of the target. Names that differ between processes and threads save attempts. */
+GPROJI_INTERNAL bool gproji_create_temporary(gproji_saving *saving, const gproji_old_file *old) {
+    uint32_t number = gproji_process_number() * 1664525 + (uint32_t)((uintptr_t)saving >> 4);
+    char *name = saving->temporary + saving->folder_length;
+    int32_t tries, digit;
+    memcpy(saving->temporary, saving->target, saving->folder_length);
+    for (tries = 0; tries < GPROJI_TEMPORARY_TRIES; ++tries) {
+        number = number * 1664525 + 1013904223; /* Knuth and Lewis */
+        memcpy(name, "gproj-01234567.tmp", GPROJI_TEMPORARY_SIZE);
+        for (digit = 0; digit < 8; ++digit) name[6 + digit] = "0123456789abcdef"[(number >> (28 - 4 * digit)) & 15];
+        if (gproji_file_create(&saving->file, saving->temporary, old)) return true;
+    }
+    return false;
+}
+
+/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
+GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
+    gproji_old_file old;
+    size_t length = strlen(path);
+    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
+    memcpy(saving->target, path, length + 1);
+    if (!gproji_follow_links(saving->target)) return "its symbolic links lead in a circle, or too far";
+    gproji_look_at_old(&old, saving->target);
+    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
+    saving->folder_length = gproji_folder_length(saving->target);
+    if (saving->folder_length + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
+    if (gproji_create_temporary(saving, &old)) return NULL;
+    return "no file can be made in its folder; does that exist, and may you write there?";
+}
+
+/* Puts the new file in its place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
+GPROJI_INTERNAL const char *gproji_save_end(gproji_saving *saving, bool written) {
+    char folder[GPROJI_PATH_MAX];
+    bool complete = written && gproji_file_flush(&saving->file);
+    if (!gproji_file_close(&saving->file)) complete = false;
+    if (complete) {
+        memcpy(folder, saving->target, saving->folder_length);
+        memcpy(folder + saving->folder_length, ".", 2);
+        if (gproji_file_rename(saving->temporary, saving->target, folder)) return NULL;
+    }
+    gproji_file_remove(saving->temporary);
+    return complete ? "the old file cannot be replaced; is it a folder, or open elsewhere?"
+                    : "the new file was not written; is the disk full?";
+}
+
+#endif /* GPROJ_NO_STDIO */
+
+/* ============================================================================================================
+   >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh, file.
 
    Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
    Both readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
@@ -14148,8 +14530,7 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 
 /* A path for a sentence: its end, if it is long; no control characters. */
 enum {
-    GPROJI_PATH_QUOTE_SIZE = 132,
-    GPROJI_PATH_MAX = 4096
+    GPROJI_PATH_QUOTE_SIZE = 132
 };
 GPROJI_INTERNAL const char *gproji_quote_path(const char *path, char quote[GPROJI_PATH_QUOTE_SIZE]) {
     size_t length = strlen(path), start = 0, at = 0;
@@ -14177,20 +14558,20 @@ GPROJI_INTERNAL gproj_format gproji_format_of_path(const char *path) {
 }
 
 /* Reads what is left of a file; *text has room for *capacity characters. */
-GPROJI_INTERNAL gproj_code gproji_read_file(FILE *file, const char *path, gproji_heap *heap, void **text,
+GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path, gproji_heap *heap, void **text,
                                             size_t *capacity, size_t *size, gproj_error *error) {
     char quote[GPROJI_PATH_QUOTE_SIZE];
-    size_t got;
+    int64_t got;
     do {
         if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
         }
-        got = fread((char *)*text + *size, 1, *capacity - *size, file);
-        *size += got;
-    } while (got);
-    if (!ferror(file)) return GPROJ_OK;
+        got = gproji_file_read(file, (char *)*text + *size, *capacity - *size);
+        if (got > 0) *size += (size_t)got;
+    } while (got > 0);
+    if (got == 0) return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                        "'%s' cannot be read; is it a folder, or the disk damaged?", gproji_quote_path(path, quote));
 }
@@ -14200,14 +14581,14 @@ GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const ch
     void *text = NULL;
     size_t capacity = 0, size = 0;
     gproj_code code;
-    FILE *file = fopen(path, "rb");
-    if (!file) {
+    gproji_file file;
+    if (!gproji_file_open(&file, path)) {
         return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                            "'%s' cannot be opened; does it exist, and may you read it?",
                            gproji_quote_path(path, quote));
     }
-    code = gproji_read_file(file, path, &object->heap, &text, &capacity, &size, error);
-    fclose(file);
+    code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
+    gproji_file_close(&file);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
     return code;
@@ -14224,54 +14605,15 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
     return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
 }
 
-GPROJI_INTERNAL bool gproji_write_to_file(void *user, const char *text, size_t size) {
-    return fwrite(text, 1, size, (FILE *)user) == size;
-}
-
-/* Moves a complete new file over an old one. */
-GPROJI_INTERNAL bool gproji_replace_file(const char *from, const char *to) {
-#ifdef _WIN32
-    remove(to); /* rename does not replace there; nothing is lost when it fails, the new file has all */
-#endif
-    return rename(from, to) == 0;
-}
-
-/* The complete file is written and closed before the old one is touched. */
-GPROJI_INTERNAL gproj_code gproji_save_through(const gproj_mesh *mesh, const char *path, const char *temporary,
-                                               gproj_error *error) {
-    char quote[GPROJI_PATH_QUOTE_SIZE];
-    bool complete;
-    FILE *file = fopen(temporary, "wb");
-    if (!file) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                           "no file can be made beside '%s'; does the folder exist, and may you write there?",
-                           gproji_quote_path(path, quote));
-    }
-    complete = gproji_write_mesh(mesh, gproji_format_of_path(path), gproji_write_to_file, file) == GPROJ_OK;
-    if (fclose(file)) complete = false;
-    if (!complete) {
-        remove(temporary);
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' was not written; is the disk full?",
-                           gproji_quote_path(path, quote));
-    }
-    if (gproji_replace_file(temporary, path)) return GPROJ_OK;
-    remove(temporary);
-    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                       "'%s' cannot be replaced; is it a folder, or open elsewhere?", gproji_quote_path(path, quote));
-}
-
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error) {
-    static const char suffix[] = ".gproj-new";
-    char temporary[GPROJI_PATH_MAX], quote[GPROJI_PATH_QUOTE_SIZE];
+    char quote[GPROJI_PATH_QUOTE_SIZE];
+    gproji_saving saving;
+    const char *problem;
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !path) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the %s to save is NULL",
                            mesh ? "path" : "mesh");
-    }
-    if (strlen(path) + sizeof suffix > sizeof temporary) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' is too long a path",
-                           gproji_quote_path(path, quote));
     }
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -14279,9 +14621,14 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
-    memcpy(temporary, path, strlen(path));
-    memcpy(temporary + strlen(path), suffix, sizeof suffix);
-    return gproji_save_through(mesh, path, temporary, error);
+    problem = gproji_save_begin(&saving, path);
+    if (!problem) {
+        code = gproji_write_mesh(mesh, gproji_format_of_path(path), gproji_file_write, &saving.file);
+        problem = gproji_save_end(&saving, code == GPROJ_OK);
+    }
+    if (!problem) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' cannot be saved: %s",
+                       gproji_quote_path(path, quote), problem);
 }
 
 #endif /* GPROJ_NO_STDIO */
