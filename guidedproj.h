@@ -712,7 +712,8 @@ typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
 
 #ifndef GPROJ_NO_STDIO
-/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. */
+/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most 1 GiB
+   is read, or as much as the allocator's limit says where that is more. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
 /* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
    or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
@@ -14557,23 +14558,39 @@ GPROJI_INTERNAL gproj_format gproji_format_of_path(const char *path) {
     return GPROJ_FORMAT_DETECT;
 }
 
-/* Reads what is left of a file; *text has room for *capacity characters. */
+/* How much is read where the allocator sets no larger limit; pipes and devices may have no end. */
+#ifndef GPROJI_TEXT_MAX
+#define GPROJI_TEXT_MAX ((size_t)1 << 30)
+#endif
+
+/* Reads a file up to its end, or to the first piece with a zero byte, which no text has. */
 GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path, gproji_heap *heap, void **text,
                                             size_t *capacity, size_t *size, gproj_error *error) {
     char quote[GPROJI_PATH_QUOTE_SIZE];
+    size_t most = heap->hook.limit > GPROJI_TEXT_MAX ? heap->hook.limit : GPROJI_TEXT_MAX;
     int64_t got;
-    do {
+    for (;;) {
         if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
         }
         got = gproji_file_read(file, (char *)*text + *size, *capacity - *size);
-        if (got > 0) *size += (size_t)got;
-    } while (got > 0);
-    if (got == 0) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                       "'%s' cannot be read; is it a folder, or the disk damaged?", gproji_quote_path(path, quote));
+        if (got < 0) {
+            return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                               "'%s' cannot be read; is it a folder, or the disk damaged?",
+                               gproji_quote_path(path, quote));
+        }
+        *size += (size_t)got;
+        if (got == 0 || memchr((char *)*text + *size - got, 0, (size_t)got)) return GPROJ_OK;
+        if (*size > most) {
+            return gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets more "
+                "be read",
+                gproji_quote_path(path, quote), (int64_t)most);
+        }
+    }
 }
 
 GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const char *path, gproj_error *error) {

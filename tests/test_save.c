@@ -5,6 +5,7 @@
 #define _XOPEN_SOURCE 700
 #endif
 #define GPROJ_STATIC
+#define GPROJI_TEXT_MAX ((size_t)100000)
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -22,6 +23,7 @@ int main(void) {
 #include <dirent.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/wait.h>
@@ -431,6 +433,48 @@ GPROJT_TEST(symbolic_links) {
 }
 #endif
 
+/* -- reading -- */
+
+static gproj_code gprojt_load(const char *path, size_t limit, const char *piece) {
+    gproj_error error;
+    gproj_host host;
+    gproj_mesh *mesh;
+    memset(&host, 0, sizeof host);
+    host.allocator.limit = limit;
+    mesh = gproj_mesh_load(path, &host, &error);
+    GPROJT_CHECK(mesh ? error.code == GPROJ_OK : strstr(error.message, piece) != NULL);
+    if (!mesh && !strstr(error.message, piece)) printf("  %s\n", error.message);
+    gproj_mesh_destroy(mesh);
+    return error.code;
+}
+
+GPROJT_TEST(files_without_end) {
+    pid_t child;
+    FILE *file;
+    int i;
+    GPROJT_CHECK(symlink("/dev/zero", "zero.obj") == 0 && symlink("/dev/full", "full.off") == 0);
+    GPROJT_CHECK(gprojt_load("zero.obj", 0, "line 1: a zero byte; this is a binary file") == GPROJ_ERROR_SYNTAX);
+    GPROJT_CHECK(gprojt_load("full.off", 0, "line 1: a zero byte") == GPROJ_ERROR_SYNTAX);
+    GPROJT_CHECK(mkfifo("pipe.obj", 0600) == 0);
+    fflush(stdout);
+    child = fork();
+    if (child == 0) {
+        signal(SIGPIPE, SIG_DFL);
+        file = fopen("pipe.obj", "w");
+        while (file && fputs("v 0 0 0\n", file) >= 0) continue;
+        _exit(1);
+    }
+    GPROJT_CHECK(gprojt_load("pipe.obj", 0, "'pipe.obj' has more than 100000 bytes, or no end") == GPROJ_ERROR_SIZE);
+    GPROJT_CHECK(child > 0 && waitpid(child, NULL, 0) == child);
+    file = fopen("long.obj", "w"); /* long, but with an end */
+    for (i = 0; file && i < 20000; ++i) fputs("v 0 0 0\n", file);
+    if (file) fclose(file);
+    GPROJT_CHECK(gprojt_load("long.obj", 0, "'long.obj' has more than 100000 bytes") == GPROJ_ERROR_SIZE);
+    GPROJT_CHECK(gprojt_load("long.obj", 90000, "too large for the memory") == GPROJ_ERROR_MEMORY);
+    GPROJT_CHECK(gprojt_load("long.obj", 10000000, "") == GPROJ_OK);
+    GPROJT_CHECK(system("rm zero.obj full.off pipe.obj long.obj") == 0);
+}
+
 int main(void) {
     char folder[] = "/tmp/gprojt_save.XXXXXX";
     if (!mkdtemp(folder) || chdir(folder) != 0) return 2;
@@ -441,6 +485,7 @@ int main(void) {
     GPROJT_RUN(links_at_temporary_names);
     GPROJT_RUN(savers_at_the_same_time);
     GPROJT_RUN(threads_at_the_same_time);
+    GPROJT_RUN(files_without_end);
 #if GPROJI_FILES
     GPROJT_RUN(power_fails_at_any_moment);
     GPROJT_RUN(writes_in_pieces);

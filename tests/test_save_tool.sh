@@ -147,5 +147,41 @@ cp in.obj "$odd"
 "$tool" in.obj "$odd" -o out.obj 2>err.txt
 [ "$(wc -l <err.txt)" = 2 ] && pass || fail "an odd name in a wrong command: $(cat err.txt)"
 
+# ---- inputs without end, or of the wrong kind ----
+
+refused() { # refused STATUS PART ARGUMENTS...
+    local want=$1 part=$2 status
+    shift 2
+    echo old >out.obj
+    timeout 60 "$tool" in.obj -o out.obj --planar --quiet "$@" 2>err.txt
+    status=$?
+    [ $status -eq "$want" ] && grep -qF -- "$part" err.txt && [ "$(cat out.obj)" = old ] && pass ||
+        fail "'$*': status $status: $(cat err.txt)"
+}
+ln -s /dev/zero zero.obj
+zero='a zero byte; this is a device'
+refused 3 "/dev/zero: $zero" --fix /dev/zero
+refused 3 "/dev/zero: $zero" --equilibrium --supports /dev/zero
+refused 3 "/dev/full: $zero" --equilibrium --loads /dev/full
+refused 3 "zero.obj: line 1: a zero byte" --glide zero.obj
+refused 3 "zero.obj: line 1: a zero byte" --reference "$PWD/zero.obj"
+refused 2 "--state /dev/full is a device or a pipe" --state /dev/full
+mkfifo pipe && refused 2 "--state pipe is a device or a pipe" --state pipe
+"$tool" zero.obj -o out.obj --planar 2>err.txt
+[ $? -eq 3 ] && grep -q 'zero.obj: line 1: a zero byte' err.txt && pass || fail "a mesh without end: $(cat err.txt)"
+endless() { yes "$1" >pipe 2>/dev/null & } # into the pipe that the tool reads
+endless 1 && refused 3 'pipe: more than 3 MB, or without end; --file-limit' --fix pipe --file-limit 3
+endless 0,0,0,1 && refused 3 'pipe: more than 3 MB' --equilibrium --loads pipe --file-limit 3
+endless 'v 0 0 0' && refused 3 'pipe: more than 3 MB' --glide pipe --file-limit 3
+head -c 2000000 /dev/zero >big.state
+refused 3 'big.state: more than 1 MB' --state big.state --file-limit 1
+refused 3 'big.state: ' --state big.state --file-limit 2
+grep -q 'more than' err.txt && fail "--file-limit does not raise the limit" || pass
+for limit in 0 1.5 -1 x 1000001; do refused 2 'expected a whole number from 1 to' --file-limit=$limit; done
+(yes '# a comment' | head -c 2000000; echo; cat in.obj) >long.obj
+"$tool" long.obj -o out.obj --planar --quiet --file-limit 1 2>err.txt
+[ $? -eq 3 ] && grep -q 'long.obj: more than 1 MB' err.txt && pass || fail "a long mesh: $(cat err.txt)"
+"$tool" long.obj -o out.obj --planar --quiet --file-limit 2 && cmp -s out.obj want.obj && pass || fail "--file-limit 2"
+
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

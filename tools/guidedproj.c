@@ -45,6 +45,7 @@ enum {
     MOST_OPTIONS = 64,
     MOST_ITERATIONS = 100000,
     MOST_THREADS = 256,
+    MOST_MEGABYTES = 1000000,
     MOST_LEVELS = 14,
     MOST_SIDES = 64,
     MOST_DRAGS = 50 /* and releases, for one --move */
@@ -144,6 +145,7 @@ typedef struct tool {
     int32_t fix_count, glide_count, move_count;
     tool_word reference;
     int32_t iterations, threads;
+    int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
@@ -467,6 +469,11 @@ static bool set_iterations(tool *t, void *place, const char *name, const char *v
     return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_ITERATIONS);
 }
 
+static bool set_file_limit(tool *t, void *place, const char *name, const char *value) {
+    if (read_integer(value, strlen(value), 1, MOST_MEGABYTES, (int32_t *)place)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_MEGABYTES);
+}
+
 static bool set_subdivision(tool *t, void *place, const char *name, const char *value) {
     tool_subdivision *subdivision = (tool_subdivision *)place;
     size_t size = strcspn(value, ",");
@@ -676,6 +683,8 @@ typedef struct tool_option {
 
 static const tool_option options[] = {
     {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
+
+    {0, "file-limit", "MB", false, "files are read up to this size (1024)", NULL, set_file_limit, PLACE(file_limit)},
 
     {0, "fill", "CURVE", false,
      "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
@@ -1122,6 +1131,10 @@ static bool prepare_outputs(tool *t) {
         tool_output *output = &t->output[i];
         if (!output->path) continue;
         if (!prepare_output(t, output)) return false;
+        if (i == OUTPUT_STATE && output->device)
+            return fail(t, EXIT_USAGE,
+                        "--state %s is a device or a pipe: a state is written to a file and read from it",
+                        output->path);
         for (j = 0; j < i; ++j)
             if (t->output[j].target && strcmp(t->output[j].target, output->target) == 0)
                 return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
@@ -1150,55 +1163,72 @@ static const char *foreign_ending(const char *path) {
     return "";
 }
 
-static gproj_mesh *load(tool *t, const char *path, size_t size) {
-    gproj_error error;
-    gproj_mesh *mesh;
-    char *copy = (char *)take(t, size + 1, 1);
-    if (!copy) return NULL;
-    memcpy(copy, path, size);
-    mesh = gproj_mesh_load(copy, &t->host, &error);
-    if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
-        fail(t, EXIT_REFUSED,
-             "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
-             "MeshLab or assimp (%s)",
-             copy, foreign_ending(copy), error.message);
-    if (!mesh) fail_library(t, copy, &error);
-    free(copy);
-    return mesh;
+/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text has:
+   devices give such bytes without end. */
+static char *load_file(tool *t, const char *path, bool text, size_t *length) {
+    FILE *file = fopen(path, "rb");
+    size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
+    char *bytes = NULL;
+    bool more = file != NULL;
+    if (!file) fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+    while (more) {
+        if (size + 1 >= capacity) {
+            char *moved = (char *)realloc(bytes, capacity = 2 * capacity + 4096);
+            if (!moved) {
+                fail_memory(t);
+                break;
+            }
+            bytes = moved;
+        }
+        got = fread(bytes + size, 1, capacity - size - 1, file);
+        more = got > 0 && !(text && memchr(bytes + size, 0, got));
+        size += got;
+        bytes[size] = 0;
+        if (ferror(file)) more = fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+        if (size > most)
+            more = fail(t, EXIT_REFUSED, "%s: more than %ld MB, or without end; --file-limit sets how much is read",
+                        path, (long)t->file_limit);
+    }
+    if (file) fclose(file);
+    *length = size;
+    if (t->exit_code == 0) return bytes;
+    free(bytes);
+    return NULL;
 }
 
-/* The whole of a file, with a NUL behind it. length: of it without that NUL; may be NULL. */
-static char *load_file(tool *t, const char *path, size_t *length) {
-    FILE *file = fopen(path, "rb");
-    char *text = NULL;
-    size_t size = 0, capacity = 0, got = 0;
-    if (!file) {
-        fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-        return NULL;
+/* A text that is no mesh. */
+static char *load_text(tool *t, const char *path) {
+    size_t length;
+    char *text = load_file(t, path, true, &length);
+    if (!text || strlen(text) == length) return text;
+    fail(t, EXIT_REFUSED, "%s: a zero byte; this is a device, a binary file or UTF-16, not a text", path);
+    free(text);
+    return NULL;
+}
+
+static gproj_mesh *load(tool *t, const char *path, size_t size) {
+    gproj_error error;
+    gproj_mesh *mesh = NULL;
+    gproj_format format;
+    size_t length;
+    char *copy = (char *)take(t, size + 1, 1), *text;
+    if (!copy) return NULL;
+    memcpy(copy, path, size);
+    text = load_file(t, copy, true, &length);
+    if (text) {
+        format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
+                 : has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
+                                            : GPROJ_FORMAT_DETECT;
+        mesh = gproj_mesh_read(text, length, format, &t->host, &error);
+        if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
+            fail(t, EXIT_REFUSED,
+                 "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
+                 "MeshLab or assimp (%s)",
+                 copy, foreign_ending(copy), error.message);
+        if (!mesh) fail_library(t, copy, &error);
     }
-    do {
-        size += got;
-        if (size + 1 >= capacity) {
-            char *more = (char *)realloc(text, capacity = 2 * capacity + 4096);
-            if (!more) break;
-            text = more;
-        }
-        got = fread(text + size, 1, capacity - size - 1, file);
-    } while (got > 0);
-    if (got > 0 || ferror(file)) {
-        if (got > 0)
-            fail_memory(t);
-        else
-            fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-        free(text);
-        text = NULL;
-    } else if (text) {
-        text[size] = 0;
-        if (length) *length = size;
-    } else
-        fail_memory(t);
-    fclose(file);
-    return text;
+    free(text), free(copy);
+    return mesh;
 }
 
 /* The first closed polyline in a file, where there is none and no boundary the first one; -1: there is none. (The sides
@@ -1532,7 +1562,7 @@ static bool mark_vertices(tool *t, const char *option, const tool_word *word, bo
     } else {
         good = must_exist(t, option, name,
                           "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
-        text = good ? load_file(t, name, NULL) : NULL;
+        text = good ? load_text(t, name) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
         free(text);
     }
@@ -1728,7 +1758,7 @@ static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
 }
 
 static bool read_loads(tool *t) {
-    char *text = load_file(t, t->loads, NULL), *line = text;
+    char *text = load_text(t, t->loads), *line = text;
     int32_t number = 1;
     bool good = text != NULL;
     if (text && strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
@@ -1990,7 +2020,7 @@ static bool restore(tool *t) {
     size_t size;
     char *bytes;
     if (access(state->target, F_OK) != 0) return true;
-    bytes = load_file(t, state->path, &size);
+    bytes = load_file(t, state->path, false, &size);
     if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
     free(bytes);
     return t->exit_code == 0;
@@ -2912,6 +2942,7 @@ int main(int argc, char **argv) {
     memset(&t, 0, sizeof t);
     t.start = now(NULL);
     t.threads = 1;
+    t.file_limit = 1024;
     watch_signals(&t);
     if (read_command_line(&t, argc, argv)) {
         if (t.help)
