@@ -26,13 +26,17 @@
      #include <stdio.h>
 
      int main(void) {
-         gproj_mesh *mesh = gproj_mesh_load("roof.obj", NULL, NULL);
+         gproj_error error;
+         gproj_mesh *mesh = gproj_mesh_load("roof.obj", NULL, &error);
+         if (!mesh) {
+             printf("%s\n", error.message);
+             return 1;
+         }
          gproj_form *form = gproj_form_create(mesh, NULL);
-         gproj_result result;
          gproj_add_planarity(form, 1.0);      // each returns the number of its group;
          gproj_add_fixed_boundary(form, 1.0); // after an error they do nothing:
          gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
-         result = gproj_solve(form, 20, NULL);
+         gproj_result result = gproj_solve(form, 20, NULL);
          printf("%s\n", result.message);
          if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
          gproj_form_destroy(form);
@@ -121,6 +125,10 @@
                                 there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
      GPROJ_USE_CBLAS            dense kernels by a CBLAS (link one, such as OpenBLAS)
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
+     GPROJ_API                  how public functions are declared, such as __attribute__((visibility("default"))) or
+                                __declspec(dllexport) where a shared library exports them; not in static mode
+
+   OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
      is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
@@ -152,18 +160,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define GPROJ_VERSION_MAJOR 0
+#define GPROJ_VERSION_MINOR 1
+#define GPROJ_VERSION_NUMBER (1000 * GPROJ_VERSION_MAJOR + GPROJ_VERSION_MINOR)
 #define GPROJ_VERSION "0.1"
 
-/* Every public function is declared with GPROJ_API. In static mode (GPROJ_STATIC, defined before an inclusion) the
-   translation unit has its own private copy of the implementation and exports nothing. */
+/* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before an
+   inclusion) the translation unit has its own private copy of the implementation and exports nothing. */
 #if defined(GPROJ_STATIC) && !defined(GUIDEDPROJ_IMPLEMENTATION)
 #define GUIDEDPROJ_IMPLEMENTATION
 #endif
-#if defined(GPROJ_STATIC) && (defined(__GNUC__) || defined(__clang__) || defined(__TINYC__))
+#if defined(GPROJ_STATIC)
+#undef GPROJ_API
+#if defined(__GNUC__) || defined(__clang__) || defined(__TINYC__)
 #define GPROJ_API __attribute__((unused)) static
-#elif defined(GPROJ_STATIC)
-#define GPROJ_API static
 #else
+#define GPROJ_API static
+#endif
+#elif !defined(GPROJ_API)
 #define GPROJ_API extern
 #endif
 
@@ -171,11 +185,15 @@
 extern "C" {
 #endif
 
+/* The GPROJ_VERSION_NUMBER of the implementation: 1000 * major + minor. Programs that load the library at run time can
+   compare it with that of their header. */
+GPROJ_API int32_t gproj_version(void);
+
 /* ------------------------------------------------------------------------------------------------------------
    >>api-host   What the library asks of the program around it: memory, threads, a clock.
 
-   A gproj_host is given when an object is created and copied into it. NULL or {0} means: malloc, one thread,
-   no clock. Nothing is ever process-wide; two objects may have two hosts. */
+   A gproj_host is given when an object is created and copied into it. NULL or all zeros mean: malloc, one
+   thread, no clock. Nothing is ever process-wide; two objects may have two hosts. */
 
 /* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
    be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
@@ -226,24 +244,19 @@ typedef struct gproj_memory {
    are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
    return -1, so one check at the end is enough. "Not converged" and "not positive definite" are outcomes, not
    errors. */
-#define GPROJ_CODES(X)                                              \
-    X(OK, "no error")                                               \
-    X(ERROR_MEMORY, "out of memory")                                \
-    X(ERROR_ARGUMENT, "an argument is out of its range")            \
-    X(ERROR_FILE, "a file could not be read or written")            \
-    X(ERROR_SYNTAX, "a text is not what its format says")           \
-    X(ERROR_NUMBER, "a number is infinite or not a number")         \
-    X(ERROR_INDEX, "an index is out of its range")                  \
-    X(ERROR_DEGENERATE, "an element is repeated or has no extent")  \
-    X(ERROR_NON_MANIFOLD, "a mesh is not a manifold")               \
-    X(ERROR_NON_ORIENTABLE, "a mesh has no consistent orientation") \
-    X(ERROR_SIZE, "a count is too large")                           \
-    X(ERROR_STATE, "a call came before another one that it depends on, or during one that excludes it")
-
 typedef enum gproj_code {
-#define GPROJ_X(name, sentence) GPROJ_##name,
-    GPROJ_CODES(GPROJ_X)
-#undef GPROJ_X
+    GPROJ_OK,
+    GPROJ_ERROR_MEMORY,
+    GPROJ_ERROR_ARGUMENT,
+    GPROJ_ERROR_FILE,
+    GPROJ_ERROR_SYNTAX,
+    GPROJ_ERROR_NUMBER, /* infinite, or not a number */
+    GPROJ_ERROR_INDEX,
+    GPROJ_ERROR_DEGENERATE, /* an element is repeated or has no extent */
+    GPROJ_ERROR_NON_MANIFOLD,
+    GPROJ_ERROR_NON_ORIENTABLE,
+    GPROJ_ERROR_SIZE,  /* a count is too large */
+    GPROJ_ERROR_STATE, /* a call came before another one that it depends on, or during one that excludes it */
     GPROJ_CODE_FORCE_INT = 0x7fffffff
 } gproj_code;
 
@@ -500,18 +513,13 @@ typedef enum gproj_phase {
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
 } gproj_phase;
 
-#define GPROJ_OUTCOMES(X)                                                    \
-    X(CONVERGED, "all constraints hold to the tolerance")                    \
-    X(ITERATION_LIMIT, "the iterations ran out before all constraints held") \
-    X(STALLED, "no step makes the constraints hold better")                  \
-    X(CANCELLED, "cancelled by the caller")                                  \
-    X(TIME_OUT, "the time budget ran out")                                   \
-    X(FAILED, "not started or broken off by an error")
-
 typedef enum gproj_outcome {
-#define GPROJ_X(name, sentence) GPROJ_##name,
-    GPROJ_OUTCOMES(GPROJ_X)
-#undef GPROJ_X
+    GPROJ_CONVERGED,       /* all constraints hold to the tolerance */
+    GPROJ_ITERATION_LIMIT, /* the iterations ran out before all constraints held */
+    GPROJ_STALLED,         /* no step makes the constraints hold better */
+    GPROJ_CANCELLED,       /* by the caller */
+    GPROJ_TIME_OUT,        /* the time budget ran out */
+    GPROJ_FAILED,          /* not started or broken off by an error */
     GPROJ_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_outcome;
 
@@ -1519,6 +1527,10 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 /* ============================================================================================================
    >>platform   Compiler differences, and nothing else. Uses no other section. */
 
+#if defined(__FAST_MATH__) || defined(_M_FP_FAST)
+#error "guidedproj.h needs exact arithmetic with infinities: compile it without -ffast-math, -Ofast or /fp:fast"
+#endif
+
 #include <float.h>
 #include <limits.h>
 #include <math.h>
@@ -1578,7 +1590,10 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INTERNAL static
 #endif
 
-#if defined(__cplusplus)
+/* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
+#if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
+#define GPROJI_RESTRICT __restrict
+#elif defined(__cplusplus)
 #define GPROJI_RESTRICT
 #else
 #define GPROJI_RESTRICT restrict
@@ -1625,12 +1640,14 @@ GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
 GPROJI_INLINE int32_t gproji_max(int32_t a, int32_t b) { return a > b ? a : b; }
 GPROJI_INLINE double gproji_fmin(double a, double b) { return a < b ? a : b; }
 GPROJI_INLINE double gproji_fmax(double a, double b) { return a > b ? a : b; }
-/* False for infinities and NaN, also under -ffast-math, where isfinite may be folded to true. */
+/* False for infinities and NaN, also under -ffinite-math-only, where isfinite may be folded to true. */
 GPROJI_INLINE bool gproji_is_finite(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
+
+GPROJ_API int32_t gproj_version(void) { return GPROJ_VERSION_NUMBER; }
 
 GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
     size_t i, odd = 0;
@@ -2337,13 +2354,22 @@ GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_
    >>error   One door for all failures. Uses platform, number. */
 
 GPROJ_API const char *gproj_code_string(gproj_code code) {
-    static const char *const sentences[] = {
-#define GPROJ_X(name, sentence) sentence,
-        GPROJ_CODES(GPROJ_X)
-#undef GPROJ_X
-    };
-    int32_t index = (int32_t)code, count = (int32_t)(sizeof sentences / sizeof sentences[0]);
-    return index >= 0 && index < count ? sentences[index] : "unknown error";
+    switch (code) { /* no default: compilers tell when a code is missing */
+    case GPROJ_OK: return "no error";
+    case GPROJ_ERROR_MEMORY: return "out of memory";
+    case GPROJ_ERROR_ARGUMENT: return "an argument is out of its range";
+    case GPROJ_ERROR_FILE: return "a file could not be read or written";
+    case GPROJ_ERROR_SYNTAX: return "a text is not what its format says";
+    case GPROJ_ERROR_NUMBER: return "a number is infinite or not a number";
+    case GPROJ_ERROR_INDEX: return "an index is out of its range";
+    case GPROJ_ERROR_DEGENERATE: return "an element is repeated or has no extent";
+    case GPROJ_ERROR_NON_MANIFOLD: return "a mesh is not a manifold";
+    case GPROJ_ERROR_NON_ORIENTABLE: return "a mesh has no consistent orientation";
+    case GPROJ_ERROR_SIZE: return "a count is too large";
+    case GPROJ_ERROR_STATE: return "a call came before another one that it depends on, or during one that excludes it";
+    case GPROJ_CODE_FORCE_INT: break;
+    }
+    return "unknown error";
 }
 
 /* Appends to a text that stays NUL-terminated; what does not fit is cut. Returns the new length. */
@@ -2535,7 +2561,7 @@ GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, siz
     return gproji_add_parts(part);
 }
 
-/* A sum with twice the digits (Dekker 1971): high + low. Under -ffast-math it has the usual ones. */
+/* A sum with twice the digits (Dekker 1971): high + low. */
 typedef struct gproji_sum {
     double high, low;
 } gproji_sum;
@@ -11132,12 +11158,16 @@ GPROJI_INTERNAL const char *gproji_place_word(gproj_place place) {
 }
 
 GPROJI_INTERNAL const char *gproji_outcome_string(gproj_outcome outcome) {
-    static const char *const sentences[] = {
-#define GPROJ_X(name, sentence) sentence,
-        GPROJ_OUTCOMES(GPROJ_X)
-#undef GPROJ_X
-    };
-    return sentences[outcome];
+    switch (outcome) { /* no default: compilers tell when an outcome is missing */
+    case GPROJ_CONVERGED: return "all constraints hold to the tolerance";
+    case GPROJ_ITERATION_LIMIT: return "the iterations ran out before all constraints held";
+    case GPROJ_STALLED: return "no step makes the constraints hold better";
+    case GPROJ_CANCELLED: return "cancelled by the caller";
+    case GPROJ_TIME_OUT: return "the time budget ran out";
+    case GPROJ_FAILED: return "not started or broken off by an error";
+    case GPROJ_OUTCOME_FORCE_INT: break;
+    }
+    return "unknown outcome";
 }
 
 GPROJI_INTERNAL double gproji_now(const gproj_system *s) {

@@ -893,9 +893,9 @@ static void print_help(void) {
          "  where the work began   1 it is not so (the output is written, sentence and\n"
          "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
          "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
-         "  of memory. After 2, 3 and 4 no output is touched, but for a summary that cannot\n"
-         "  be printed (3). With --nearest 0 does not say that a minimum was reached: the\n"
-         "  sentence and the report do.");
+         "  of memory. After 2, 3 and 4 no output is touched, unless only printing failed\n"
+         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence and\n"
+         "  the report do.");
 }
 
 /* ---- the command line ---- */
