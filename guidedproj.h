@@ -119,7 +119,7 @@
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
      GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
-     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>
+     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>, and in the implementation no <unistd.h>
      GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler; without it, on x86-64 with
                                 gcc and clang, the processor is asked for AVX2 and AVX-512 (not with gcc for Windows:
                                 there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
