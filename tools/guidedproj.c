@@ -894,8 +894,8 @@ static void print_help(void) {
          "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
          "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
          "  of memory. After 2, 3 and 4 no output is touched, unless only printing failed\n"
-         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence and\n"
-         "  the report do.");
+         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence\n"
+         "  and the report do.");
 }
 
 /* ---- the command line ---- */
