@@ -165,8 +165,8 @@
 #define GPROJ_VERSION_NUMBER (1000 * GPROJ_VERSION_MAJOR + GPROJ_VERSION_MINOR)
 #define GPROJ_VERSION "0.1"
 
-/* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before an
-   inclusion) the translation unit has its own private copy of the implementation and exports nothing. */
+/* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before
+   an inclusion) the translation unit has its own private copy of the implementation and exports nothing. */
 #if defined(GPROJ_STATIC) && !defined(GUIDEDPROJ_IMPLEMENTATION)
 #define GUIDEDPROJ_IMPLEMENTATION
 #endif
@@ -720,8 +720,8 @@ typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
 
 #ifndef GPROJ_NO_STDIO
-/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most 1 GiB
-   is read, or as much as the allocator's limit says where that is more. */
+/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most
+   1 GiB is read, or as much as the allocator's limit says where that is more. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
 /* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
    or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
@@ -13558,8 +13558,8 @@ GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) { return gp
 /* ============================================================================================================
    >>file   Files that are replaced whole or not at all. Uses platform.
 
-   Saving takes five steps, whose order no stop of the program or of the machine can turn into a damaged file: make a new
-   file beside the old one, write it, flush it to the disk, rename it over the old one, flush the folder. Exclusive
+   Saving takes five steps, whose order no stop of the program or of the machine can turn into a damaged file: make a
+   new file beside the old one, write it, flush it to the disk, rename it over the old one, flush the folder. Exclusive
    creation opens no file that exists and follows no symbolic link, so two programs never share a temporary name.
    Each system has one block of functions with the same declarations: POSIX, Windows (UTF-8 paths of any length) and
    plain C, which can neither flush to the disk nor keep permissions, and on some systems not replace.

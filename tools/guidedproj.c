@@ -184,8 +184,8 @@ typedef struct tool {
     int exit_code; /* once something has failed */
 } tool;
 
-/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F) that
-   terminals obey. */
+/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F)
+   that terminals obey. */
 static void print_plain(FILE *file, const char *text) {
     for (; *text; ++text) {
         unsigned char c = (unsigned char)*text, after = (unsigned char)text[1];
@@ -1163,8 +1163,8 @@ static const char *foreign_ending(const char *path) {
     return "";
 }
 
-/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text has:
-   devices give such bytes without end. */
+/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text
+   has: devices give such bytes without end. */
 static char *load_file(tool *t, const char *path, bool text, size_t *length) {
     FILE *file = fopen(path, "rb");
     size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
