@@ -26,13 +26,17 @@
      #include <stdio.h>
 
      int main(void) {
-         gproj_mesh *mesh = gproj_mesh_load("roof.obj", NULL, NULL);
+         gproj_error error;
+         gproj_mesh *mesh = gproj_mesh_load("roof.obj", NULL, &error);
+         if (!mesh) {
+             printf("%s\n", error.message);
+             return 1;
+         }
          gproj_form *form = gproj_form_create(mesh, NULL);
-         gproj_result result;
          gproj_add_planarity(form, 1.0);      // each returns the number of its group;
          gproj_add_fixed_boundary(form, 1.0); // after an error they do nothing:
          gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
-         result = gproj_solve(form, 20, NULL);
+         gproj_result result = gproj_solve(form, 20, NULL);
          printf("%s\n", result.message);
          if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
          gproj_form_destroy(form);
@@ -93,6 +97,7 @@
        >>schur          steps by multipliers, compilation
        >>loop           steps, damping, verdict
        >>mesh           half-edges from polygons
+       >>file           files that are replaced whole or not at all
        >>text           OBJ and OFF
        >>subdivide      subdivision by stencils
        >>hierarchy      bounding boxes
@@ -115,12 +120,16 @@
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
      GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
-     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>
+     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>, and in the implementation no <unistd.h>
      GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler; without it, on x86-64 with
                                 gcc and clang, the processor is asked for AVX2 and AVX-512 (not with gcc for Windows:
                                 there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
      GPROJ_USE_CBLAS            dense kernels by a CBLAS (link one, such as OpenBLAS)
      GPROJ_ASSERT(condition)    your own assert, for the library's internal invariants
+     GPROJ_API                  how public functions are declared, such as __attribute__((visibility("default"))) or
+                                __declspec(dllexport) where a shared library exports them; not in static mode
+
+   OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
    MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
      is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
@@ -152,18 +161,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define GPROJ_VERSION_MAJOR 0
+#define GPROJ_VERSION_MINOR 1
+#define GPROJ_VERSION_NUMBER (1000 * GPROJ_VERSION_MAJOR + GPROJ_VERSION_MINOR)
 #define GPROJ_VERSION "0.1"
 
-/* Every public function is declared with GPROJ_API. In static mode (GPROJ_STATIC, defined before an inclusion) the
-   translation unit has its own private copy of the implementation and exports nothing. */
+/* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before
+   an inclusion) the translation unit has its own private copy of the implementation and exports nothing. */
 #if defined(GPROJ_STATIC) && !defined(GUIDEDPROJ_IMPLEMENTATION)
 #define GUIDEDPROJ_IMPLEMENTATION
 #endif
-#if defined(GPROJ_STATIC) && (defined(__GNUC__) || defined(__clang__) || defined(__TINYC__))
+#if defined(GPROJ_STATIC)
+#undef GPROJ_API
+#if defined(__GNUC__) || defined(__clang__) || defined(__TINYC__)
 #define GPROJ_API __attribute__((unused)) static
-#elif defined(GPROJ_STATIC)
-#define GPROJ_API static
 #else
+#define GPROJ_API static
+#endif
+#elif !defined(GPROJ_API)
 #define GPROJ_API extern
 #endif
 
@@ -171,11 +186,15 @@
 extern "C" {
 #endif
 
+/* The GPROJ_VERSION_NUMBER of the implementation: 1000 * major + minor. Programs that load the library at run time can
+   compare it with that of their header. */
+GPROJ_API int32_t gproj_version(void);
+
 /* ------------------------------------------------------------------------------------------------------------
    >>api-host   What the library asks of the program around it: memory, threads, a clock.
 
-   A gproj_host is given when an object is created and copied into it. NULL or {0} means: malloc, one thread,
-   no clock. Nothing is ever process-wide; two objects may have two hosts. */
+   A gproj_host is given when an object is created and copied into it. NULL or all zeros mean: malloc, one
+   thread, no clock. Nothing is ever process-wide; two objects may have two hosts. */
 
 /* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
    be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
@@ -226,24 +245,19 @@ typedef struct gproj_memory {
    are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
    return -1, so one check at the end is enough. "Not converged" and "not positive definite" are outcomes, not
    errors. */
-#define GPROJ_CODES(X)                                              \
-    X(OK, "no error")                                               \
-    X(ERROR_MEMORY, "out of memory")                                \
-    X(ERROR_ARGUMENT, "an argument is out of its range")            \
-    X(ERROR_FILE, "a file could not be read or written")            \
-    X(ERROR_SYNTAX, "a text is not what its format says")           \
-    X(ERROR_NUMBER, "a number is infinite or not a number")         \
-    X(ERROR_INDEX, "an index is out of its range")                  \
-    X(ERROR_DEGENERATE, "an element is repeated or has no extent")  \
-    X(ERROR_NON_MANIFOLD, "a mesh is not a manifold")               \
-    X(ERROR_NON_ORIENTABLE, "a mesh has no consistent orientation") \
-    X(ERROR_SIZE, "a count is too large")                           \
-    X(ERROR_STATE, "a call came before another one that it depends on, or during one that excludes it")
-
 typedef enum gproj_code {
-#define GPROJ_X(name, sentence) GPROJ_##name,
-    GPROJ_CODES(GPROJ_X)
-#undef GPROJ_X
+    GPROJ_OK,
+    GPROJ_ERROR_MEMORY,
+    GPROJ_ERROR_ARGUMENT,
+    GPROJ_ERROR_FILE,
+    GPROJ_ERROR_SYNTAX,
+    GPROJ_ERROR_NUMBER, /* infinite, or not a number */
+    GPROJ_ERROR_INDEX,
+    GPROJ_ERROR_DEGENERATE, /* an element is repeated or has no extent */
+    GPROJ_ERROR_NON_MANIFOLD,
+    GPROJ_ERROR_NON_ORIENTABLE,
+    GPROJ_ERROR_SIZE,  /* a count is too large */
+    GPROJ_ERROR_STATE, /* a call came before another one that it depends on, or during one that excludes it */
     GPROJ_CODE_FORCE_INT = 0x7fffffff
 } gproj_code;
 
@@ -500,18 +514,13 @@ typedef enum gproj_phase {
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
 } gproj_phase;
 
-#define GPROJ_OUTCOMES(X)                                                    \
-    X(CONVERGED, "all constraints hold to the tolerance")                    \
-    X(ITERATION_LIMIT, "the iterations ran out before all constraints held") \
-    X(STALLED, "no step makes the constraints hold better")                  \
-    X(CANCELLED, "cancelled by the caller")                                  \
-    X(TIME_OUT, "the time budget ran out")                                   \
-    X(FAILED, "not started or broken off by an error")
-
 typedef enum gproj_outcome {
-#define GPROJ_X(name, sentence) GPROJ_##name,
-    GPROJ_OUTCOMES(GPROJ_X)
-#undef GPROJ_X
+    GPROJ_CONVERGED,       /* all constraints hold to the tolerance */
+    GPROJ_ITERATION_LIMIT, /* the iterations ran out before all constraints held */
+    GPROJ_STALLED,         /* no step makes the constraints hold better */
+    GPROJ_CANCELLED,       /* by the caller */
+    GPROJ_TIME_OUT,        /* the time budget ran out */
+    GPROJ_FAILED,          /* not started or broken off by an error */
     GPROJ_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_outcome;
 
@@ -712,10 +721,13 @@ typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
 
 #ifndef GPROJ_NO_STDIO
-/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. */
+/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most
+   1 GiB is read, or as much as the allocator's limit says where that is more. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
-/* Writes to a new file beside `path` and renames it, so an old file at `path` is lost only when the new one is
-   complete. The format follows the ending: .obj or .off. */
+/* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
+   or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
+   renames it. An existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format
+   follows the ending: .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
 
@@ -1516,14 +1528,40 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 /* ============================================================================================================
    >>platform   Compiler differences, and nothing else. Uses no other section. */
 
+#if defined(__FAST_MATH__) || defined(_M_FP_FAST)
+#error "guidedproj.h needs exact arithmetic with infinities: compile it without -ffast-math, -Ofast or /fp:fast"
+#endif
+
 #include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+/* Files by POSIX (1), by Windows (2) or by the C library alone (0). */
 #ifndef GPROJ_NO_STDIO
 #include <stdio.h>
+#ifndef GPROJI_FILES
+#if defined(_WIN32)
+#define GPROJI_FILES 2
+#elif defined(__unix__) || defined(__APPLE__) || defined(__HAIKU__)
+#define GPROJI_FILES 1
+#else
+#define GPROJI_FILES 0
+#endif
+#endif
+#if GPROJI_FILES
+#include <fcntl.h>
+#include <sys/stat.h>
+#endif
+#if GPROJI_FILES == 1
+#include <sys/types.h>
+#include <unistd.h>
+#elif GPROJI_FILES == 2
+#include <io.h>
+#include <process.h>
+#include <share.h>
+#endif
 #endif
 #ifdef GPROJ_USE_CBLAS
 #include <cblas.h>
@@ -1553,7 +1591,10 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INTERNAL static
 #endif
 
-#if defined(__cplusplus)
+/* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
+#if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
+#define GPROJI_RESTRICT __restrict
+#elif defined(__cplusplus)
 #define GPROJI_RESTRICT
 #else
 #define GPROJI_RESTRICT restrict
@@ -1600,12 +1641,14 @@ GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
 GPROJI_INLINE int32_t gproji_max(int32_t a, int32_t b) { return a > b ? a : b; }
 GPROJI_INLINE double gproji_fmin(double a, double b) { return a < b ? a : b; }
 GPROJI_INLINE double gproji_fmax(double a, double b) { return a > b ? a : b; }
-/* False for infinities and NaN, also under -ffast-math, where isfinite may be folded to true. */
+/* False for infinities and NaN, also under -ffinite-math-only, where isfinite may be folded to true. */
 GPROJI_INLINE bool gproji_is_finite(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
+
+GPROJ_API int32_t gproj_version(void) { return GPROJ_VERSION_NUMBER; }
 
 GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
     size_t i, odd = 0;
@@ -2257,13 +2300,22 @@ GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_
    >>error   One door for all failures. Uses platform, number. */
 
 GPROJ_API const char *gproj_code_string(gproj_code code) {
-    static const char *const sentences[] = {
-#define GPROJ_X(name, sentence) sentence,
-        GPROJ_CODES(GPROJ_X)
-#undef GPROJ_X
-    };
-    int32_t index = (int32_t)code, count = (int32_t)(sizeof sentences / sizeof sentences[0]);
-    return index >= 0 && index < count ? sentences[index] : "unknown error";
+    switch (code) { /* no default: compilers tell when a code is missing */
+    case GPROJ_OK: return "no error";
+    case GPROJ_ERROR_MEMORY: return "out of memory";
+    case GPROJ_ERROR_ARGUMENT: return "an argument is out of its range";
+    case GPROJ_ERROR_FILE: return "a file could not be read or written";
+    case GPROJ_ERROR_SYNTAX: return "a text is not what its format says";
+    case GPROJ_ERROR_NUMBER: return "a number is infinite or not a number";
+    case GPROJ_ERROR_INDEX: return "an index is out of its range";
+    case GPROJ_ERROR_DEGENERATE: return "an element is repeated or has no extent";
+    case GPROJ_ERROR_NON_MANIFOLD: return "a mesh is not a manifold";
+    case GPROJ_ERROR_NON_ORIENTABLE: return "a mesh has no consistent orientation";
+    case GPROJ_ERROR_SIZE: return "a count is too large";
+    case GPROJ_ERROR_STATE: return "a call came before another one that it depends on, or during one that excludes it";
+    case GPROJ_CODE_FORCE_INT: break;
+    }
+    return "unknown error";
 }
 
 /* Appends to a text that stays NUL-terminated, and cuts the piece if it does not fit. Returns the new length. */
@@ -2454,7 +2506,7 @@ GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, siz
     return gproji_add_parts(part);
 }
 
-/* A sum high + low with twice the digits (Dekker 1971); with the usual ones under -ffast-math. */
+/* A sum high + low with twice the digits (Dekker 1971). */
 typedef struct gproji_sum {
     double high, low;
 } gproji_sum;
@@ -10510,12 +10562,16 @@ GPROJI_INTERNAL const char *gproji_place_word(gproj_place place) {
 }
 
 GPROJI_INTERNAL const char *gproji_outcome_string(gproj_outcome outcome) {
-    static const char *const sentences[] = {
-#define GPROJ_X(name, sentence) sentence,
-        GPROJ_OUTCOMES(GPROJ_X)
-#undef GPROJ_X
-    };
-    return sentences[outcome];
+    switch (outcome) { /* no default: compilers tell when an outcome is missing */
+    case GPROJ_CONVERGED: return "all constraints hold to the tolerance";
+    case GPROJ_ITERATION_LIMIT: return "the iterations ran out before all constraints held";
+    case GPROJ_STALLED: return "no step makes the constraints hold better";
+    case GPROJ_CANCELLED: return "cancelled by the caller";
+    case GPROJ_TIME_OUT: return "the time budget ran out";
+    case GPROJ_FAILED: return "not started or broken off by an error";
+    case GPROJ_OUTCOME_FORCE_INT: break;
+    }
+    return "unknown outcome";
 }
 
 GPROJI_INTERNAL double gproji_now(const gproj_system *s) {
@@ -12691,7 +12747,364 @@ GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh) {
 }
 
 /* ============================================================================================================
-   >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh.
+   >>file   Files that are replaced whole or not at all. Uses platform.
+
+   Saving takes five steps, whose order no stop of the program or of the machine can turn into a damaged file: make a
+   new file beside the old one, write it, flush it to the disk, rename it over the old one, flush the folder. Exclusive
+   creation opens no file that exists and follows no symbolic link, so two programs never share a temporary name.
+   Each system has one block of functions with the same declarations: POSIX, Windows (UTF-8 paths of any length) and
+   plain C, which can neither flush to the disk nor keep permissions, and on some systems not replace.
+   Invariant: the old file is as it was until the rename, and what is renamed is complete. */
+#ifndef GPROJ_NO_STDIO
+
+enum {
+    GPROJI_PATH_MAX = 4096,       /* with the final NUL */
+    GPROJI_TEMPORARY_SIZE = 19,   /* of "gproj-01234567.tmp" */
+    GPROJI_TEMPORARY_TRIES = 100, /* names before the folder is taken to be closed to us */
+    GPROJI_LINKS_MAX = 40         /* symbolic links that lead from one to the next */
+};
+
+/* An open file. */
+typedef struct gproji_file {
+#if GPROJI_FILES
+    int descriptor;
+#else
+    FILE *stream;
+#endif
+} gproji_file;
+
+/* The file that a save replaces. */
+typedef struct gproji_old_file {
+    bool exists, regular;
+#if GPROJI_FILES == 1
+    struct stat info;
+#endif
+} gproji_old_file;
+
+#if GPROJI_FILES == 1
+
+#if defined(__STRICT_ANSI__) && !defined(__cplusplus) /* headers hide these under -std=c99 */
+ssize_t readlink(const char *path, char *target, size_t size);
+int fchmod(int descriptor, mode_t mode);
+int fchown(int descriptor, uid_t user, gid_t group);
+#endif
+#ifdef O_CLOEXEC /* a program that is started meanwhile does not inherit the file */
+#define GPROJI_OPEN_FLAGS O_CLOEXEC
+#else
+#define GPROJI_OPEN_FLAGS 0
+#endif
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    file->descriptor = open(path, O_RDONLY | GPROJI_OPEN_FLAGS);
+    return file->descriptor >= 0;
+}
+
+/* Makes a new file, with the owner and the permissions of the old one as far as the system lets us. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    mode_t mode;
+    file->descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | GPROJI_OPEN_FLAGS, old->exists ? 0600 : 0666);
+    if (file->descriptor < 0) return false;
+    if (!old->exists) return true;
+    /* Only root gives files away, others choose among their groups. A group that is not kept gets no rights. */
+    mode = old->info.st_mode & 0777;
+    if (fchown(file->descriptor, old->info.st_uid, old->info.st_gid) != 0 &&
+        fchown(file->descriptor, (uid_t)-1, old->info.st_gid) != 0) {
+        mode &= 0707;
+    }
+    fchmod(file->descriptor, mode); /* last, for fchown takes bits away */
+    return true;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    return read(file->descriptor, text, size);
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    const gproji_file *file = (const gproji_file *)user;
+    while (size > 0) {
+        ssize_t written = write(file->descriptor, text, size);
+        if (written <= 0) return false;
+        text += written, size -= (size_t)written;
+    }
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return close(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fsync(file->descriptor) == 0; }
+
+/* Renames a file; the disk keeps the new name when its folder is flushed, which some file systems refuse. */
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    gproji_file names;
+    if (rename(from, to) != 0) return false;
+    if (gproji_file_open(&names, folder)) {
+        gproji_file_flush(&names);
+        gproji_file_close(&names);
+    }
+    return true;
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
+
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    old->exists = stat(path, &old->info) == 0;
+    old->regular = old->exists && S_ISREG(old->info.st_mode);
+}
+
+/* The length of a path's folder, with the slash at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    char target[GPROJI_PATH_MAX];
+    int32_t links;
+    for (links = 0; links < GPROJI_LINKS_MAX; ++links) {
+        ssize_t length = readlink(path, target, sizeof target);
+        size_t folder = gproji_folder_length(path);
+        if (length <= 0) return true; /* no link */
+        if (target[0] == '/') folder = 0;
+        if (folder + (size_t)length >= GPROJI_PATH_MAX) return false;
+        memcpy(path + folder, target, (size_t)length);
+        path[folder + (size_t)length] = 0;
+    }
+    return false;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)getpid(); }
+
+#elif GPROJI_FILES == 2
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+/* From <windows.h>, whose macros (near, far, small, min, ...) are not for everyone. */
+__declspec(dllimport) int __stdcall MultiByteToWideChar(unsigned int page, unsigned long flags, const char *text,
+                                                        int size, wchar_t *wide, int wide_size);
+__declspec(dllimport) unsigned long __stdcall GetFullPathNameW(const wchar_t *path, unsigned long size, wchar_t *full,
+                                                               wchar_t **name);
+__declspec(dllimport) int __stdcall MoveFileExW(const wchar_t *from, const wchar_t *to, unsigned long flags);
+__declspec(dllimport) unsigned long __stdcall GetFileAttributesW(const wchar_t *path);
+__declspec(dllimport) int __stdcall DeleteFileW(const wchar_t *path);
+#ifdef __cplusplus
+}
+#endif
+
+enum {
+    GPROJI_WIDE_PREFIX = 8 /* room for \\?\UNC\, which lifts the limit of 260 characters */
+};
+typedef struct gproji_wide_path {
+    wchar_t room[GPROJI_WIDE_PREFIX + GPROJI_PATH_MAX];
+    const wchar_t *text;
+} gproji_wide_path;
+
+/* Turns UTF-8 into an absolute path of any length; false where it is no UTF-8, or too long. */
+GPROJI_INTERNAL bool gproji_widen_path(gproji_wide_path *wide, const char *path) {
+    static const wchar_t lifted[] = L"\\\\?\\", share[] = L"\\\\?\\UNC";
+    wchar_t text[GPROJI_PATH_MAX], *full = wide->room + GPROJI_WIDE_PREFIX, *begin = full;
+    const unsigned int utf8 = 65001, strict = 8;
+    unsigned long length;
+    if (!MultiByteToWideChar(utf8, strict, path, -1, text, GPROJI_PATH_MAX)) return false;
+    length = GetFullPathNameW(text, GPROJI_PATH_MAX, full, NULL);
+    if (!length || length >= GPROJI_PATH_MAX) return false;
+    if (full[0] != L'\\' || full[1] != L'\\') { /* C:\folder\file */
+        begin = full - 4;
+        memcpy(begin, lifted, 4 * sizeof(wchar_t));
+    } else if (full[2] != L'?' && full[2] != L'.') { /* \\server\share\file keeps its second backslash */
+        begin = full - 6;
+        memcpy(begin, share, 7 * sizeof(wchar_t));
+    }
+    wide->text = begin;
+    return true;
+}
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    gproji_wide_path wide;
+    return gproji_widen_path(&wide, path) &&
+           _wsopen_s(&file->descriptor, wide.text, _O_RDONLY | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD) == 0;
+}
+
+/* Makes a new file. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    gproji_wide_path wide;
+    (void)old;
+    return gproji_widen_path(&wide, path) &&
+           _wsopen_s(&file->descriptor, wide.text, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
+                     _SH_DENYNO, _S_IREAD | _S_IWRITE) == 0;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    return _read(file->descriptor, text, size < INT32_MAX ? (unsigned int)size : INT32_MAX);
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    const gproji_file *file = (const gproji_file *)user;
+    return _write(file->descriptor, text, (unsigned int)size) == (int)size; /* a piece of a writer's buffer */
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return _close(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return _commit(file->descriptor) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    const unsigned long replace_existing = 1, write_through = 8;
+    gproji_wide_path wide_from, wide_to;
+    (void)folder; /* MoveFileEx writes it through */
+    return gproji_widen_path(&wide_from, from) && gproji_widen_path(&wide_to, to) &&
+           MoveFileExW(wide_from.text, wide_to.text, replace_existing | write_through);
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) {
+    gproji_wide_path wide;
+    if (gproji_widen_path(&wide, path)) DeleteFileW(wide.text);
+}
+
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    const unsigned long none = 0xffffffff, directory = 0x10, device = 0x40;
+    gproji_wide_path wide;
+    unsigned long attributes = gproji_widen_path(&wide, path) ? GetFileAttributesW(wide.text) : none;
+    old->exists = attributes != none;
+    old->regular = old->exists && !(attributes & (directory | device));
+}
+
+/* The length of a path's folder, with the separator at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    size_t length = strlen(path);
+    while (length > 0 && !strchr("/\\:", path[length - 1])) --length;
+    return length;
+}
+
+/* MoveFileEx replaces a link itself. */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    (void)path;
+    return true;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
+
+#else
+
+GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
+    file->stream = fopen(path, "rb");
+    return file->stream != NULL;
+}
+
+/* Makes a new file: exclusively in C11, before that one that is not there yet. */
+GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
+    (void)old;
+#if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L) || (defined(__cplusplus) && __cplusplus >= 201703L)
+    file->stream = fopen(path, "wbx");
+#else
+    if (gproji_file_open(file, path)) {
+        fclose(file->stream);
+        return false;
+    }
+    file->stream = fopen(path, "wb");
+#endif
+    return file->stream != NULL;
+}
+
+/* The number of bytes read; 0 at the end, less than 0 after an error. */
+GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
+    size_t got = fread(text, 1, size, file->stream);
+    return got == 0 && ferror(file->stream) ? -1 : (int64_t)got;
+}
+
+GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size) {
+    return fwrite(text, 1, size, ((gproji_file *)user)->stream) == size;
+}
+
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return fclose(file->stream) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fflush(file->stream) == 0; }
+
+GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
+    (void)folder;
+    return rename(from, to) == 0;
+}
+
+GPROJI_INTERNAL void gproji_file_remove(const char *path) { remove(path); }
+
+/* Nobody can tell; a rename will. */
+GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+    (void)path;
+    old->exists = old->regular = false;
+}
+
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+    (void)path;
+    return true;
+}
+
+GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
+
+#endif /* GPROJI_FILES */
+
+/* A save under way. */
+typedef struct gproji_saving {
+    gproji_file file;
+    size_t folder_length;
+    char target[GPROJI_PATH_MAX], temporary[GPROJI_PATH_MAX];
+} gproji_saving;
+
+/* Makes a new file in the folder of the target. Names that differ between processes and threads save attempts. */
+GPROJI_INTERNAL bool gproji_create_temporary(gproji_saving *saving, const gproji_old_file *old) {
+    uint32_t number = gproji_process_number() * 1664525 + (uint32_t)((uintptr_t)saving >> 4);
+    char *name = saving->temporary + saving->folder_length;
+    int32_t tries, digit;
+    memcpy(saving->temporary, saving->target, saving->folder_length);
+    for (tries = 0; tries < GPROJI_TEMPORARY_TRIES; ++tries) {
+        number = number * 1664525 + 1013904223; /* Knuth and Lewis */
+        memcpy(name, "gproj-01234567.tmp", GPROJI_TEMPORARY_SIZE);
+        for (digit = 0; digit < 8; ++digit) name[6 + digit] = "0123456789abcdef"[(number >> (28 - 4 * digit)) & 15];
+        if (gproji_file_create(&saving->file, saving->temporary, old)) return true;
+    }
+    return false;
+}
+
+/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
+GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
+    gproji_old_file old;
+    size_t length = strlen(path);
+    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
+    memcpy(saving->target, path, length + 1);
+    if (!gproji_follow_links(saving->target)) return "its symbolic links lead in a circle, or too far";
+    gproji_look_at_old(&old, saving->target);
+    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
+    saving->folder_length = gproji_folder_length(saving->target);
+    if (saving->folder_length + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
+    if (gproji_create_temporary(saving, &old)) return NULL;
+    return "no file can be made in its folder; does that exist, and may you write there?";
+}
+
+/* Puts the new file in its place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
+GPROJI_INTERNAL const char *gproji_save_end(gproji_saving *saving, bool written) {
+    char folder[GPROJI_PATH_MAX];
+    bool complete = written && gproji_file_flush(&saving->file);
+    if (!gproji_file_close(&saving->file)) complete = false;
+    if (complete) {
+        memcpy(folder, saving->target, saving->folder_length);
+        memcpy(folder + saving->folder_length, ".", 2);
+        if (gproji_file_rename(saving->temporary, saving->target, folder)) return NULL;
+    }
+    gproji_file_remove(saving->temporary);
+    return complete ? "the old file cannot be replaced; is it a folder, or open elsewhere?"
+                    : "the new file was not written; is the disk full?";
+}
+
+#endif /* GPROJ_NO_STDIO */
+
+/* ============================================================================================================
+   >>text   Meshes as OBJ and OFF texts. Uses platform, number, memory, error, vector, mesh, file.
 
    Based on the Wavefront Advanced Visualizer manual, appendix B1 (OBJ) and the Geomview manual, section 4.2.5 (OFF).
    The readers go once through the text and gather polygons, with the line of each vertex and face, so that the mesh
@@ -13276,8 +13689,7 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 
 /* A path for a sentence: its end, if it is long; no control characters. */
 enum {
-    GPROJI_PATH_QUOTE_SIZE = 132,
-    GPROJI_PATH_MAX = 4096
+    GPROJI_PATH_QUOTE_SIZE = 132
 };
 GPROJI_INTERNAL const char *gproji_quote_path(const char *path, char quote[GPROJI_PATH_QUOTE_SIZE]) {
     size_t length = strlen(path), start = 0, at = 0;
@@ -13304,23 +13716,39 @@ GPROJI_INTERNAL gproj_format gproji_format_of_path(const char *path) {
     return GPROJ_FORMAT_DETECT;
 }
 
-/* Reads what is left of a file; *text has room for *capacity characters. */
-GPROJI_INTERNAL gproj_code gproji_read_file(FILE *file, const char *path, gproji_heap *heap, void **text,
+/* How much is read where the allocator sets no larger limit; pipes and devices may have no end. */
+#ifndef GPROJI_TEXT_MAX
+#define GPROJI_TEXT_MAX ((size_t)1 << 30)
+#endif
+
+/* Reads a file up to its end, or to the first piece with a zero byte, which no text has. */
+GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path, gproji_heap *heap, void **text,
                                             size_t *capacity, size_t *size, gproj_error *error) {
     char quote[GPROJI_PATH_QUOTE_SIZE];
-    size_t got;
-    do {
+    size_t most = heap->hook.limit > GPROJI_TEXT_MAX ? heap->hook.limit : GPROJI_TEXT_MAX;
+    int64_t got;
+    for (;;) {
         if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
         }
-        got = fread((char *)*text + *size, 1, *capacity - *size, file);
-        *size += got;
-    } while (got);
-    if (!ferror(file)) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                       "'%s' cannot be read; is it a folder, or the disk damaged?", gproji_quote_path(path, quote));
+        got = gproji_file_read(file, (char *)*text + *size, *capacity - *size);
+        if (got < 0) {
+            return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                               "'%s' cannot be read; is it a folder, or the disk damaged?",
+                               gproji_quote_path(path, quote));
+        }
+        *size += (size_t)got;
+        if (got == 0 || memchr((char *)*text + *size - got, 0, (size_t)got)) return GPROJ_OK;
+        if (*size > most) {
+            return gproji_fail(
+                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets more "
+                "be read",
+                gproji_quote_path(path, quote), (int64_t)most);
+        }
+    }
 }
 
 GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const char *path, gproj_error *error) {
@@ -13328,14 +13756,14 @@ GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const ch
     void *text = NULL;
     size_t capacity = 0, size = 0;
     gproj_code code;
-    FILE *file = fopen(path, "rb");
-    if (!file) {
+    gproji_file file;
+    if (!gproji_file_open(&file, path)) {
         return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                            "'%s' cannot be opened; does it exist, and may you read it?",
                            gproji_quote_path(path, quote));
     }
-    code = gproji_read_file(file, path, &object->heap, &text, &capacity, &size, error);
-    fclose(file);
+    code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
+    gproji_file_close(&file);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
     return code;
@@ -13352,54 +13780,15 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
     return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
 }
 
-GPROJI_INTERNAL bool gproji_write_to_file(void *user, const char *text, size_t size) {
-    return fwrite(text, 1, size, (FILE *)user) == size;
-}
-
-/* Moves a complete new file over an old one. */
-GPROJI_INTERNAL bool gproji_replace_file(const char *from, const char *to) {
-#ifdef _WIN32
-    remove(to); /* rename does not replace there; nothing is lost when it fails, the new file has all */
-#endif
-    return rename(from, to) == 0;
-}
-
-/* The complete file is written and closed before the old one is touched. */
-GPROJI_INTERNAL gproj_code gproji_save_through(const gproj_mesh *mesh, const char *path, const char *temporary,
-                                               gproj_error *error) {
-    char quote[GPROJI_PATH_QUOTE_SIZE];
-    bool complete;
-    FILE *file = fopen(temporary, "wb");
-    if (!file) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                           "no file can be made beside '%s'; does the folder exist, and may you write there?",
-                           gproji_quote_path(path, quote));
-    }
-    complete = gproji_write_mesh(mesh, gproji_format_of_path(path), gproji_write_to_file, file) == GPROJ_OK;
-    if (fclose(file)) complete = false;
-    if (!complete) {
-        remove(temporary);
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' was not written; is the disk full?",
-                           gproji_quote_path(path, quote));
-    }
-    if (gproji_replace_file(temporary, path)) return GPROJ_OK;
-    remove(temporary);
-    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                       "'%s' cannot be replaced; is it a folder, or open elsewhere?", gproji_quote_path(path, quote));
-}
-
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error) {
-    static const char suffix[] = ".gproj-new";
-    char temporary[GPROJI_PATH_MAX], quote[GPROJI_PATH_QUOTE_SIZE];
+    char quote[GPROJI_PATH_QUOTE_SIZE];
+    gproji_saving saving;
+    const char *problem;
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !path) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the %s to save is NULL",
                            mesh ? "path" : "mesh");
-    }
-    if (strlen(path) + sizeof suffix > sizeof temporary) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' is too long a path",
-                           gproji_quote_path(path, quote));
     }
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -13407,9 +13796,14 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
-    memcpy(temporary, path, strlen(path));
-    memcpy(temporary + strlen(path), suffix, sizeof suffix);
-    return gproji_save_through(mesh, path, temporary, error);
+    problem = gproji_save_begin(&saving, path);
+    if (!problem) {
+        code = gproji_write_mesh(mesh, gproji_format_of_path(path), gproji_file_write, &saving.file);
+        problem = gproji_save_end(&saving, code == GPROJ_OK);
+    }
+    if (!problem) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "'%s' cannot be saved: %s",
+                       gproji_quote_path(path, quote), problem);
 }
 
 #endif /* GPROJ_NO_STDIO */

@@ -4,7 +4,7 @@
        ./guidedproj roof.obj -o flat.obj --planar --glide boundary --picture flat.svg
 
    From top to bottom: the run and its errors; numbers and words; one reader for each kind of value; the table of
-   options; the command line; files; the form; progress; outputs (mesh, report, picture); main. */
+   options; the command line; files; the form; progress; outputs (mesh, report, picture); signals; main. */
 #define _XOPEN_SOURCE 700
 
 #define GPROJ_STATIC
@@ -14,6 +14,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,6 +45,7 @@ enum {
     MOST_OPTIONS = 64,
     MOST_ITERATIONS = 100000,
     MOST_THREADS = 256,
+    MOST_MEGABYTES = 1000000,
     MOST_LEVELS = 14,
     MOST_SIDES = 64,
     MOST_DRAGS = 50 /* and releases, for one --move */
@@ -100,7 +102,8 @@ typedef struct tool_group_record {
 typedef struct tool_output {
     const char *path;
     char *target;    /* the path without symbolic links */
-    char *temporary; /* beside the target; NULL before it is written, and for devices and pipes */
+    char *temporary; /* in the target's folder; NULL before it is written, and for devices and pipes */
+    char *kept;      /* the old file's second name, until all outputs are in their places */
     bool device;     /* exists and is no regular file: written directly */
 } tool_output;
 
@@ -142,6 +145,7 @@ typedef struct tool {
     int32_t fix_count, glide_count, move_count;
     tool_word reference;
     int32_t iterations, threads;
+    int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
@@ -180,16 +184,29 @@ typedef struct tool {
     int exit_code; /* once something has failed */
 } tool;
 
+/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F)
+   that terminals obey. */
+static void print_plain(FILE *file, const char *text) {
+    for (; *text; ++text) {
+        unsigned char c = (unsigned char)*text, after = (unsigned char)text[1];
+        bool wide = c == 0xc2 && after >= 0x80 && after < 0xa0;
+        fputc(c < 32 || c == 127 || wide ? '?' : c, file);
+        text += wide;
+    }
+}
+
 /* Every failure of the tool passes through here: one sentence, and the exit code. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
+    char sentence[8192];
     va_list list;
     if (t->exit_code != 0) return false;
     t->exit_code = exit_code;
     if (t->bar) fputc('\n', stderr);
-    fputs("guidedproj: ", stderr);
     va_start(list, format);
-    vfprintf(stderr, format, list);
+    vsnprintf(sentence, sizeof sentence, format, list);
     va_end(list);
+    fputs("guidedproj: ", stderr);
+    print_plain(stderr, sentence);
     fputs(exit_code == EXIT_USAGE ? "\n(guidedproj --help lists all options)\n" : "\n", stderr);
     return false;
 }
@@ -452,6 +469,11 @@ static bool set_iterations(tool *t, void *place, const char *name, const char *v
     return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_ITERATIONS);
 }
 
+static bool set_file_limit(tool *t, void *place, const char *name, const char *value) {
+    if (read_integer(value, strlen(value), 1, MOST_MEGABYTES, (int32_t *)place)) return true;
+    return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_MEGABYTES);
+}
+
 static bool set_subdivision(tool *t, void *place, const char *name, const char *value) {
     tool_subdivision *subdivision = (tool_subdivision *)place;
     size_t size = strcspn(value, ",");
@@ -662,6 +684,8 @@ typedef struct tool_option {
 static const tool_option options[] = {
     {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
 
+    {0, "file-limit", "MB", false, "files are read up to this size (1024)", NULL, set_file_limit, PLACE(file_limit)},
+
     {0, "fill", "CURVE", false,
      "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
      "first polyline, closed, else all "
@@ -869,8 +893,9 @@ static void print_help(void) {
          "  where the work began   1 it is not so (the output is written, sentence and\n"
          "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
          "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
-         "  of memory. After 2, 3 and 4 no output is touched. With --nearest 0 does not\n"
-         "  say that a minimum was reached: the sentence and the report do.");
+         "  of memory. After 2, 3 and 4 no output is touched, unless only printing failed\n"
+         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence\n"
+         "  and the report do.");
 }
 
 /* ---- the command line ---- */
@@ -1065,6 +1090,11 @@ static bool prepare_output(tool *t, tool_output *output) {
         }
         output->device = !S_ISREG(info.st_mode);
     } else {
+        if (lstat(output->path, &info) == 0 && S_ISLNK(info.st_mode)) {
+            free(folder);
+            return fail(t, EXIT_USAGE, "the output '%s' is a symbolic link that leads nowhere: remove it, or mend it",
+                        output->path);
+        }
         real = realpath(folder, NULL);
         if (!real) {
             fail(t, EXIT_USAGE, "the output '%s' cannot be written: there is no folder '%s'", output->path, folder);
@@ -1101,6 +1131,10 @@ static bool prepare_outputs(tool *t) {
         tool_output *output = &t->output[i];
         if (!output->path) continue;
         if (!prepare_output(t, output)) return false;
+        if (i == OUTPUT_STATE && output->device)
+            return fail(t, EXIT_USAGE,
+                        "--state %s is a device or a pipe: a state is written to a file and read from it",
+                        output->path);
         for (j = 0; j < i; ++j)
             if (t->output[j].target && strcmp(t->output[j].target, output->target) == 0)
                 return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
@@ -1129,55 +1163,72 @@ static const char *foreign_ending(const char *path) {
     return "";
 }
 
-static gproj_mesh *load(tool *t, const char *path, size_t size) {
-    gproj_error error;
-    gproj_mesh *mesh;
-    char *copy = (char *)take(t, size + 1, 1);
-    if (!copy) return NULL;
-    memcpy(copy, path, size);
-    mesh = gproj_mesh_load(copy, &t->host, &error);
-    if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
-        fail(t, EXIT_REFUSED,
-             "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
-             "MeshLab or assimp (%s)",
-             copy, foreign_ending(copy), error.message);
-    if (!mesh) fail_library(t, copy, &error);
-    free(copy);
-    return mesh;
+/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text
+   has: devices give such bytes without end. */
+static char *load_file(tool *t, const char *path, bool text, size_t *length) {
+    FILE *file = fopen(path, "rb");
+    size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
+    char *bytes = NULL;
+    bool more = file != NULL;
+    if (!file) fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+    while (more) {
+        if (size + 1 >= capacity) {
+            char *moved = (char *)realloc(bytes, capacity = 2 * capacity + 4096);
+            if (!moved) {
+                fail_memory(t);
+                break;
+            }
+            bytes = moved;
+        }
+        got = fread(bytes + size, 1, capacity - size - 1, file);
+        more = got > 0 && !(text && memchr(bytes + size, 0, got));
+        size += got;
+        bytes[size] = 0;
+        if (ferror(file)) more = fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
+        if (size > most)
+            more = fail(t, EXIT_REFUSED, "%s: more than %ld MB, or without end; --file-limit sets how much is read",
+                        path, (long)t->file_limit);
+    }
+    if (file) fclose(file);
+    *length = size;
+    if (t->exit_code == 0) return bytes;
+    free(bytes);
+    return NULL;
 }
 
-/* The whole of a file, with a NUL behind it. length: of it without that NUL; may be NULL. */
-static char *load_file(tool *t, const char *path, size_t *length) {
-    FILE *file = fopen(path, "rb");
-    char *text = NULL;
-    size_t size = 0, capacity = 0, got = 0;
-    if (!file) {
-        fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-        return NULL;
+/* A text that is no mesh. */
+static char *load_text(tool *t, const char *path) {
+    size_t length;
+    char *text = load_file(t, path, true, &length);
+    if (!text || strlen(text) == length) return text;
+    fail(t, EXIT_REFUSED, "%s: a zero byte; this is a device, a binary file or UTF-16, not a text", path);
+    free(text);
+    return NULL;
+}
+
+static gproj_mesh *load(tool *t, const char *path, size_t size) {
+    gproj_error error;
+    gproj_mesh *mesh = NULL;
+    gproj_format format;
+    size_t length;
+    char *copy = (char *)take(t, size + 1, 1), *text;
+    if (!copy) return NULL;
+    memcpy(copy, path, size);
+    text = load_file(t, copy, true, &length);
+    if (text) {
+        format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
+                 : has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
+                                            : GPROJ_FORMAT_DETECT;
+        mesh = gproj_mesh_read(text, length, format, &t->host, &error);
+        if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
+            fail(t, EXIT_REFUSED,
+                 "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
+                 "MeshLab or assimp (%s)",
+                 copy, foreign_ending(copy), error.message);
+        if (!mesh) fail_library(t, copy, &error);
     }
-    do {
-        size += got;
-        if (size + 1 >= capacity) {
-            char *more = (char *)realloc(text, capacity = 2 * capacity + 4096);
-            if (!more) break;
-            text = more;
-        }
-        got = fread(text + size, 1, capacity - size - 1, file);
-    } while (got > 0);
-    if (got > 0 || ferror(file)) {
-        if (got > 0)
-            fail_memory(t);
-        else
-            fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-        free(text);
-        text = NULL;
-    } else if (text) {
-        text[size] = 0;
-        if (length) *length = size;
-    } else
-        fail_memory(t);
-    fclose(file);
-    return text;
+    free(text), free(copy);
+    return mesh;
 }
 
 /* The first closed polyline in a file, where there is none and no boundary the first one; -1: there is none. (The sides
@@ -1511,7 +1562,7 @@ static bool mark_vertices(tool *t, const char *option, const tool_word *word, bo
     } else {
         good = must_exist(t, option, name,
                           "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
-        text = good ? load_file(t, name, NULL) : NULL;
+        text = good ? load_text(t, name) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
         free(text);
     }
@@ -1707,7 +1758,7 @@ static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
 }
 
 static bool read_loads(tool *t) {
-    char *text = load_file(t, t->loads, NULL), *line = text;
+    char *text = load_text(t, t->loads), *line = text;
     int32_t number = 1;
     bool good = text != NULL;
     if (text && strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
@@ -1969,7 +2020,7 @@ static bool restore(tool *t) {
     size_t size;
     char *bytes;
     if (access(state->target, F_OK) != 0) return true;
-    bytes = load_file(t, state->path, &size);
+    bytes = load_file(t, state->path, false, &size);
     if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
     free(bytes);
     return t->exit_code == 0;
@@ -2541,7 +2592,6 @@ static gproj_code write_support(tool *t, FILE *file) {
     return write_as(t->support, t->output[OUTPUT_SUPPORT].path, file);
 }
 
-/* Opens a new file beside the target, with the mode of an old one there. */
 static gproj_code write_state(tool *t, FILE *file) {
     size_t size = gproj_state_size(t->form);
     void *bytes = malloc(size ? size : 1);
@@ -2551,45 +2601,185 @@ static gproj_code write_state(tool *t, FILE *file) {
     return code;
 }
 
+/* ---- outputs in their places: all of them, or none ---- */
+
+static tool *running; /* for the signals */
+
+/* Takes away the files that no one is to see, and lets the signal do what it would have done. */
+static void end_by_signal(int number) {
+    int32_t i;
+    for (i = 0; running && i < OUTPUT_COUNT; ++i)
+        if (running->output[i].temporary) unlink(running->output[i].temporary);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static const int ending_signals[] = {SIGHUP, SIGINT, SIGTERM};
+enum {
+    ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0]
+};
+
+static void watch_signals(tool *t) {
+    int i;
+    running = t;
+    for (i = 0; i < ENDING_SIGNALS; ++i)
+        if (signal(ending_signals[i], SIG_IGN) != SIG_IGN) signal(ending_signals[i], end_by_signal);
+}
+
+/* Holds the signals back while files and their names in the outputs differ, or lets them come. */
+static void hold_signals(bool hold) {
+    sigset_t set;
+    int i;
+    sigemptyset(&set);
+    for (i = 0; i < ENDING_SIGNALS; ++i) sigaddset(&set, ending_signals[i]);
+    pthread_sigmask(hold ? SIG_BLOCK : SIG_UNBLOCK, &set, NULL);
+}
+
+/* A name in the target's folder; `number` tells those of one process apart. */
+static char *name_beside(tool *t, const char *target, int number) {
+    char name[48], *path;
+    snprintf(name, sizeof name, "gproj-%ld-%d.tmp", (long)getpid(), number);
+    path = join(t, target, name, ""); /* room for the longer of the two */
+    if (path) strcpy(path + (strrchr(target, '/') - target) + 1, name);
+    return path;
+}
+
+enum {
+    MOST_NAMES = 1000 /* tried: crashed processes of the same number may have left some */
+};
+
+/* Makes a new file in the folder of the target, which follows no link and opens no file that is there. It has the
+   permissions of the old one. */
 static FILE *open_temporary(tool *t, tool_output *output) {
-    char ending[48];
     struct stat info;
-    int descriptor;
+    bool old = stat(output->target, &info) == 0;
+    int descriptor = -1, number;
     if (output->device) return fopen(output->target, "w");
-    snprintf(ending, sizeof ending, ".%ld.tmp", (long)getpid());
-    output->temporary = join(t, output->target, ending, "");
-    if (!output->temporary) return NULL;
-    descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL, 0666);
-    if (descriptor < 0) {
-        free(output->temporary); /* not ours */
-        output->temporary = NULL;
-        return NULL;
+    hold_signals(true);
+    for (number = 0; descriptor < 0 && number < MOST_NAMES; ++number) {
+        char *name = name_beside(t, output->target, number);
+        if (!name) break;
+        descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, old ? 0600 : 0666);
+        if (descriptor >= 0)
+            output->temporary = name;
+        else {
+            free(name);
+            if (errno != EEXIST) break;
+        }
     }
-    if (stat(output->target, &info) == 0 && fchmod(descriptor, info.st_mode & 0777) != 0)
-        errno = 0; /* as it is, then */
+    hold_signals(false);
+    if (descriptor < 0) return NULL;
+    if (old) {
+        /* Only root gives files away, others choose among their groups. A group that is not kept gets no rights. */
+        mode_t mode = info.st_mode & 0777;
+        if (fchown(descriptor, info.st_uid, info.st_gid) != 0 && fchown(descriptor, (uid_t)-1, info.st_gid) != 0)
+            mode &= 0707;
+        fchmod(descriptor, mode);
+        errno = 0;
+    }
     return fdopen(descriptor, "w");
+}
+
+/* Flushes a file to the disk, or the names in a folder. */
+static bool write_through(const tool_output *output, FILE *file) {
+    return fflush(file) == 0 && !ferror(file) && (output->device || fsync(fileno(file)) == 0);
+}
+static void write_folder_through(const char *target) {
+    char *folder = strdup(target), *slash = folder ? strrchr(folder, '/') : NULL;
+    int descriptor;
+    if (slash) {
+        slash[slash == folder] = 0;
+        descriptor = open(folder, O_RDONLY | O_CLOEXEC);
+        if (descriptor >= 0) fsync(descriptor), close(descriptor); /* some file systems refuse */
+    }
+    free(folder);
 }
 
 static bool write_output(tool *t, tool_output *output, gproj_code (*write)(tool *t, FILE *file)) {
     FILE *file;
     gproj_code code;
-    int closed;
+    bool flushed;
+    int cause;
     if (!output->path) return true;
     errno = 0;
     file = open_temporary(t, output);
     if (!file) return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
     code = write(t, file);
-    closed = fclose(file);
+    flushed = write_through(output, file);
+    cause = errno;
+    if (fclose(file) != 0 && flushed) flushed = false, cause = errno;
     if (code == GPROJ_ERROR_MEMORY) return fail_memory(t);
-    if (code != GPROJ_OK || closed != 0)
-        return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path,
-                    errno ? strerror(errno) : gproj_code_string(code));
+    if (code == GPROJ_OK && flushed) return true;
+    return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path,
+                cause ? strerror(cause) : gproj_code_string(code));
+}
+
+/* Gives the old file, where there is one, a second name; where the file system has no such links, another name. */
+static bool keep_old(tool *t, tool_output *output) {
+    int number;
+    bool kept = access(output->target, F_OK) != 0;
+    for (number = 0; !kept && number < MOST_NAMES; ++number) {
+        free(output->kept);
+        output->kept = name_beside(t, output->target, number);
+        if (!output->kept) return false;
+        kept = link(output->target, output->kept) == 0;
+        if (!kept && errno != EEXIST)
+            kept = access(output->kept, F_OK) != 0 && rename(output->target, output->kept) == 0;
+    }
+    if (kept) return true;
+    free(output->kept);
+    output->kept = NULL;
+    return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: the old file cannot be moved: %s", output->path,
+                strerror(errno));
+}
+
+/* Puts back what was at the places of the first `count` outputs. */
+static void put_back(tool *t, int32_t count) {
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        tool_output *output = &t->output[i];
+        if (!output->path || output->device) continue;
+        if (output->kept && rename(output->kept, output->target) != 0) {
+            fputs("guidedproj: the old file is now ", stderr);
+            print_plain(stderr, output->kept);
+            fputc('\n', stderr);
+        } else if (output->kept)
+            unlink(output->kept); /* renaming does nothing where both are names of one file */
+        else if (!output->temporary)
+            unlink(output->target); /* there was none */
+        free(output->kept);
+        output->kept = NULL;
+    }
+}
+
+/* Renames all new files to their places; where one cannot be, the old files return. */
+static bool put_in_place(tool *t) {
+    int32_t i;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        tool_output *output = &t->output[i];
+        if (!output->temporary) continue;
+        if (!keep_old(t, output) || rename(output->temporary, output->target) != 0) {
+            fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
+            put_back(t, i + 1);
+            return false;
+        }
+        free(output->temporary);
+        output->temporary = NULL;
+    }
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        tool_output *output = &t->output[i];
+        if (!output->path || output->device) continue;
+        if (output->kept) unlink(output->kept);
+        free(output->kept);
+        output->kept = NULL;
+        write_folder_through(output->target);
+    }
     return true;
 }
 
-/* All outputs are complete beside their places before the first is put there. */
+/* All outputs are complete on the disk before the first is put in its place. */
 static bool write_outputs(tool *t) {
-    int32_t i;
+    bool good;
     if (!write_output(t, &t->output[OUTPUT_PICTURE], write_picture) ||
         !write_output(t, &t->output[OUTPUT_FORCES], write_forces) ||
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
@@ -2598,22 +2788,25 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
-    for (i = 0; i < OUTPUT_COUNT; ++i) {
-        tool_output *output = &t->output[i];
-        if (!output->temporary) continue;
-        if (rename(output->temporary, output->target) != 0)
-            return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
-        free(output->temporary);
-        output->temporary = NULL;
-    }
-    return true;
+    hold_signals(true);
+    good = put_in_place(t);
+    hold_signals(false);
+    return good;
+}
+
+/* What was printed must have arrived, too. */
+static bool finish_printing(tool *t) {
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return true;
+    return fail(t, EXIT_REFUSED, "standard output cannot be written: %s", strerror(errno ? errno : EIO));
 }
 
 static void print_mesh(const tool *t) {
     const gproj_mesh *mesh = t->mesh;
     int32_t degree, shown = 0;
-    printf("%s: %ld vertices, %ld edges, %ld faces (", file_name(t->input), (long)mesh->vertex_count,
-           (long)mesh->edge_count, (long)mesh->face_count);
+    print_plain(stdout, file_name(t->input));
+    printf(": %ld vertices, %ld edges, %ld faces (", (long)mesh->vertex_count, (long)mesh->edge_count,
+           (long)mesh->face_count);
     for (degree = next_degree(mesh, 0); degree > 0 && shown < 6; degree = next_degree(mesh, degree), ++shown)
         printf("%s%ld of %ld sides", shown ? ", " : "", (long)count_degree(mesh, degree), (long)degree);
     printf("%s), %ld boundary loop%s\n", degree > 0 ? ", ..." : "", (long)mesh->loop_count,
@@ -2704,7 +2897,9 @@ static void print_summary(const tool *t) {
 static bool start_threads(tool *t) {
     t->host.clock.now = now;
     if (t->threads < 2) return true;
+    hold_signals(true); /* they are for the main thread */
     t->pool = gprojx_threads_create(t->threads);
+    hold_signals(false);
     if (!t->pool) return fail(t, EXIT_MEMORY, "%ld threads cannot be had", (long)t->threads);
     t->host.parallel = gprojx_threads_hook(t->pool);
     return true;
@@ -2719,14 +2914,14 @@ static bool run(tool *t) {
     t->setup_seconds = now(NULL) - mark;
     if (!solve(t) || !make_offset(t) || !write_outputs(t)) return false;
     if (!t->quiet) print_summary(t);
-    return true;
+    return finish_printing(t);
 }
 
 static void clean_up(tool *t) {
     int32_t i;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
         if (t->output[i].temporary) unlink(t->output[i].temporary);
-        free(t->output[i].temporary), free(t->output[i].target);
+        free(t->output[i].temporary), free(t->output[i].kept), free(t->output[i].target);
     }
     gproj_form_destroy(t->form);
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
@@ -2747,15 +2942,20 @@ int main(int argc, char **argv) {
     memset(&t, 0, sizeof t);
     t.start = now(NULL);
     t.threads = 1;
+    t.file_limit = 1024;
+    watch_signals(&t);
     if (read_command_line(&t, argc, argv)) {
         if (t.help)
-            print_help();
+            print_help(), finish_printing(&t);
         else if (t.version)
-            puts("guidedproj " TOOL_VERSION);
+            puts("guidedproj " TOOL_VERSION), finish_printing(&t);
         else if (run(&t))
             t.exit_code = verdict_code(&t);
     }
     exit_code = t.exit_code;
+    hold_signals(true);
     clean_up(&t);
+    running = NULL;
+    hold_signals(false);
     return exit_code;
 }
