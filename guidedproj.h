@@ -22822,13 +22822,6 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
     return others ? half : wanted ? gproji_min(5, half) : 0;
 }
 
-/* How long wishes last that do not say so. In equilibrium they keep the shape away from it, and the longer the farther:
-   then they get 9 iterations at most. */
-GPROJI_INTERNAL int32_t gproji_guided_iterations(const gproj_form *form, int32_t iterations) {
-    bool forces = form->statics && gproji_is_on(form, form->statics->group);
-    return forces ? gproji_min(9, gproji_half(iterations)) : gproji_half(iterations);
-}
-
 /* -- local unknowns -- */
 
 /* Faces, one after the other, whose local unknowns a thread settles. */
@@ -22941,7 +22934,11 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
     gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
-    solve->default_last = gproji_guided_iterations(form, smooth ? gproji_min(iterations, 20) : iterations);
+    /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away from it,
+       and the longer the farther: then they get 9 at most. */
+    solve->default_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
+    if (form->statics && gproji_is_on(form, form->statics->group))
+        solve->default_last = gproji_min(9, solve->default_last);
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
     return solve->on;
@@ -22968,22 +22965,18 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     if (gproji_has_group_on(form, "conicality")) gproji_tell_flat_cones(form, result);
 }
 
-/* Has the solve led beyond the coordinates that a mesh may have? */
-GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
+/* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has ended. */
+GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     const double *x = gproj_system_values(form->system);
+    gproj_result *result = &form->solve.loop.result;
+    bool beyond = false;
     int32_t i, k;
-    for (i = 0; i < form->mesh->vertex_count; ++i) {
+    for (i = 0; i < form->mesh->vertex_count && !beyond; ++i) {
         double p[3];
         gproji_from_internal(form, x + 3 * (size_t)i, p);
-        for (k = 0; k < 3; ++k)
-            if (!(fabs(p[k]) <= GPROJI_COORDINATE_MAX)) return true;
+        for (k = 0; k < 3; ++k) beyond = beyond || !(fabs(p[k]) <= GPROJI_COORDINATE_MAX);
     }
-    return false;
-}
-
-/* Ends a solve that has led beyond all coordinates, which are not written. */
-GPROJI_INTERNAL gproj_result gproji_end_beyond(gproj_form *form) {
-    gproj_result *result = &form->solve.loop.result;
+    if (!beyond) return false;
     form->solve.on = false, form->solve.finished = true;
     gproji_load_positions(form);
     result->outcome = GPROJ_STALLED;
@@ -22991,7 +22984,7 @@ GPROJI_INTERNAL gproj_result gproji_end_beyond(gproj_form *form) {
         result->message, sizeof result->message,
         "the steps have led beyond coordinates of 1e70, so the mesh is left where it was: ask for less, or fix "
         "vertices");
-    return *result;
+    return true;
 }
 
 /* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
@@ -23006,7 +22999,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
     if (ended) solve->on = false, solve->finished = true;
     if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
-    if (gproji_is_beyond(form)) return gproji_end_beyond(form);
+    if (gproji_ends_beyond(form)) return solve->loop.result;
     gproji_store_positions(form, form->before);
     if (ended) gproji_finish_solve(form);
     return solve->loop.result;
@@ -23042,14 +23035,7 @@ GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_resul
     return exact ? a->spoiled.total < b->spoiled.total : a->residual < b->residual;
 }
 
-/* Puts the mesh and the variables where a solve began; `started`: the forces had values then. */
-GPROJI_INTERNAL void gproji_rewind(gproj_form *form, const double *start, bool started) {
-    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
-    memcpy(form->system->x, start, (size_t)form->system->variable_count * sizeof *start);
-    if (form->statics) form->statics->started = started;
-}
-
-/* Puts the variables where an attempt has ended, and all that is said of them. */
+/* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
 GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     memcpy(form->system->x, end, (size_t)form->system->variable_count * sizeof *end);
     gproji_restart_gliding(form);
@@ -23060,35 +23046,47 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_store_positions(form, form->before);
 }
 
-/* The seconds of all phases. */
-GPROJI_INTERNAL void gproji_add_seconds(gproj_result *result, const gproj_result *other) {
-    int32_t k;
-    for (k = 0; k < GPROJ_PHASE_COUNT; ++k) result->seconds[k] += other->seconds[k];
-}
-
-/* Attempts with steps of different stiffness: how a path begins decides where it leads. The best end counts. `start`, `end`:
-   one number a variable, the first with the values at hand. */
-GPROJI_INTERNAL gproj_result gproji_solve_in_attempts(gproj_form *form, int32_t iterations,
-                                                      const gproj_solve_options *options, const double *start,
-                                                      double *end) {
-    size_t size = (size_t)form->system->variable_count * sizeof *end;
-    bool started = form->statics && form->statics->started;
-    double begun = gproji_now(form->system);
+/* A solve that may begin again, with steps of different stiffness: how a path begins decides where it leads. The best end
+   counts. All attempts share the iterations and the time. */
+GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
+                                                 const gproj_solve_options *options) {
+    gproj_system *s = form->system;
+    size_t count = (size_t)s->variable_count, positions = 3 * (size_t)form->mesh->vertex_count;
+    double *start = (double *)gproji_take(&form->own, count, sizeof *start);
+    double *end =
+        (double *)gproji_take(&form->own, count, sizeof *end); /* of the best attempt, if it was not the last */
+    double begun = gproji_now(s);
+    bool started = form->statics && form->statics->started, here = true;
     gproj_solve_options how = *options;
-    gproj_result result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
-    int32_t used = result.iterations, attempt = 1;
-    bool here = true;
-    for (; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result); ++attempt) {
+    gproj_result result;
+    int32_t used, attempt = 1, k;
+    if (!start || !end) {
+        gproji_give(&form->own, start, count, sizeof *start);
+        gproji_give(&form->own, end, count, sizeof *end);
+        gproji_fail_memory(&form->error);
+        return gproji_failed_result(&form->error);
+    }
+    memcpy(start, s->x, count * sizeof *start);
+    result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
+    for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result); ++attempt) {
         gproj_result other;
+        /* 1. Is there enough left for another one? */
         if (iterations - used < GPROJI_ATTEMPT_LEAST) break;
-        if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(form->system) - begun);
+        if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
-        if (here) memcpy(end, form->system->x, size);
-        gproji_rewind(form, start, started);
+        /* 2. Back to the start, forces included, and again. */
+        if (here) memcpy(end, s->x, count * sizeof *end);
+        memcpy(form->mesh->position, form->before, positions * sizeof *form->before);
+        memcpy(s->x, start, count * sizeof *start);
+        if (form->statics) form->statics->started = started;
         other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
         used = other.iterations;
+        /* 3. The better of the two; its seconds are those of all attempts. */
         here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || gproji_ends_better(&other, &result);
-        gproji_add_seconds(here ? &other : &result, here ? &result : &other);
+        for (k = 0; k < GPROJ_PHASE_COUNT; ++k) {
+            double seconds = result.seconds[k] + other.seconds[k];
+            result.seconds[k] = other.seconds[k] = seconds;
+        }
         if (here) result = other;
     }
     result.attempts = attempt;
@@ -23097,23 +23095,6 @@ GPROJI_INTERNAL gproj_result gproji_solve_in_attempts(gproj_form *form, int32_t 
         size_t length = strlen(result.message);
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
                       attempt);
-    }
-    return result;
-}
-
-/* A solve that may begin again. */
-GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
-                                                 const gproj_solve_options *options) {
-    size_t count = (size_t)form->system->variable_count;
-    double *start = (double *)gproji_take(&form->own, count, sizeof *start);
-    double *end = (double *)gproji_take(&form->own, count, sizeof *end);
-    gproj_result result;
-    if (start && end) {
-        memcpy(start, form->system->x, count * sizeof *start);
-        result = gproji_solve_in_attempts(form, iterations, options, start, end);
-    } else {
-        gproji_fail_memory(&form->error);
-        result = gproji_failed_result(&form->error);
     }
     gproji_give(&form->own, start, count, sizeof *start);
     gproji_give(&form->own, end, count, sizeof *end);
