@@ -10436,50 +10436,49 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. These
-   are small where dx is, so that rounding of phi never makes a short step look like one that raises M. A step that would
-   raise it is shortened to the t of smallest merit; where no t lowers it, the step is found again with a larger eps, as
-   in the method of Levenberg (1944) and Marquardt (1963). Where no eps helps, x is at a minimum; that is a verdict on what
-   must hold only after wishes and others have gone as they are scheduled, so iterations are left out until then. Near the
-   end and without wishes, a step along which the merit goes on falling beyond t = 1 is lengthened: at singular points of
-   the constraints Newton's steps are half of what is needed.
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. Products
+   are small if dx is, so rounding of phi never makes a short step look like one that raises M. A step that would raise it is
+   shortened to the t of smallest merit; if no t lowers it, the step is found again with a larger eps, as in the method by
+   Levenberg (1944) and Marquardt (1963). If no eps helps, x is at a minimum; that is a verdict on the constraints only after
+   wishes have faded as scheduled, so iterations are left out until then. Near the end and without wishes, a step along which
+   the merit goes on falling beyond t = 1 is lengthened: at singular points Newton's steps are half as long as needed.
 
-   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, where a bound's row counts
-   only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
-   with those that are violated by it (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
-   Newton method, 2003). The first guess is what is violated at x and what acted on the last step. The merit is then
+   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, with a bound's row
+   counted only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
+   with those that it violates (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
+   Newton method, 2003). The first guess: rows violated at x, and rows that acted on the last step. The merit is then
    piecewise of degree 4 with a continuous slope.
 
-   Steps are measured by |dx|, or by what an owner finds better. The rows of metric groups (of a form: differences of the
-   displacement along edges) add
+   Steps are measured by |dx|, or in a norm of the owner's. Rows of metric groups (in a form: differences of the displacement
+   along edges) add
        k^2 sum (w g'dx)^2,    k the stiffness
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place, so
    they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the agreement
-   of the model with what a step achieves, as a trust region does: by a tenth where they agree, up where a step fails or
-   falls short. When it has become small near a solution the metric rests and the last steps are Newton's. A metric that is a
-   brake (of a form: how forces change) acts with k (k - 1) instead, and not at all for k < 1: where steps fail.
+   of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or falls short. Once
+   it is small near a solution the metric rests and the last steps are Newton's. A metric that is a brake (in a form: changes
+   of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these are,
    while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The differentiation of
    pseudo-inverses and nonlinear least squares problems whose variables separate, 1973). Full steps are good then that had
    to be cut to a fifth without it, and their number hardly depends on how fine a mesh is.
 
-   The path from x to what must hold is curved, and where it is narrow a straight step leaves it at once. How wrong the
-   linearised rows are at the end of a step is known exactly, and the factor at hand says what to add to it: a second-order
-   correction for the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
+   The path from x to the constraints' set is curved, and a straight step leaves a narrow one at once. The error of the
+   linearised rows at the end of a step is known exactly, and the factor at hand turns it into a second-order correction for
+   the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
    least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need 25
    iterations without it need 9 (test_smooth).
 
-   A safeguard (gproji_group.safeguard) has rows only where a step has violated it (hooks.inspect, hooks.wake). It acts as a
-   bound, and is let go where no step is found with it: what must hold comes first, and the verdict tells what was spoiled. */
+   A safeguard (gproji_group.safeguard) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound,
+   and is let go if no step is found with it: constraints come first, and the verdict tells the damage. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
-static const double gproji_tolerance_most = 1e-8; /* of what rounding allows by max |x| */
+static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.1;
-/* A step that lowers the merit by less than this part of what the linearised rows promise is bent, by at most so much of the
-   square of its length. */
+/* A step that lowers the merit by less than this part of the linearised rows' promise is bent, by at most so much of the
+   square of the step's length. */
 static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 /* A step that lowers the merit to so much need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
@@ -10491,9 +10490,9 @@ static const double gproji_settled = 1e-3;   /* residual below which refreshes m
 static const double gproji_shortest = 0.125; /* part of a step whose local unknowns are settled */
 enum {
     GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
-    GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again where it meets bounds */
+    GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again with other active bounds */
     GPROJI_PATIENCE = 5,        /* iterations without progress before the loop stops, */
-    GPROJI_PATIENCE_STIFF = 12, /* and where there is a metric */
+    GPROJI_PATIENCE_STIFF = 12, /* and with a metric */
     GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
     GPROJI_WAKINGS = 4,         /* from then on no row of the guard waits */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
@@ -10504,16 +10503,16 @@ enum {
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
 };
 
-/* Where the rows stand: sums over all groups with their present weights. */
+/* The state of all rows: sums over the groups with their present weights. */
 typedef struct gproji_standing {
     double merit;    /* sum w^2 phi^2 */
     double energy;   /* the wishes' part of it */
-    double residual; /* largest |phi| of what must hold, with weight > 0 */
-    int32_t group;   /* where that is; -1 where nothing must */
+    double residual; /* largest |phi| of the constraints and bounds with weight > 0 */
+    int32_t group;   /* the group with it; -1: there is no constraint */
     int32_t row;
 } gproji_standing;
 
-/* What a solve carries along, from one run to the next where it is cut into frames (gproji_run). */
+/* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
@@ -10532,9 +10531,10 @@ typedef struct gproji_loop {
     int32_t earlier;      /* iterations of earlier attempts */
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
-    double epsilon_least; /* the least that follows the residual: gproji_epsilon_min, smaller where steps fall short */
+    double
+        epsilon_least; /* lower end of the eps that follows the residual: gproji_epsilon_min, less if steps fall short */
     bool stiff;           /* metric groups have a weight in this solve */
-    double agreement;     /* what the full step took off the merit, over what the linearised rows said */
+    double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     bool factored;        /* the last attempt found a step, whether good or not */
     bool failed;          /* an attempt of this iteration was not good */
     int32_t wary;         /* iterations in which the stiffness does not fall fast */
@@ -10542,8 +10542,8 @@ typedef struct gproji_loop {
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row, which has no other's and is no run, to change their coefficients in place; for what they
-   name see gproji_variable_of. */
+/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells the
+   variables. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     GPROJ_ASSERT(!g->common && !g->row[row].run);
@@ -10663,7 +10663,7 @@ typedef struct gproji_pass {
     gproj_system *system;
     double t;
     int32_t tasks;
-    double largest[GPROJI_PASS_TASKS]; /* what each task has found; infinite where it met what is no number */
+    double largest[GPROJI_PASS_TASKS]; /* found by each task; infinite if it met a NaN */
 } gproji_pass;
 
 /* Makes the pass; returns the largest number found. */
@@ -10741,7 +10741,7 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* max |x| of the variables of rows that must hold; `all` where none must. */
+/* max |x| over the variables in rows of constraints and bounds; `all` if there are none. */
 GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
     double largest = 0;
     int64_t l;
@@ -10768,7 +10768,7 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     double tolerance, extent;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
-    /* 1. Rounding of single variables. One far away that no row names raises nothing; it is looked for only where it would. */
+    /* 1. Rounding of single variables. A stray one that no row names must not raise it. */
     extent = gproji_pass_over(s, 0, gproji_extent_task);
     if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
     tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
@@ -10791,8 +10791,8 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     return gproji_fmin(tolerance, gproji_tolerance_most);
 }
 
-/* The largest noise of the evaluated rows that are above the tolerance: 4 roundings of sum_k |dphi/dx_k x_k|. Infinite where
-   one of them is above its own noise, too: that is no matter of rounding. */
+/* The largest noise, 4 roundings of sum_k |dphi/dx_k x_k|, among rows above the tolerance. Infinite if a row is above its own
+   noise, too: rounding does not explain it. */
 GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
     const gproj_system *s = loop->system;
     double largest = 0;
@@ -10861,7 +10861,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     return true;
 }
 
-/* x = saved + t dx; returns the largest |t dx|, infinite where it is not a number. */
+/* x = saved + t dx; returns the largest |t dx|, infinite if it is not a number. */
 GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
@@ -10870,13 +10870,13 @@ GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
 
 /* The merit along a step: c[0] + c[1] t + ... + c[4] t^4 + sum w^2 min(0, phi + t h + t^2 q)^2 over the hinges. */
 typedef struct gproji_course {
-    double model; /* sum w^2 (phi + h)^2, what the linearised rows make of the full step */
+    double model; /* sum w^2 (phi + h)^2, the linearised rows' prediction for the full step */
     double c[5];
     int64_t count;
     const gproji_hinge *hinge;
 } gproji_course;
 
-/* M(t) along dx, for rows linearised where it begins: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. */
+/* M(t) along dx, for rows linearised at its beginning: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -10978,8 +10978,8 @@ GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
     if (s->hooks.settle) s->hooks.settle(s->hooks.user, s);
 }
 
-/* Linearises rows at x, where t of the step has led and local unknowns are settled, and returns the true merit. Where that
-   is above what it is without settling, which `course` knows, they stay as the step has made them. */
+/* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is above
+   the merit without settling, which `course` knows, local unknowns stay as the step has made them. */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit, plain;
@@ -11003,7 +11003,7 @@ GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_cours
     return gproji_arrive(loop, t, course);
 }
 
-/* The squared length of the step without what belongs to auxiliary variables. */
+/* The squared length of the step, auxiliary variables left out. */
 GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     double sum = 0;
     int32_t v;
@@ -11012,8 +11012,8 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     return sum;
 }
 
-/* Bends the full step, which has led to x and left `merit`: adds what the factor at hand makes of the linearised rows'
-   discrepancy there. Returns the merit at x then; the rows' phi are no more those of where the step began. */
+/* Bends the full step, which has led to x and left `merit`: adds the factor's answer to the linearised rows' discrepancy
+   there. Returns the merit at the new x; afterwards phi of the rows no longer belongs to the step's beginning. */
 GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
     gproj_system *s = loop->system;
     double *straight = s->gradient; /* free when the step is found */
@@ -11037,7 +11037,7 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         straight[v] = s->x[v] - s->saved[v];
         s->step[v] += straight[v];
     }
-    /* 3. The bent step where it lowers the merit further, else the straight one. */
+    /* 3. The bent step if it lowers the merit further, else the straight one. */
     if (bends) {
         double bent = gproji_go(loop, 1, course);
         if (bent < merit) return bent;
@@ -11080,7 +11080,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     return t >= 1.3 ? t : 1;
 }
 
-/* Lets the bounds' rows act where they are violated at the present x, and nowhere else. */
+/* Activates exactly the bounds' rows that are violated at the present x. */
 GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
@@ -11090,9 +11090,9 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
 }
 
 /* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again. A
-   row should act where the step would violate it by more than a part of the residual, in itself and linearised (of a convex
-   row the tangent alone would say so too early); where it acts already, as long as it does not hold the step back. The guard
-   looks where the step leads, in the first round, and keeps its rows. */
+   row should act if the step would violate it by more than a part of the residual, in itself and linearised (the tangent of a
+   convex row alone would say so too early); a row that acts already goes on until it holds the step back. The guard looks at
+   the end of the step, in the first round, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
@@ -11146,8 +11146,8 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
-/* Compiles again during a solve: `anew`, or where steps are found by multipliers and a group gets its first weight. x is
-   where the step begins, and s->saved then too. Returns whether rows were compiled; there may be an error. */
+/* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is the
+   beginning of the step, and s->saved afterwards too. Returns whether rows were compiled; there may be an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
@@ -11159,7 +11159,7 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     return true;
 }
 
-/* Finds the full step with this eps, again where it meets bounds and safeguards, and goes there. False: there is none. */
+/* Finds the full step with this eps, again if it meets bounds and safeguards, and takes it. False: there is none. */
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t round = 0, violations = 0;
@@ -11198,7 +11198,7 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     return good;
 }
 
-/* Sets the stiffness of steps, x being where the next one begins. Metric groups that come back by that are compiled, where
+/* Sets the stiffness of steps, x being the beginning of the next one. Metric groups that come back by that are compiled, if
    they are not, and linearised. */
 GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     gproj_system *s = loop->system;
@@ -11214,7 +11214,7 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
 }
 
-/* After an attempt that was not good: stiffer steps, or a larger eps where that is not what was missing. */
+/* After an attempt that was not good: stiffer steps, or a larger eps if stiffness is no help. */
 GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
     if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
         loop->failed = true;
@@ -11242,7 +11242,7 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
              (factor > 1 && loop->standing.residual > gproji_stiffness_ends))
         gproji_stiffen(loop, gproji_stiffness_least);
-    else if (s->stiffness > 0) { /* the metric rests: steps may be found by multipliers then, where that pays */
+    else if (s->stiffness > 0) { /* the metric rests: then steps are found by multipliers, if that pays */
         gproji_stiffen(loop, 0);
         for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
         if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
@@ -11313,7 +11313,7 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
-/* What comes before iteration n: its weights, and rows that they or the caller have changed. */
+/* Prepares iteration n: weights, and rows that they or the caller have changed. */
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
@@ -11326,7 +11326,7 @@ GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_
     loop->standing = gproji_take_standing(s);
 }
 
-/* The caller's turn; its time belongs to no phase. False: stop. */
+/* Calls the caller's function; no phase is charged for it. False: stop. */
 GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
     bool go_on = true;
     if (loop->options.on_iteration)
@@ -11335,8 +11335,8 @@ GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
     return go_on;
 }
 
-/* What the callback, or the caller between two runs, has changed counts before anything is judged. Returns whether there
-   was something. */
+/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether there
+   were any. */
 GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     if (!loop->system->changed) return false;
     gproji_set_weights(loop->system, gproji_max(1, loop->result.iterations));
@@ -11344,8 +11344,8 @@ GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     return true;
 }
 
-/* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of what must hold, in
-   which nothing would be different. False: that is all the others. */
+/* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of constraints, in
+   which nothing would be different. False: these are all that remain. */
 GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     const gproj_system *s = loop->system;
     int32_t end = INT32_MAX, i;
@@ -11364,7 +11364,7 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     return true;
 }
 
-/* Where no step is found with a safeguard, lets it go: what must hold comes first. False: there is none. */
+/* Lets all safeguards go, when no step is found with them: constraints come first. False: there is none. */
 GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool released = false;
@@ -11455,7 +11455,7 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     return sum <= 0.01 * size;
 }
 
-/* What is in the way of constraints that do not hold, and what to do. */
+/* Writes the obstacle of constraints that do not hold, and advice. */
 GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
@@ -11494,7 +11494,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       g->name);
 }
 
-/* The verdict in a sentence: what happened, where it is worst, what fights, what to do. */
+/* Writes the verdict in a sentence: outcome, worst row, obstacle, advice. */
 GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
     const gproj_system *s = loop->system;
@@ -11637,7 +11637,7 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
-    /* 2. Steps with the same factor, until G dx = -phi: each time phi becomes what the model leaves of a constraint,
+    /* 2. Steps with the same factor, until G dx = -phi: each time phi becomes the model's remainder of a constraint,
        phi + G dx, and y rises by it; wishes are served by the first one. */
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
     for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
@@ -11686,11 +11686,11 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
     return changed;
 }
 
-/* Finds a slide, again where it meets bounds. */
+/* Finds a slide, again if it meets bounds. */
 GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
     int32_t round, i, r;
-    /* 1. Bounds act first where they are violated or have a multiplier. */
+    /* 1. Bounds act first if they are violated or have a multiplier. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) {
@@ -11706,7 +11706,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
                     if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
             continue;
         }
-        /* 3. Multipliers of bounds are not positive: what is left of them. */
+        /* 3. Multipliers of bounds are not positive: limits their rise. */
         for (i = 0; i < s->group_count; ++i)
             for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
                 gproji_multiplier *multiplier = &s->group[i].multiplier[r];
@@ -11718,7 +11718,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
 }
 
 /* The augmented Lagrangian sum w^2 (phi^2 + 2 y phi) at x with the risen multipliers, and its slope along the step if
-   x is where rows were linearised. A bound's row adds -w^2 y^2 where phi > -y. */
+   rows were linearised at x. A bound's row adds -w^2 y^2 if phi > -y. */
 GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x, double *slope) {
     double value = 0;
     int32_t i, r;
@@ -11741,7 +11741,7 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
     return value;
 }
 
-/* phi of what must hold and acts at x, without gradients; 0 for other rows. Returns the sum of w^2 phi^2. */
+/* Evaluates phi of active constraints and bounds at x, without gradients; 0 for other rows. Returns sum w^2 phi^2. */
 GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
     double sum = 0;
     int32_t i, r;
@@ -11757,7 +11757,7 @@ GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
     return sum;
 }
 
-/* Leads x back to what must hold with the factor and the gradients of the slide, as long as that works. */
+/* Leads x back to the constraints with the factor and the gradients of the slide, as long as that works. */
 GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
     double before = HUGE_VAL, now = gproji_evaluate_constraints(s);
     int32_t k, v;
@@ -11826,8 +11826,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* How far (1) is from holding at x, for y as it is: the norm of the left side over that of its wishes' part, row by
-   row. The smallest over all y would be the norm of the gradient projected to the tangent space of what must hold. */
+/* The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by row. The least
+   over all y would be the norm of the gradient projected to the tangent space of the constraints. */
 GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     double wishes = 0, left = 0;
     int64_t l;
@@ -11923,7 +11923,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     return gproji_is_nearest(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
-/* The verdict's sentence where the constraints hold, and how near the nearest is. */
+/* Writes the verdict's sentence if the constraints hold, and how near the nearest is. */
 GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
     const char *plural = r->iterations == 1 ? "" : "s", *more = "";
@@ -11946,8 +11946,8 @@ GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
 
 /* -- runs: a solve, or a part of it -- */
 
-/* Makes a loop for a solve of this system. Where that is refused the result says why: options that mean nothing are an error
-   of the call, not of the system. */
+/* Makes a loop for a solve of this system. If that is refused the result says why: meaningless options are an error of
+   the call, not of the system. */
 GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32_t iterations,
                                        const gproj_solve_options *options) {
     const gproj_solve_options *o = &loop->options;
@@ -12000,7 +12000,7 @@ GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
     loop->begun = true;
 }
 
-/* A further run begins, with what has been changed since the last one. */
+/* A further run begins, with all changes since the last one. */
 GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
@@ -12055,7 +12055,7 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     return loop.result;
 }
 
-/* The v-th of the variables that a row names, two a term; -1 where a linear term has no second one. */
+/* The v-th of the variables that a row names, two a term; -1 for the second one of a linear term. */
 GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
     return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
 }
@@ -22037,15 +22037,15 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    >>corners   Faces keep their corners. Uses platform, memory, error, vector, system, loop, mesh, measure, form,
    guard.
 
-   What must hold can be met by elements that are none: a planar face may be folded or turned over in its plane, a circular
-   one may have lost an edge. So every corner of a face keeps a part of its area
-       m'((b - a) x (c - b)) >= part of what it was                                                                  (1)
-   with the vertices a, b, c, and m the face's normal at x (n of the planar faces) or the one that it had when the solve
-   began, which keeps it from turning. A face with corners like that is convex and its edges have lengths; there is no
-   bow-tie. Corners that had no such area when the solve began are let go.
+   Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular one may
+   have lost an edge. So every corner of a face keeps a part of the area that it had
+       m'((b - a) x (c - b)) >= part m0'((b0 - a0) x (c0 - b0))                                                      (1)
+   with the vertices a, b, c, and m the face's normal at x (the variables of planar faces) or the normal m0 at the beginning
+   of the solve, which keeps the face from turning. Such faces are convex, without bow-ties, and all edges have a length.
+   Corners without such an area at the beginning are let go.
 
    A row asks for no more than its corner has when it is linearised, or a floor: corners may shrink as far as they must, but
-   slowly, and what must hold is not held up by a wish for more.
+   slowly, and a wish for more does not hold up the constraints.
 
    Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are near
    to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22055,8 +22055,7 @@ static const double gproji_corner_wanted = 0.3;  /* part of its area that the ro
 static const double gproji_corner_least = 0.2;   /* and that below which it gets one */
 static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
 static const double gproji_corner_turned = 0.05;
-static const double gproji_corner_floor = 0.1,
-                    gproji_corner_upright_floor = 0.04; /* what a smaller corner is asked for */
+static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
 static const double gproji_corner_none = 1e-3; /* of corners that are let go */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
@@ -22074,7 +22073,7 @@ GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x,
     gproji_cross3(p, q, out);
 }
 
-/* The unit normal of a face as its variables say at x; of one without them, that of its area at `frozen`. */
+/* The unit normal of a face from its variables at x; for a face without them, from its vectorial area at `frozen`. */
 GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *x, const double *frozen, int32_t face,
                                           double out[3]) {
     static const double none[3] = {0, 0, 0};
@@ -22259,7 +22258,7 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     if (guard->group >= 0) form->system->group[guard->group].safeguard = true;
 }
 
-/* What the corners have when the solve begins. */
+/* Measures the corners at the beginning of the solve. */
 GPROJI_INTERNAL void gproji_measure_corners(gproj_form *form) {
     const double *x = gproj_system_values(form->system);
     const gproj_mesh *mesh = form->mesh;
@@ -22295,13 +22294,13 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
    >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh, measure,
    form, catalogue, statics, guard.
 
-   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and where it is missing,
-   what could not hold from the beginning, and what has been spoiled on the way. Each function below appends a clause to the
-   sentence, or nothing. They run when a solve has ended, so its step and its saved x are free for work. */
+   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and which vertices lack it,
+   which demands could never hold, and which damage was done on the way. Each function below appends a clause to the
+   sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
-/* The three rows of equilibrium with the largest |phi|, of different vertices; -1 where there are fewer. */
+/* Finds the three rows of equilibrium with the largest |phi|, of different vertices; -1 if there are fewer. */
 GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3]) {
     const gproji_group *g = &form->system->group[form->statics->group];
     double phi[3] = {0, 0, 0};
@@ -22331,8 +22330,8 @@ GPROJI_INTERNAL bool gproji_has_group_on(const gproj_form *form, const char *nam
     return false;
 }
 
-/* Says that no equilibrium was found, which one, and where it is missing. Returns whether it, or a bound on forces, is what
-   does not hold. */
+/* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a bound on
+   forces, does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     bool up = gproji_has_group_on(form, gproji_compression_name), down = gproji_has_group_on(form, gproji_tension_name);
@@ -22354,7 +22353,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     return true;
 }
 
-/* Says where a shape that hung was asked to stand, or the opposite, and has been turned over for that. */
+/* Says that a hanging shape was asked to stand, or the opposite, and has been turned over for that. */
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     size_t length = strlen(result->message);
@@ -22366,10 +22365,10 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
                   stands ? "compression" : "tension", s->lost[0]);
 }
 
-/* -- what cannot hold at all -- */
+/* -- demands that can never hold -- */
 
-/* held[i] = 1 for coordinates that a constraint prescribes by a row with a single term, value[i]: where; else 0. Returns
-   the number of vertices that are held altogether. */
+/* Marks coordinates that a constraint prescribes by a row with a single term: held[i] = 1, value[i] the prescribed value;
+   else both are 0. Returns the number of vertices with three such coordinates. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
     int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
     memset(held, 0, (size_t)coordinates * sizeof *held);
@@ -22489,7 +22488,7 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
     return found;
 }
 
-/* Says what stands in the way of equilibrium whatever the shape, if there is such a thing, and what holds it back most. */
+/* Says which demand excludes equilibrium of any shape, or else which constraint holds it back most. */
 GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
     int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
     size_t length = strlen(result->message), size = sizeof result->message - length;
@@ -22513,8 +22512,8 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
     }
 }
 
-/* Equilibrium to the tolerance says nothing where the loads themselves are below it: where the mesh has shrunk to a
-   point, or beside huge forces. */
+/* Doubts equilibrium to the tolerance if the loads themselves are below it: on a mesh that has shrunk to a point, or beside
+   huge forces. */
 GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
     static const double noticeable = 1e-3;
     const gproji_statics *s = form->statics;
@@ -22557,8 +22556,8 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     }
 }
 
-/* Does a row hold vertices in space: linear in them, and not the same wherever the mesh is moved to; or quadratic in
-   them, as lengths and areas are? Differences of vertices, and products with normals, do not hold. */
+/* Does a row hold vertices in space: linear in them and changed by a translation, or quadratic in them, as lengths and areas
+   are? Differences of vertices, and products with normals, do not hold. */
 GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
     int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
@@ -22587,7 +22586,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     return false;
 }
 
-/* -- what else must not be hidden -- */
+/* -- damage -- */
 
 /* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
 GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
@@ -22613,8 +22612,7 @@ GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_da
     }
 }
 
-/* Counts what the whole work, from gproj_form_create on, has spoiled. A mesh can satisfy everything and yet be spoiled:
-   the verdict says so. */
+/* Counts the damage since gproj_form_create. A mesh can satisfy everything and yet be spoiled: the verdict says so. */
 GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
     static const char help[] =
         "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
@@ -22640,7 +22638,7 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     }
 }
 
-/* Circularity alone puts the corners of each face on a sphere: says so where faces are not planar. */
+/* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
 GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
@@ -22661,8 +22659,7 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
                       count, count == 1 ? " is" : "s are", face, worst);
 }
 
-/* The rows of a cone hold with any angles where the normals around a vertex are coplanar: says so where the angles do not
-   add up. */
+/* Says at which vertices the angles do not add up: with coplanar normals the rows of a cone hold with any angles. */
 GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
     double worst = 1e-6;
     size_t length = strlen(result->message);
@@ -22724,8 +22721,8 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     return false;
 }
 
-static const double gproji_settle_shift = 1e-9; /* of the trace, in the inverse iteration for normals */
-static const double gproji_settle_free = 1e-4;  /* and where an axis point is free */
+static const double gproji_settle_shift = 1e-9; /* relative to the trace, in the inverse iteration for normals */
+static const double gproji_settle_free = 1e-4;  /* and for axis points, which are free along the axis */
 enum {
     GPROJI_SETTLE_ROUNDS = 3,
     GPROJI_FACES_PER_TASK = 2048 /* at least, unless there are fewer */
@@ -22734,10 +22731,10 @@ enum {
 /* Half of the iterations, rounded up and at least 1. */
 GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
 
-/* The weight of the differences of a step along edges, and what one of a vertex alone counts beside it. With more of the
-   latter meshes move less and become rough. */
+/* Weights of a step's differences along edges, and of a vertex's displacement relative to that. With more of the latter
+   meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
-static const double gproji_metric_force = 0.3; /* of a change of forces, where steps fail */
+static const double gproji_metric_force = 0.3; /* of changes of forces, once steps fail */
 /* The stiffness with which the attempts of a solve begin. */
 static const double gproji_first_stiffness[] = {1, 10, 3};
 enum {
@@ -22769,8 +22766,8 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     }
 }
 
-/* The group that measures how forces change, once. They are free where all goes well, so that the shape moves no more than it
-   must; where steps fail, as with many forces at their bounds, they are braked, too. */
+/* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more than it
+   must; once steps fail, as with many forces at their bounds, they are braked, too. */
 GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1};
     gproj_system *s = form->system;
@@ -22800,10 +22797,10 @@ GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
     gproj_system_set_schedule(form->system, form->statics->brake, schedule);
 }
 
-/* Where no wish guides, closeness to where this solve begins does, with weights 0.03 * 0.3^n in the first half, at
+/* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
-   ends, 0 without any. Where the nearest mesh is asked for, closeness is what it is nearest by. */
+   ends, 0 without any. If the nearest mesh is asked for, closeness defines "near". */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
     int32_t half = gproji_half(iterations), i;
@@ -22831,8 +22828,8 @@ typedef struct gproji_settling {
     int32_t tasks;
 } gproji_settling;
 
-/* The normal n of a face that makes sum (n'e)^2 over its edges e smallest, with n'n = 1: a few steps of inverse iteration
-   from the n at hand, which keeps its side. */
+/* Settles a face's normal: the unit n with the least sum (n'e)^2 over the edges e, by a few steps of inverse iteration from
+   the n at hand, which keeps its side. */
 GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, const double *x, int32_t face, double n[3]) {
     double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3];
     int32_t h = mesh->face_halfedge[face], c, round;
@@ -22847,8 +22844,8 @@ GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, const double *
     }
 }
 
-/* The axis point p of a circular face that makes sum (e'(m - p))^2 over its edges e with midpoints m smallest, as near as
-   can be to the p at hand: along the axis it is free. */
+/* Settles the axis point of a circular face: the p with the least sum (e'(m - p))^2 over the edges e with midpoints m, as
+   near as can be to the p at hand, because p is free along the axis. */
 GPROJI_INTERNAL void gproji_settle_axis_point(const gproj_mesh *mesh, const double *x, int32_t face, double p[3]) {
     double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, e[3], m[3], change[3];
     int32_t h = mesh->face_halfedge[face], c, k;
@@ -22886,7 +22883,7 @@ GPROJI_INTERNAL void gproji_settle_form(void *user, gproj_system *system) {
         if (form->cone[v] >= 0) gproji_cone_axis(form->mesh, system->x, v, system->x + form->cone[v]);
 }
 
-/* What the form adds to its system's steps in a smooth solve. */
+/* The hooks that a form adds to its system's steps in a smooth solve. */
 GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
     gproji_hooks hooks;
     memset(&hooks, 0, sizeof hooks);
@@ -22902,7 +22899,7 @@ GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
 
 /* -- a solve, at once or in frames -- */
 
-/* A result that says what is wrong with a call and leaves the form as it is. */
+/* A result that says why a call is wrong and leaves the form as it is. */
 GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *sentence) {
     gproj_error error;
     gproji_error_clear(&error);
@@ -23046,7 +23043,7 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_store_positions(form, form->before);
 }
 
-/* A solve that may begin again, with steps of different stiffness: how a path begins decides where it leads. The best end
+/* A solve that may begin again, with steps of different stiffness: the beginning of a path decides its end. The best end
    counts. All attempts share the iterations and the time. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
