@@ -23,6 +23,7 @@
 #include <unistd.h>
 
 #include "picture.h"
+#include "report.h"
 #include "threads.h"
 
 #ifdef GPROJ_VERSION
@@ -87,16 +88,6 @@ typedef struct tool_sides { /* numbers of edges */
     int32_t count, edges[MOST_SIDES];
 } tool_sides;
 
-typedef struct tool_record { /* of one iteration, for the report */
-    gproj_iteration iteration;
-    double planarity_max, planarity_mean;
-    int32_t group_start, group_count; /* in tool.group_record */
-} tool_record;
-
-typedef struct tool_group_record {
-    double weight, norm, max;
-} tool_group_record;
-
 typedef struct tool_output {
     const char *path;
     char *target;    /* the path without symbolic links */
@@ -152,7 +143,7 @@ typedef struct tool {
     /* the work */
     gproj_host host;
     gprojx_threads *pool;
-    gproj_mesh *mesh, *reference_mesh, *probe; /* probe: a copy for measures of intermediate shapes */
+    gproj_mesh *mesh, *reference_mesh;
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
     int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
@@ -170,10 +161,7 @@ typedef struct tool {
     gproj_forces forces;
     gproj_measures before, after;
     double volume_before;
-    tool_record *record;
-    int32_t record_count;
-    tool_group_record *group_record;
-    int32_t group_record_count, group_record_capacity;
+    gprojx_history history; /* with --report */
     double start, read_seconds, setup_seconds, solve_seconds;
     bool bar; /* the last thing on the terminal is the progress bar */
 
@@ -1810,12 +1798,6 @@ static bool build_form(tool *t) {
 
 /* ---- progress ---- */
 
-static double weight_in(const gproj_schedule *schedule, int32_t n) {
-    double decay = schedule->decay > 0 ? schedule->decay : 1;
-    if (schedule->last > 0 && n > schedule->last) return 0;
-    return schedule->weight * pow(decay, n);
-}
-
 static void show_progress(tool *t, const gproj_iteration *iteration) {
     enum {
         WIDTH = 24
@@ -1836,48 +1818,11 @@ static void show_progress(tool *t, const gproj_iteration *iteration) {
     fflush(stderr);
 }
 
-static bool record_groups(tool *t, gproj_system *system, tool_record *record) {
-    int32_t count = gproj_system_group_count(system), i;
-    if (t->group_record_count + count > t->group_record_capacity) {
-        int32_t capacity = 2 * (t->group_record_count + count);
-        void *more = realloc(t->group_record, (size_t)capacity * sizeof *t->group_record);
-        if (!more) return fail_memory(t);
-        t->group_record = (tool_group_record *)more;
-        t->group_record_capacity = capacity;
-    }
-    record->group_start = t->group_record_count;
-    record->group_count = count;
-    for (i = 0; i < count; ++i) {
-        gproj_group_info info = gproj_system_group_info(system, i);
-        tool_group_record *group = &t->group_record[t->group_record_count++];
-        group->weight = weight_in(&info.schedule, record->iteration.number);
-        group->norm = info.rms * sqrt((double)info.rows);
-        group->max = info.max;
-    }
-    return true;
-}
-
-/* The shape as it is now: vertex i is variables 3i .. 3i + 2 in the form's units. Other measures wait for the end. */
-static void measure_now(tool *t, gproj_system *system, tool_record *record) {
-    const double *values = gproj_system_values(system);
-    double centre[3], scale = 1;
-    int32_t i;
-    gproj_form_units(t->form, centre, &scale);
-    for (i = 0; i < 3 * t->probe->vertex_count; ++i) t->probe->position[i] = centre[i % 3] + values[i] / scale;
-    record->planarity_max = gproj_measure_planarity(t->probe, NULL, &record->planarity_mean);
-}
-
 static bool on_iteration(void *user, gproj_system *system, const gproj_iteration *iteration) {
     tool *t = (tool *)user;
     show_progress(t, iteration);
-    if (t->record && t->record_count < t->iterations) {
-        tool_record *record = &t->record[t->record_count];
-        record->iteration = *iteration;
-        if (!record_groups(t, system, record)) return false;
-        measure_now(t, system, record);
-        t->record_count++;
-    }
-    return true;
+    if (!t->history.probe || t->history.record_count >= t->iterations) return true;
+    return gprojx_history_keep(&t->history, t->form, system, iteration) || fail_memory(t);
 }
 
 static bool measure_forces(tool *t) {
@@ -1993,10 +1938,8 @@ static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
 static bool prepare_records(tool *t) {
     gproj_error error;
     if (t->output[OUTPUT_REPORT].path) {
-        t->record = (tool_record *)take(t, (size_t)t->iterations, sizeof *t->record);
-        if (!t->record) return false;
-        t->probe = gproj_mesh_copy(t->mesh, &t->host, &error);
-        if (!t->probe) return fail_library(t, NULL, &error);
+        t->history.probe = gproj_mesh_copy(t->mesh, &t->host, &error);
+        if (!t->history.probe) return fail_library(t, NULL, &error);
     }
     if (t->equilibrium.given && t->output[OUTPUT_PICTURE].path && !t->planar.given) {
         t->imbalance_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->imbalance_before);
@@ -2059,133 +2002,9 @@ static double offset_error(const tool *t) {
     return fmax(fabs(least - wanted), fabs(most - wanted));
 }
 
-/* ---- the report ---- */
+/* ---- the verdict and the report ---- */
 
-typedef struct json {
-    FILE *file;
-    int depth;
-    bool comma; /* something stands before in this object or array */
-    bool row;   /* all of it on one line */
-} json;
-
-static void json_text(json *j, const char *text) {
-    fputc('"', j->file);
-    for (; *text; ++text) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\')
-            fprintf(j->file, "\\%c", c);
-        else if (c < 32 || c == 127)
-            fprintf(j->file, "\\u%04x", c);
-        else
-            fputc(c, j->file);
-    }
-    fputc('"', j->file);
-}
-
-/* Begins a member of an object, or an entry of an array where key is NULL. */
-static void json_next(json *j, const char *key) {
-    if (j->comma) fputc(',', j->file);
-    if (!j->row)
-        fprintf(j->file, "\n%*s", 2 * j->depth, "");
-    else if (j->comma)
-        fputc(' ', j->file);
-    j->comma = true;
-    if (!key) return;
-    json_text(j, key);
-    fputs(": ", j->file);
-}
-
-static void json_open(json *j, const char *key, char bracket) {
-    if (j->depth > 0) json_next(j, key);
-    fputc(bracket, j->file);
-    j->depth++;
-    j->comma = false;
-}
-
-static void json_close(json *j, char bracket) {
-    j->depth--;
-    if (!j->row && j->comma) fprintf(j->file, "\n%*s", 2 * j->depth, "");
-    fputc(bracket, j->file);
-    j->comma = true;
-}
-
-/* JSON has no infinity and no NaN: they become null. */
-static void json_number(json *j, const char *key, double value) {
-    char text[GPROJ_NUMBER_SIZE];
-    json_next(j, key);
-    if (!(fabs(value) <= 1.7976931348623157e308)) {
-        fputs("null", j->file);
-        return;
-    }
-    gproj_number_write(value, text);
-    fputs(text, j->file);
-}
-
-static void json_integer(json *j, const char *key, int64_t value) {
-    json_next(j, key);
-    fprintf(j->file, "%lld", (long long)value);
-}
-
-/* Bytes that are not UTF-8 (a path may hold any) become question marks. */
-static void json_string(json *j, const char *key, const char *text) {
-    size_t size = strlen(text), i = 0;
-    char *copy = (char *)malloc(size + 1);
-    json_next(j, key);
-    if (!copy) {
-        fputs("null", j->file);
-        return;
-    }
-    memcpy(copy, text, size + 1);
-    while (i < size) {
-        unsigned char c = (unsigned char)copy[i];
-        size_t more = c < 0x80                ? 0
-                      : c >= 0xc2 && c < 0xe0 ? 1
-                      : c >= 0xe0 && c < 0xf0 ? 2
-                      : c >= 0xf0 && c < 0xf5 ? 3
-                                              : 9,
-               k;
-        for (k = 1; k <= more && more < 9; ++k)
-            if (((unsigned char)copy[i + k] & 0xc0) != 0x80) more = 9;
-        if (more < 9)
-            i += more + 1;
-        else
-            copy[i++] = '?';
-    }
-    json_text(j, copy);
-    free(copy);
-}
-
-static const char *place_name(gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return "vertex";
-    case GPROJ_PLACE_EDGE: return "edge";
-    case GPROJ_PLACE_FACE: return "face";
-    default: return "row";
-    }
-}
-
-static const char *phase_name(int phase) {
-    switch ((gproj_phase)phase) {
-    case GPROJ_PHASE_ANALYSE: return "analysis";
-    case GPROJ_PHASE_REFRESH: return "evaluation";
-    case GPROJ_PHASE_ASSEMBLE: return "assembly";
-    case GPROJ_PHASE_FACTOR: return "factorisation";
-    default: return "solve";
-    }
-}
-
-static const char *outcome_name(gproj_outcome outcome) {
-    switch (outcome) {
-    case GPROJ_CONVERGED: return "converged";
-    case GPROJ_ITERATION_LIMIT: return "iteration limit";
-    case GPROJ_STALLED: return "stalled";
-    case GPROJ_CANCELLED: return "cancelled";
-    case GPROJ_TIME_OUT: return "time out";
-    default: return "failed";
-    }
-}
-
-/* Does what must hold do so? How near a nearest mesh came is told by the sentence and the report. */
+/* Tells whether what must hold holds; sentence and report tell how near a nearest mesh came to a minimum. */
 static bool is_exact(const tool *t) {
     return t->result.outcome == GPROJ_CONVERGED ||
            (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
@@ -2196,250 +2015,26 @@ static int verdict_code(const tool *t) {
     return is_exact(t) && sound ? EXIT_REACHED : EXIT_NOT_REACHED;
 }
 
-/* How many faces have this many sides. */
-static int32_t count_degree(const gproj_mesh *mesh, int32_t degree) {
-    int32_t i, count = 0;
-    for (i = 0; i < mesh->face_count; ++i) count += mesh->face_degree[i] == degree;
-    return count;
-}
-
-/* The smallest degree of a face above `degree`; 0 where there is none. */
-static int32_t next_degree(const gproj_mesh *mesh, int32_t degree) {
-    int32_t i, best = 0;
-    for (i = 0; i < mesh->face_count; ++i)
-        if (mesh->face_degree[i] > degree && (best == 0 || mesh->face_degree[i] < best)) best = mesh->face_degree[i];
-    return best;
-}
-
-static void report_mesh(json *j, const gproj_mesh *mesh) {
-    int32_t degree;
-    json_open(j, "mesh", '{');
-    json_integer(j, "vertices", mesh->vertex_count);
-    json_integer(j, "edges", mesh->edge_count);
-    json_integer(j, "faces", mesh->face_count);
-    json_open(j, "faces_by_degree", '{');
-    j->row = true;
-    for (degree = next_degree(mesh, 0); degree > 0; degree = next_degree(mesh, degree)) {
-        char key[16];
-        snprintf(key, sizeof key, "%ld", (long)degree);
-        json_integer(j, key, count_degree(mesh, degree));
-    }
-    json_close(j, '}');
-    j->row = false;
-    json_integer(j, "boundary_loops", mesh->loop_count);
-    json_integer(j, "components", mesh->component_count);
-    json_integer(j, "isolated_vertices", mesh->isolated_count);
-    json_integer(j, "reoriented_faces", mesh->reoriented_count);
-    json_close(j, '}');
-}
-
-static const char *kind_name(gproj_kind kind) {
-    return kind == GPROJ_CONSTRAINT ? "constraint" : kind == GPROJ_BOUND ? "bound" : "wish";
-}
-
-static void report_group(json *j, const gproj_group_info *group) {
-    json_open(j, NULL, '{');
-    j->row = true;
-    json_string(j, "name", group->name);
-    json_string(j, "kind", kind_name(group->kind));
-    json_number(j, "weight", group->schedule.weight);
-    json_number(j, "decay", group->schedule.decay > 0 ? group->schedule.decay : 1);
-    if (group->schedule.last > 0 && group->schedule.last < INT32_MAX)
-        json_integer(j, "last_iteration", group->schedule.last);
-    else
-        json_number(j, "last_iteration", INFINITY);
-    json_integer(j, "rows", group->rows);
-    json_number(j, "norm", group->rms * sqrt((double)group->rows));
-    json_number(j, "max", group->max);
-    if (group->worst_row >= 0) json_integer(j, place_name(group->place), group->worst_element);
-    json_close(j, '}');
-    j->row = false;
-}
-
-static void report_groups(json *j, tool *t) {
-    gproj_system *system = gproj_form_system(t->form);
-    int32_t count = gproj_system_group_count(system), i;
-    int64_t rows = 0;
-    for (i = 0; i < count; ++i) rows += gproj_system_group_info(system, i).rows;
-    json_integer(j, "variables", gproj_system_variable_count(system));
-    json_integer(j, "rows", rows);
-    json_open(j, "groups", '[');
-    for (i = 0; i < count; ++i) {
-        gproj_group_info group = gproj_system_group_info(system, i);
-        report_group(j, &group);
-    }
-    json_close(j, ']');
-}
-
-static void report_seconds(json *j, const double *seconds) {
-    int i;
-    for (i = 0; i < GPROJ_PHASE_COUNT; ++i) json_number(j, phase_name(i), seconds[i]);
-}
-
-static void report_iteration(json *j, tool *t, const tool_record *record) {
-    const gproj_iteration *iteration = &record->iteration;
-    int32_t i;
-    json_open(j, NULL, '{');
-    json_integer(j, "number", iteration->number);
-    json_number(j, "residual", iteration->residual);
-    json_number(j, "planarity_max", record->planarity_max);
-    json_number(j, "planarity_mean", record->planarity_mean);
-    json_number(j, "merit", iteration->merit);
-    json_number(j, "energy", iteration->energy);
-    json_number(j, "step", iteration->step);
-    if (t->nearest) json_number(j, "optimality", iteration->optimality);
-    json_number(j, "epsilon", iteration->epsilon);
-    json_integer(j, "attempts", iteration->attempts);
-    json_open(j, "groups", '[');
-    for (i = 0; i < record->group_count; ++i) {
-        const tool_group_record *group = &t->group_record[record->group_start + i];
-        json_open(j, NULL, '{');
-        j->row = true;
-        json_string(j, "name", gproj_system_group_info(gproj_form_system(t->form), i).name);
-        json_number(j, "weight", group->weight);
-        json_number(j, "norm", group->norm);
-        json_number(j, "max", group->max);
-        json_close(j, '}');
-        j->row = false;
-    }
-    json_close(j, ']');
-    json_open(j, "seconds", '{');
-    j->row = true;
-    report_seconds(j, iteration->seconds);
-    json_close(j, '}');
-    j->row = false;
-    json_close(j, '}');
-}
-
-static void report_spoiled(json *j, const gproj_spoiled *spoiled) {
-    json_open(j, "spoiled", '{');
-    json_integer(j, "total", spoiled->total);
-    json_integer(j, "turned_faces", spoiled->turned);
-    json_integer(j, "crossed_faces", spoiled->crossed);
-    json_integer(j, "folded_edges", spoiled->folded);
-    json_integer(j, "collapsed_edges", spoiled->collapsed_edges);
-    json_integer(j, "collapsed_faces", spoiled->collapsed_faces);
-    json_integer(j, "spikes", spoiled->spikes);
-    if (spoiled->total > 0) {
-        json_open(j, "first", '{');
-        json_integer(j, place_name(spoiled->place), spoiled->element);
-        json_close(j, '}');
-    }
-    json_close(j, '}');
-}
-
-static void report_result(json *j, const tool *t) {
-    const gproj_result *result = &t->result;
-    json_open(j, "result", '{');
-    json_string(j, "outcome", outcome_name(result->outcome));
-    json_integer(j, "exit_code", verdict_code(t));
-    json_string(j, "sentence", result->message);
-    json_integer(j, "iterations", result->iterations);
-    json_integer(j, "damped", result->damped);
-    json_integer(j, "attempts", result->attempts);
-    json_number(j, "residual", result->residual);
-    json_number(j, "tolerance", result->tolerance);
-    json_number(j, "last_step", result->step);
-    if (t->nearest) json_number(j, "optimality", result->optimality);
-    if (result->worst_group >= 0) {
-        gproj_group_info group = gproj_system_group_info(gproj_form_system(t->form), result->worst_group);
-        json_open(j, "worst", '{');
-        json_string(j, "group", group.name);
-        json_integer(j, place_name(group.place), result->worst_element);
-        json_close(j, '}');
-    }
-    report_spoiled(j, &result->spoiled);
-    json_close(j, '}');
-}
-
-static void report_measures(json *j, const tool *t, const char *key, const gproj_measures *m, double volume) {
-    json_open(j, key, '{');
-    json_number(j, "planarity_max", m->planarity_max);
-    json_number(j, "planarity_mean", m->planarity_mean);
-    json_integer(j, "planarity_face", m->planarity_face);
-    json_number(j, "diagonal_distance_max", m->diagonal_max);
-    json_number(j, "circularity_max", m->circularity_max);
-    json_number(j, "conicality_max", m->conicality_max);
-    json_number(j, "area_spread", m->area_spread);
-    json_number(j, "deviation_max", m->deviation_max);
-    json_number(j, "deviation_rms", m->deviation_rms);
-    json_number(j, "displacement_mean", m->displacement_mean);
-    json_integer(j, "turned_faces", m->turned_faces);
-    json_integer(j, "folded_edges", m->folded_edges);
-    json_integer(j, "bow_tie_faces", m->bow_tie_faces);
-    json_integer(j, "degenerate_faces", m->degenerate_faces);
-    json_integer(j, "collapsed_edges", m->collapsed_edges);
-    json_number(j, "gauss_variation", m->gauss_variation);
-    json_number(j, "mean_edge", m->mean_edge);
-    json_number(j, "min_edge", m->min_edge);
-    json_number(j, "max_edge", m->max_edge);
-    json_number(j, "length", m->length);
-    json_number(j, "volume", volume);
-    json_number(j, "area", m->area);
-    json_number(j, "min_face_area", m->min_face_area);
-    json_number(j, "max_face_area", m->max_face_area);
-    if (t->cost.given) json_number(j, "cost", cost_of(t, m));
-    json_close(j, '}');
-}
-
-static void report_forces(json *j, const gproj_forces *m) {
-    json_open(j, "forces", '{');
-    json_number(j, "equilibrium_residual", m->residual);
-    json_integer(j, "residual_vertex", m->residual_vertex);
-    json_number(j, "min_density", m->min_density);
-    json_number(j, "max_density", m->max_density);
-    json_number(j, "min_force", m->min_force);
-    json_number(j, "max_force", m->max_force);
-    json_number(j, "load_path", m->load_path);
-    json_number(j, "total_load", m->total_load);
-    json_number(j, "max_reaction", m->max_reaction);
-    json_close(j, '}');
-}
-
-static void report_offset(json *j, const tool *t) {
-    const gproj_offset_measures *m = &t->offset_measures;
-    if (!t->offset) return;
-    json_open(j, "offset", '{');
-    json_string(j, "kind", is_vertex_offset(t) ? "vertices" : "faces");
-    json_number(j, "distance", t->offset_distance);
-    json_number(j, "face_distance_min", m->face_distance_min);
-    json_number(j, "face_distance_max", m->face_distance_max);
-    json_number(j, "vertex_distance_min", m->vertex_distance_min);
-    json_number(j, "vertex_distance_max", m->vertex_distance_max);
-    json_number(j, "parallel_max", m->parallel_max);
-    json_number(j, "support_planarity_max", m->support_planarity_max);
-    json_integer(j, "reversed_edges", m->reversed_edges);
-    json_close(j, '}');
-}
-
 static gproj_code write_report(tool *t, FILE *file) {
-    json writer = {NULL, 0, false, false}, *j = &writer;
-    int32_t i;
-    writer.file = file;
-    json_open(j, NULL, '{');
-    json_string(j, "version", TOOL_VERSION);
-    json_string(j, "input", t->input);
-    json_string(j, "output", t->output[OUTPUT_MESH].path);
-    report_mesh(j, t->mesh);
-    report_groups(j, t);
-    json_open(j, "iterations", '[');
-    for (i = 0; i < t->record_count; ++i) report_iteration(j, t, &t->record[i]);
-    json_close(j, ']');
-    report_result(j, t);
-    report_measures(j, t, "measures_before", &t->before, t->volume_before);
-    report_measures(j, t, "measures", &t->after, gproj_volume(t->mesh));
-    if (t->equilibrium.given) report_forces(j, &t->forces);
-    report_offset(j, t);
-    json_open(j, "seconds", '{');
-    json_number(j, "reading", t->read_seconds);
-    json_number(j, "set_up", t->setup_seconds);
-    report_seconds(j, t->result.seconds);
-    json_number(j, "all_iterations", t->solve_seconds);
-    json_number(j, "total", now(NULL) - t->start);
-    json_close(j, '}');
-    json_close(j, '}');
-    fputc('\n', file);
-    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
+    gprojx_report report;
+    memset(&report, 0, sizeof report);
+    report.version = TOOL_VERSION, report.input = t->input, report.output = t->output[OUTPUT_MESH].path;
+    report.mesh = t->mesh, report.form = t->form;
+    report.history = &t->history;
+    report.result = &t->result;
+    report.nearest = t->nearest;
+    report.exit_code = verdict_code(t);
+    report.before = t->before, report.after = t->after;
+    report.volume_before = t->volume_before, report.volume = gproj_volume(t->mesh);
+    report.priced = t->cost.given;
+    report.cost_before = cost_of(t, &t->before), report.cost = cost_of(t, &t->after);
+    report.forces = t->equilibrium.given ? &t->forces : NULL;
+    report.offset = t->offset ? &t->offset_measures : NULL;
+    report.offset_kind = is_vertex_offset(t) ? "vertices" : "faces";
+    report.offset_distance = t->offset_distance;
+    report.reading = t->read_seconds, report.set_up = t->setup_seconds, report.solving = t->solve_seconds;
+    report.total = now(NULL) - t->start;
+    return gprojx_report_write(file, &report);
 }
 
 /* ---- the other outputs ---- */
@@ -2614,8 +2209,8 @@ static void print_mesh(const tool *t) {
     int32_t degree, shown = 0;
     printf("%s: %ld vertices, %ld edges, %ld faces (", file_name(t->input), (long)mesh->vertex_count,
            (long)mesh->edge_count, (long)mesh->face_count);
-    for (degree = next_degree(mesh, 0); degree > 0 && shown < 6; degree = next_degree(mesh, degree), ++shown)
-        printf("%s%ld of %ld sides", shown ? ", " : "", (long)count_degree(mesh, degree), (long)degree);
+    for (degree = gprojx_next_degree(mesh, 0); degree > 0 && shown < 6; degree = gprojx_next_degree(mesh, degree), ++shown)
+        printf("%s%ld of %ld sides", shown ? ", " : "", (long)gprojx_count_degree(mesh, degree), (long)degree);
     printf("%s), %ld boundary loop%s\n", degree > 0 ? ", ..." : "", (long)mesh->loop_count,
            mesh->loop_count == 1 ? "" : "s");
     if (mesh->reoriented_count > 0)
@@ -2732,13 +2327,13 @@ static void clean_up(tool *t) {
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
-    gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
+    gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
-    free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade), free(t->record),
-        free(t->group_record);
+    free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade);
+    gprojx_history_free(&t->history);
 }
 
 int main(int argc, char **argv) {
