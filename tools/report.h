@@ -40,10 +40,9 @@ typedef struct gprojx_report {
     const gproj_result *result;
     bool nearest; /* the solve was: iterations and result have an optimality */
     int exit_code;
-    gproj_measures before, after;
+    const gproj_measures *before, *after;
     double volume_before, volume;
-    bool priced;
-    double cost_before, cost;            /* where it is priced */
+    const double *cost;                  /* before and after; NULL: the mesh is not priced */
     const gproj_forces *forces;          /* NULL: no statics */
     const gproj_offset_measures *offset; /* NULL: no offset */
     const char *offset_kind;
@@ -114,21 +113,6 @@ typedef struct gprojx_json {
     bool row;   /* the open object stands on one line */
 } gprojx_json;
 
-static void gprojx_json_text(gprojx_json *j, const char *text, size_t size) {
-    size_t i;
-    fputc('"', j->file);
-    for (i = 0; i < size; ++i) {
-        unsigned char c = (unsigned char)text[i];
-        if (c == '"' || c == '\\')
-            fprintf(j->file, "\\%c", c);
-        else if (c < 32 || c == 127)
-            fprintf(j->file, "\\u%04x", c);
-        else
-            fputc(c, j->file);
-    }
-    fputc('"', j->file);
-}
-
 /* Begins a member of an object; key NULL: an entry of an array. */
 static void gprojx_json_next(gprojx_json *j, const char *key) {
     if (j->comma) fputc(',', j->file);
@@ -137,9 +121,7 @@ static void gprojx_json_next(gprojx_json *j, const char *key) {
     else if (j->comma)
         fputc(' ', j->file);
     j->comma = true;
-    if (!key) return;
-    gprojx_json_text(j, key, strlen(key));
-    fputs(": ", j->file);
+    if (key) fprintf(j->file, "\"%s\": ", key);
 }
 
 static void gprojx_json_open(gprojx_json *j, const char *key, char bracket) {
@@ -191,31 +173,29 @@ static size_t gprojx_utf8_size(const char *text) {
 
 /* Writes a string; bytes that are not UTF-8 (a path may hold any) become question marks. */
 static void gprojx_json_string(gprojx_json *j, const char *key, const char *text) {
-    size_t size = strlen(text), i, step;
-    char *copy = (char *)malloc(size + 1);
+    size_t size;
     gprojx_json_next(j, key);
-    if (!copy) {
-        fputs("null", j->file);
-        return;
+    fputc('"', j->file);
+    for (; *text; text += size ? size : 1) {
+        unsigned char c = (unsigned char)text[0];
+        size = gprojx_utf8_size(text);
+        if (c == '"' || c == '\\')
+            fprintf(j->file, "\\%c", c);
+        else if (c < 32 || c == 127)
+            fprintf(j->file, "\\u%04x", c);
+        else
+            fwrite(size ? text : "?", 1, size ? size : 1, j->file);
     }
-    memcpy(copy, text, size + 1);
-    for (i = 0; i < size; i += step ? step : 1) {
-        step = gprojx_utf8_size(copy + i);
-        if (step == 0) copy[i] = '?';
-    }
-    gprojx_json_text(j, copy, size);
-    free(copy);
+    fputc('"', j->file);
 }
 
 /* ---- parts of the report ---- */
 
 static const char *gprojx_place_name(gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return "vertex";
-    case GPROJ_PLACE_EDGE: return "edge";
-    case GPROJ_PLACE_FACE: return "face";
-    default: return "row";
-    }
+    return place == GPROJ_PLACE_VERTEX ? "vertex"
+           : place == GPROJ_PLACE_EDGE ? "edge"
+           : place == GPROJ_PLACE_FACE ? "face"
+                                       : "row";
 }
 
 static const char *gprojx_outcome_name(gproj_outcome outcome) {
@@ -265,6 +245,7 @@ static void gprojx_report_mesh(gprojx_json *j, const gproj_mesh *mesh) {
 }
 
 static void gprojx_report_groups(gprojx_json *j, gproj_system *system) {
+    static const char *const kind[] = {"constraint", "bound", "wish"};
     int32_t count = gproj_system_group_count(system), i;
     int64_t rows = 0;
     for (i = 0; i < count; ++i) rows += gproj_system_group_info(system, i).rows;
@@ -276,10 +257,7 @@ static void gprojx_report_groups(gprojx_json *j, gproj_system *system) {
         bool ends = group.schedule.last > 0 && group.schedule.last < INT32_MAX;
         gprojx_json_open_row(j, NULL);
         gprojx_json_string(j, "name", group.name);
-        gprojx_json_string(j, "kind",
-                           group.kind == GPROJ_CONSTRAINT ? "constraint"
-                           : group.kind == GPROJ_BOUND    ? "bound"
-                                                          : "wish");
+        gprojx_json_string(j, "kind", kind[group.kind == GPROJ_CONSTRAINT ? 0 : group.kind == GPROJ_BOUND ? 1 : 2]);
         gprojx_json_number(j, "weight", group.schedule.weight);
         gprojx_json_number(j, "decay", group.schedule.decay > 0 ? group.schedule.decay : 1);
         gprojx_json_number(j, "last_iteration", ends ? group.schedule.last : INFINITY);
@@ -331,25 +309,9 @@ static void gprojx_report_iteration(gprojx_json *j, const gprojx_report *report,
     gprojx_json_close(j, '}');
 }
 
-static void gprojx_report_spoiled(gprojx_json *j, const gproj_spoiled *spoiled) {
-    gprojx_json_open(j, "spoiled", '{');
-    gprojx_json_integer(j, "total", spoiled->total);
-    gprojx_json_integer(j, "turned_faces", spoiled->turned);
-    gprojx_json_integer(j, "crossed_faces", spoiled->crossed);
-    gprojx_json_integer(j, "folded_edges", spoiled->folded);
-    gprojx_json_integer(j, "collapsed_edges", spoiled->collapsed_edges);
-    gprojx_json_integer(j, "collapsed_faces", spoiled->collapsed_faces);
-    gprojx_json_integer(j, "spikes", spoiled->spikes);
-    if (spoiled->total > 0) {
-        gprojx_json_open(j, "first", '{');
-        gprojx_json_integer(j, gprojx_place_name(spoiled->place), spoiled->element);
-        gprojx_json_close(j, '}');
-    }
-    gprojx_json_close(j, '}');
-}
-
 static void gprojx_report_result(gprojx_json *j, const gprojx_report *report) {
     const gproj_result *result = report->result;
+    const gproj_spoiled *spoiled = &result->spoiled;
     gprojx_json_open(j, "result", '{');
     gprojx_json_string(j, "outcome", gprojx_outcome_name(result->outcome));
     gprojx_json_integer(j, "exit_code", report->exit_code);
@@ -368,7 +330,20 @@ static void gprojx_report_result(gprojx_json *j, const gprojx_report *report) {
         gprojx_json_integer(j, gprojx_place_name(group.place), result->worst_element);
         gprojx_json_close(j, '}');
     }
-    gprojx_report_spoiled(j, &result->spoiled);
+    gprojx_json_open(j, "spoiled", '{');
+    gprojx_json_integer(j, "total", spoiled->total);
+    gprojx_json_integer(j, "turned_faces", spoiled->turned);
+    gprojx_json_integer(j, "crossed_faces", spoiled->crossed);
+    gprojx_json_integer(j, "folded_edges", spoiled->folded);
+    gprojx_json_integer(j, "collapsed_edges", spoiled->collapsed_edges);
+    gprojx_json_integer(j, "collapsed_faces", spoiled->collapsed_faces);
+    gprojx_json_integer(j, "spikes", spoiled->spikes);
+    if (spoiled->total > 0) {
+        gprojx_json_open(j, "first", '{');
+        gprojx_json_integer(j, gprojx_place_name(spoiled->place), spoiled->element);
+        gprojx_json_close(j, '}');
+    }
+    gprojx_json_close(j, '}');
     gprojx_json_close(j, '}');
 }
 
@@ -447,9 +422,8 @@ static gproj_code gprojx_report_write(FILE *file, const gprojx_report *report) {
     for (i = 0; i < report->history->record_count; ++i) gprojx_report_iteration(j, report, &report->history->record[i]);
     gprojx_json_close(j, ']');
     gprojx_report_result(j, report);
-    gprojx_report_measures(j, "measures_before", &report->before, report->volume_before,
-                           report->priced ? &report->cost_before : NULL);
-    gprojx_report_measures(j, "measures", &report->after, report->volume, report->priced ? &report->cost : NULL);
+    gprojx_report_measures(j, "measures_before", report->before, report->volume_before, report->cost);
+    gprojx_report_measures(j, "measures", report->after, report->volume, report->cost ? report->cost + 1 : NULL);
     if (report->forces) gprojx_report_forces(j, report->forces);
     if (report->offset) gprojx_report_offset(j, report);
     gprojx_json_open(j, "seconds", '{');
