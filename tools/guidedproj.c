@@ -10,8 +10,10 @@
    A new option is a row in the table. Where no reader or builder fits, it has one of its own. */
 #define _XOPEN_SOURCE 700
 
+#ifndef GPROJI_IMPLEMENTED /* else the library is linked: tests compile it once */
 #define GPROJ_STATIC
 #define GUIDEDPROJ_IMPLEMENTATION
+#endif
 #include "../guidedproj.h"
 
 #include <ctype.h>
