@@ -57,14 +57,14 @@ enum {
 
 static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
 
-typedef struct tool_demand { /* the value of an option that adds a constraint or a wish; each kind sets some members */
+typedef struct tool_demand { /* what an option that adds to the form was given; each kind sets some members */
     bool given;
     double weight, decay;
     int32_t last;     /* iteration with this weight; 0: a few iterations */
     const char *text; /* a word or a path, `length` bytes */
     size_t length;
     double min, max; /* bounds */
-    double amount;   /* of a volume, an area, a cost */
+    double amount;   /* volume, area or cost */
     bool factor;     /* `amount` multiplies the input's */
 } tool_demand;
 
@@ -111,14 +111,14 @@ typedef struct tool {
     double weld; /* in mean edge lengths; 0: vertices at the same place stay apart */
     tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
         supports, reference, closeness, equal_areas;
-    tool_demand own[MOST_OPTIONS];   /* of options that only their builders read, by row */
-    double length_price, area_price; /* of --cost */
+    tool_demand own[MOST_OPTIONS];   /* by row: options that only their builders read */
+    double length_price, area_price; /* --cost */
     double density, area_load, snow;
     const char *loads;
     bool loads_given;         /* any of the four */
     tool_demand *fix, *glide; /* room for all words of the command line */
     tool_move *move;
-    int32_t *move_group; /* for each of `move`: its group in the form, -1: none of its own */
+    int32_t *move_group; /* the group of each move in the form; -1: an earlier move has it */
     int32_t fix_count, glide_count, move_count;
     int32_t iterations, threads;
     double epsilon, tolerance, time_limit;
@@ -126,7 +126,7 @@ typedef struct tool {
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
     bool nearest, allow_spoiled, quiet, help, version;
-    bool seen[MOST_OPTIONS]; /* by row of the table */
+    bool seen[MOST_OPTIONS]; /* by row */
 
     /* the work */
     gproj_host host;
@@ -141,9 +141,9 @@ typedef struct tool {
     gproj_form *form;
     gproj_result result;
     double *original, *planarity_before, *planarity;
-    double *shade;                        /* of each face, what colours it; NULL: its planarity */
-    double *point_load;                   /* of --loads */
-    double *imbalance_before, *imbalance; /* of faces: what the best forces leave unbalanced */
+    double *shade;                        /* each face's --colour; NULL: planarity colours the faces */
+    double *point_load;                   /* --loads */
+    double *imbalance_before, *imbalance; /* each face's load that the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
     bool *is_support;
     gproj_forces forces;
@@ -156,7 +156,7 @@ typedef struct tool {
     int exit_code; /* once something has failed */
 } tool;
 
-/* Prints the sentence of a failure and keeps its exit code; every failure passes through here. Returns false. */
+/* Prints a failure's sentence and keeps the exit code; every failure passes through here. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
     va_list list;
     if (t->exit_code != 0) return false;
@@ -262,6 +262,7 @@ static int edit_distance(const char *a, size_t size, const char *b) {
     enum {
         MOST = 24
     };
+    /* d[i][j]: between the first i letters of a and the first j of b. */
     int d[MOST + 1][MOST + 1] = {{0}}, rows = (int)size, columns = (int)strlen(b), i, j;
     if (rows > MOST || columns > MOST) return MOST;
     for (i = 0; i <= rows; ++i)
@@ -555,11 +556,11 @@ static bool set_view(tool *t, void *place, const char *name, const char *value) 
 
 typedef struct tool_colour {
     const char *name, *legend;
-    double high; /* the end of its linear scale, which begins at 0 */
+    double high; /* the linear scale goes from 0 to this */
     double (*value)(const tool *t, int32_t face);
 } tool_colour;
 
-/* The area of a face over the mean of all. */
+/* A face's area over the mean area. */
 static double area_of_face(const tool *t, int32_t face) {
     double a[3];
     gproj_mesh_face_area_vector(t->mesh, face, a);
@@ -917,8 +918,8 @@ static bool are_joined(const gproj_mesh *mesh, int32_t a, int32_t b) {
     return false;
 }
 
-/* Finds boundary vertices within `distance` of each other that no edge joins. same, vertex_count entries: of each vertex
-   the smallest one at that place. Returns how many vertices have a smaller one; -1 without memory. */
+/* Finds boundary vertices that are within `distance` and that no edge joins. same, vertex_count entries: the smallest
+   vertex at the place of each. Returns how many have a smaller one; -1 without memory. */
 static int32_t find_seams(tool *t, double distance, int32_t *same) {
     static const double direction[3] = {0.5466, 0.6131, 0.5704}; /* a little longer than 1 */
     const gproj_mesh *mesh = t->mesh;
@@ -932,6 +933,7 @@ static int32_t find_seams(tool *t, double distance, int32_t *same) {
         list[count].along = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
         list[count++].vertex = i;
     }
+    /* Vertices within `distance` are as near along the direction: only neighbours in the sorted list are compared. */
     qsort(list, (size_t)count, sizeof *list, compare_projected);
     for (i = 0; i < count; ++i)
         for (j = i - 1; j >= 0 && list[i].along - list[j].along <= 1.1 * distance; --j) {
@@ -954,6 +956,7 @@ static bool weld(tool *t, int32_t *same, int32_t merged) {
     int32_t *number = (int32_t *)take(t, vertices, sizeof *number);
     int32_t *corner = (int32_t *)take(t, (size_t)old->halfedge_count, sizeof *corner), count = 0, i, k;
     gproj_error error;
+    /* Vertices that stay are numbered anew, in their order; faces then speak of these numbers. */
     for (i = 0; position && number && corner && i < old->vertex_count; ++i) {
         if (same_as(same, i) != i) continue;
         memcpy(position + 3 * (size_t)count, old->position + 3 * (size_t)i, 3 * sizeof *position);
@@ -1088,7 +1091,7 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
     return good;
 }
 
-/* Adds one group for each --fix: its vertices that no --move takes. */
+/* Adds one group for each --fix, without vertices that a --move takes. */
 static int32_t add_fixed(tool *t, const tool_demand *none) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     bool *mark = (bool *)take(t, vertices, sizeof *mark);
@@ -1208,7 +1211,7 @@ static double cost_of(const tool *t, const gproj_measures *m) {
     return t->length_price * m->length + t->area_price * m->area;
 }
 
-/* The amount that is asked for, if the input has `have`. */
+/* The amount that a demand means, if the input has `have`. */
 static double amount_of(const tool_demand *demand, double have) {
     return demand->factor ? demand->amount * have : demand->amount;
 }
@@ -1310,13 +1313,13 @@ typedef enum tool_kind {
     SETTING,
     BEGINNING, /* changes the mesh before the solve */
     HARD,      /* must hold */
-    SOFT       /* is wished: its schedule ends */
+    SOFT       /* is wished, until the schedule ends */
 } tool_kind;
 
-typedef enum tool_stage { /* groups stand in the form in this order, within a stage in the table's */
+typedef enum tool_stage { /* the order in which options are added to the form; within a stage, that of the table */
     NO_STAGE,             /* adds nothing */
     SHAPES,
-    STATICS, /* behind planarity, whose normals it uses */
+    STATICS,
     SIZES,
     WISHES,
     STAGE_COUNT
@@ -1329,10 +1332,10 @@ typedef struct tool_need { /* an option that must be given too, and the sentence
 
 typedef struct tool_option {
     const char *name;
-    const char *value; /* its syntax: "" none, "[=W]" may be left out, else needed */
+    const char *value; /* syntax: "" none, "[=W]" may be left out, else needed */
     const char *help;
     bool (*read)(tool *t, void *place, const char *name, const char *value);
-    size_t place; /* of the member of tool that `read` sets; 0: tool.own[row] */
+    size_t place; /* offset of the member of tool that `read` sets; 0: tool.own[row] */
     tool_kind kind;
     tool_stage stage;
     /* One of these adds it to the form and returns the group: the first two if the weight is above 0, with all edges,
@@ -1515,7 +1518,7 @@ enum {
 
 typedef char tool_has_room_for_options[(int)OPTION_COUNT <= (int)MOST_OPTIONS ? 1 : -1];
 
-/* The member of the tool that the option of this row sets. */
+/* Points to the member of the tool that this row sets. */
 static void *place_of(tool *t, int row) {
     return options[row].place ? (void *)((char *)t + options[row].place) : &t->own[row];
 }
@@ -1601,13 +1604,14 @@ static bool fail_unknown(tool *t, const char *word, const char *name, size_t siz
                 options[best].name);
 }
 
-/* Reads the option at argv[*i], and its value if that stands apart. */
+/* Reads the option at argv[*i], and the value behind it. */
 static bool read_option(tool *t, int argc, char **argv, int *i) {
     const char *word = argv[*i], *name = word + (word[1] == '-' ? 2 : 1), *equals = strchr(name, '=');
     size_t size = equals ? (size_t)(equals - name) : strlen(name);
     const tool_option *option = NULL;
     const char *value = equals ? equals + 1 : NULL;
     int k;
+    /* A word after --, which may be followed by =VALUE, or one letter after -. */
     for (k = 0; k < OPTION_COUNT; ++k)
         if (word[1] == '-' ? same_word(name, size, options[k].name) : size == 1 && options[k].letter == name[0])
             option = &options[k];
@@ -1663,8 +1667,8 @@ static bool check_needs(tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
     int i;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
     if (t->fill) t->input = t->fill;
@@ -1718,7 +1722,7 @@ static bool read_command_line(tool *t, int argc, char **argv) {
 
 /* ---- the form ---- */
 
-/* Gives a wish its schedule: --nearest keeps it on; else it ends after a few iterations, at most half of all. */
+/* Schedules a wish: --nearest keeps it on; else it ends after a few iterations, at most half of all. */
 static void schedule_wish(tool *t, const tool_demand *demand, int32_t group) {
     gproj_schedule schedule;
     schedule.weight = demand->weight;
@@ -1860,6 +1864,7 @@ static bool drag(tool *t) {
             fmax(farthest, hypot(hypot(move->position[0] - p[0], move->position[1] - p[1]), move->position[2] - p[2]));
     }
     count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / t->before.mean_edge));
+    /* Targets would pull at the vertices that the drag leads; they act again in the solve. */
     switch_moves(t, false);
     for (i = 1; good && i <= count; ++i) {
         for (k = 0; k < 3 * t->move_count; ++k) {
@@ -1960,7 +1965,7 @@ static bool make_offset(tool *t) {
     return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
 }
 
-/* The largest difference of a distance to the one that was asked for. */
+/* The largest difference between a distance and the one that was asked for. */
 static double offset_error(const tool *t) {
     const gproj_offset_measures *m = &t->offset_measures;
     double wanted = t->offset_distance, least = m->face_distance_min, most = m->face_distance_max;
@@ -2182,9 +2187,8 @@ static void print_mesh(const tool *t) {
         printf("note: %ld boundary vertices were merged with others at the same place; vertices are numbered anew\n",
                (long)t->welded);
     if (t->seams > 0)
-        printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their sides "
-               "may "
-               "come apart; --weld closes them\n",
+        printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their "
+               "sides may come apart; --weld closes them\n",
                (long)t->seams);
     if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
 }

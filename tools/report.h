@@ -52,11 +52,6 @@ typedef struct gprojx_report {
 
 /* ---- history ---- */
 
-static double gprojx_weight_in(const gproj_schedule *schedule, int32_t iteration) {
-    if (schedule->last > 0 && iteration > schedule->last) return 0;
-    return schedule->weight * pow(schedule->decay > 0 ? schedule->decay : 1, iteration);
-}
-
 /* Returns the list with room for `needed` entries, moved if it has to grow; NULL without memory. */
 static void *gprojx_grown(void *list, int32_t *capacity, int32_t needed, size_t size) {
     if (needed <= *capacity) return list;
@@ -87,7 +82,8 @@ static bool gprojx_history_keep(gprojx_history *history, const gproj_form *form,
     for (i = 0; i < groups; ++i) {
         gproj_group_info info = gproj_system_group_info(system, i);
         group = &history->group[history->group_count++];
-        group->weight = gprojx_weight_in(&info.schedule, iteration->number);
+        group->weight = info.schedule.last > 0 && iteration->number > info.schedule.last ? 0 : info.schedule.weight;
+        group->weight *= pow(info.schedule.decay > 0 ? info.schedule.decay : 1, iteration->number);
         group->norm = info.rms * sqrt((double)info.rows);
         group->max = info.max;
     }
