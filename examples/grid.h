@@ -1,8 +1,8 @@
 /* grid.h - quads in rows and columns, for the examples.
 
    Vertex (i, j), i = 0 .. rows, j = 0 .. columns, has the number i (columns + 1) + j and is where `place` puts it. In a
-   closed grid column 0 follows the last one: j = 0 .. columns - 1, and the number is i columns + j. Include guidedproj.h
-   before this file. */
+   closed grid column 0 follows the last one: j = 0 .. columns - 1, and the number is i columns + j. Include
+   guidedproj.h before this file. */
 #ifndef EXAMPLES_GRID_H
 #define EXAMPLES_GRID_H
 

@@ -766,8 +766,8 @@ static char *load_file(tool *t, const char *path, size_t *length) {
     return NULL;
 }
 
-/* Finds the first closed polyline in a file, else, if there is no boundary, the first one; -1: there is none. (The sides
-   of a filled curve are polylines, and none of them is closed.) */
+/* Finds the first closed polyline in a file, else, if there is no boundary, the first one; -1: there is none. (Sides of
+   a filled curve are polylines, and none of them is closed.) */
 static int32_t curve_polyline(const gproj_mesh *file) {
     int32_t k;
     for (k = 0; k < file->polyline_count; ++k)
