@@ -11,6 +11,9 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { POINTS = 360, SHAPES = 3 };
 #define EDGE 1.4
 

@@ -10,6 +10,10 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
+#include "grid.h"
+
+#include <math.h>
+#include <stdio.h>
 
 enum { AROUND = 26, HIGH = 10 };
 
@@ -25,29 +29,14 @@ static void invert(double p[3]) {
     for (k = 0; k < 3; ++k) p[k] = centre[k] + 60 * d[k] / square;
 }
 
-/* Three quarters of the way round: one sheet without a hole. */
-static gproj_mesh *make_funnel(gproj_error *error) {
-    static double position[3 * (AROUND + 1) * (HIGH + 1)];
-    static int32_t degree[AROUND * HIGH], corner[4 * AROUND * HIGH];
-    int32_t i, j, faces = 0;
-    for (i = 0; i <= AROUND; ++i) {
-        for (j = 0; j <= HIGH; ++j) {
-            double *p = position + 3 * (i * (HIGH + 1) + j), turn = 4.7 * i / AROUND + 0.8, z = 0.56 * j;
-            double radius = 1.2 + 0.08 * z * z + 0.06 * sin(1.1 * i + 0.9 * j); /* with dents */
-            p[0] = radius * cos(turn);
-            p[1] = radius * sin(turn);
-            p[2] = z;
-            invert(p);
-        }
-    }
-    for (i = 0; i < AROUND; ++i) {
-        for (j = 0; j < HIGH; ++j, ++faces) {
-            int32_t a = i * (HIGH + 1) + j, *c = corner + 4 * faces;
-            degree[faces] = 4;
-            c[0] = a, c[1] = a + 1, c[2] = a + HIGH + 2, c[3] = a + HIGH + 1;
-        }
-    }
-    return gproj_mesh_create((AROUND + 1) * (HIGH + 1), position, faces, degree, corner, NULL, error);
+/* Places vertex (i, j): row i of the height, column j of three quarters of the way round, so that there is no hole. */
+static void funnel(int32_t i, int32_t j, double p[3]) {
+    double turn = 4.7 * j / AROUND + 0.8, z = 0.56 * i;
+    double radius = 1.2 + 0.08 * z * z + 0.06 * sin(1.1 * j + 0.9 * i); /* with dents */
+    p[0] = radius * cos(turn);
+    p[1] = radius * sin(turn);
+    p[2] = z;
+    invert(p);
 }
 
 static void say(const char *what, double value) {
@@ -57,7 +46,7 @@ static void say(const char *what, double value) {
 int main(void) {
     const double distance = 0.2;
     gproj_error error;
-    gproj_mesh *mesh = make_funnel(&error), *offset, *support;
+    gproj_mesh *mesh = make_grid(HIGH, AROUND, funnel, &error), *offset, *support;
     gproj_measures before = gproj_measure(mesh, NULL, NULL), after;
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_offset_measures between;

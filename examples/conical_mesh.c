@@ -11,35 +11,25 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
+#include "grid.h"
+
+#include <math.h>
+#include <stdio.h>
 
 enum { LONG = 28, WIDE = 10 };
 
-/* An arch in the planes orthogonal to the street, with ripples that run across the lines of the mesh. */
-static gproj_mesh *make_hall(gproj_error *error) {
-    static double position[3 * (LONG + 1) * (WIDE + 1)];
-    static int32_t degree[LONG * WIDE], corner[4 * LONG * WIDE];
-    double x = 0, y = 0, turn = 0;
-    int32_t i, j, faces = 0;
-    for (i = 0; i <= LONG; ++i) {
-        for (j = 0; j <= WIDE; ++j) {
-            double *p = position + 3 * (i * (WIDE + 1) + j), angle = 2.4 * j / WIDE - 1.2;
-            double ripple = 1 + 0.03 * sin(0.8 * i + 0.9 * j);
-            p[0] = x - 5 * ripple * sin(angle) * sin(turn);
-            p[1] = y + 5 * ripple * sin(angle) * cos(turn);
-            p[2] = 4 * ripple * cos(angle);
-        }
+/* Places vertex j of arch i, which is orthogonal to the street; ripples run across the lines of the mesh. */
+static void hall(int32_t i, int32_t j, double p[3]) {
+    double x = 0, y = 0, turn = 0, angle = 2.4 * j / WIDE - 1.2, ripple = 1 + 0.03 * sin(0.8 * i + 0.9 * j);
+    int32_t k;
+    for (k = 0; k < i; ++k) { /* along the street */
         x += cos(turn);
         y += sin(turn);
-        turn += 0.1 * sin(0.2 * i);
+        turn += 0.1 * sin(0.2 * k);
     }
-    for (i = 0; i < LONG; ++i) {
-        for (j = 0; j < WIDE; ++j, ++faces) {
-            int32_t a = i * (WIDE + 1) + j, *c = corner + 4 * faces;
-            degree[faces] = 4;
-            c[0] = a, c[1] = a + WIDE + 1, c[2] = a + WIDE + 2, c[3] = a + 1;
-        }
-    }
-    return gproj_mesh_create((LONG + 1) * (WIDE + 1), position, faces, degree, corner, NULL, error);
+    p[0] = x - 5 * ripple * sin(angle) * sin(turn);
+    p[1] = y + 5 * ripple * sin(angle) * cos(turn);
+    p[2] = 4 * ripple * cos(angle);
 }
 
 static void say(const char *what, double value) {
@@ -49,7 +39,7 @@ static void say(const char *what, double value) {
 int main(void) {
     const double distance = 0.4;
     gproj_error error;
-    gproj_mesh *mesh = make_hall(&error), *offset, *support;
+    gproj_mesh *mesh = make_grid(LONG, WIDE, hall, &error), *offset, *support;
     gproj_measures before = gproj_measure(mesh, NULL, NULL), after;
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_offset_measures between;

@@ -1,5 +1,4 @@
-/* courtyard.c - a roof over a rectangular courtyard: Figure 7 of "Form-finding with Polyhedral Meshes Made Simple"
-   (2014).
+/* courtyard.c - a roof over a courtyard: Figure 7 of "Form-finding with Polyhedral Meshes Made Simple" (2014).
 
    A dome of planar panels that stands on the walls by compression alone, three times: (a) with fairness, (b) also with
    the wish that opposite edges of a panel carry the same force, (c) with 20 % more volume, but no edge longer and no
@@ -12,8 +11,9 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
-
-#include "../tools/forces.h"
+#include "../tools/forces.h" /* with math.h */
+#include <stdio.h>
+#include <string.h>
 
 enum { SIDE = 20, MOST = (SIDE + 1) * (SIDE + 1) };
 

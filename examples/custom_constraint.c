@@ -10,34 +10,23 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
+#include "grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 enum { SIDE = 12 };
 
-static gproj_mesh *make_dome(gproj_error *error) {
-    static double position[3 * (SIDE + 1) * (SIDE + 1)];
-    static int32_t degree[SIDE * SIDE], corner[4 * SIDE * SIDE];
-    int32_t i, j, k = 0, f = 0;
-    for (i = 0; i <= SIDE; ++i) {
-        for (j = 0; j <= SIDE; ++j, ++k) {
-            double x = 8.0 * i / SIDE - 4, y = 8.0 * j / SIDE - 4;
-            position[3 * k] = x + 0.02 * y * y; /* a grid with curved lines */
-            position[3 * k + 1] = y;
-            position[3 * k + 2] = 6 - 0.09 * (x * x + y * y);
-        }
-    }
-    for (i = 0; i < SIDE; ++i) {
-        for (j = 0; j < SIDE; ++j, ++f) {
-            degree[f] = 4;
-            corner[4 * f] = i * (SIDE + 1) + j;
-            corner[4 * f + 1] = corner[4 * f] + SIDE + 1;
-            corner[4 * f + 2] = corner[4 * f] + SIDE + 2;
-            corner[4 * f + 3] = corner[4 * f] + 1;
-        }
-    }
-    return gproj_mesh_create(k, position, f, degree, corner, NULL, error);
+/* Places vertex (i, j) of a dome, on a grid with curved lines. */
+static void dome(int32_t i, int32_t j, double p[3]) {
+    double x = 8.0 * i / SIDE - 4, y = 8.0 * j / SIDE - 4;
+    p[0] = x + 0.02 * y * y;
+    p[1] = y;
+    p[2] = 6 - 0.09 * (x * x + y * y);
 }
 
-/* One row a vertex, in the form's own units: x = (v - origin) * scale. */
+/* Adds one row a vertex, in the form's own units: x = (v - origin) * scale. */
 static void add_sphere(gproj_form *form, int32_t vertices, const double centre[3], double radius) {
     gproj_system *system = gproj_form_system(form);
     gproj_group group;
@@ -70,7 +59,7 @@ int main(void) {
     static const double centre[3] = {0, 0, 0};
     const double radius = 6;
     gproj_error error;
-    gproj_mesh *mesh = make_dome(&error);
+    gproj_mesh *mesh = make_grid(SIDE, SIDE, dome, &error);
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_result result;
     double worst = 0;

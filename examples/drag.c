@@ -9,6 +9,11 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
+#include "grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 enum {
@@ -23,26 +28,11 @@ static double seconds(void *user) {
     return (double)clock() / CLOCKS_PER_SEC;
 }
 
-static gproj_mesh *make_roof(gproj_error *error) {
-    static double position[3 * ACROSS * ACROSS];
-    static int32_t degree[SIDE * SIDE], corner[4 * SIDE * SIDE];
-    int32_t i, j, k, faces = 0;
-    for (i = 0; i < ACROSS; ++i) {
-        for (j = 0; j < ACROSS; ++j) {
-            double *p = position + 3 * (i * ACROSS + j), x = (double)i / SIDE - 0.5, y = (double)j / SIDE - 0.5;
-            p[0] = SIDE * x;
-            p[1] = SIDE * y;
-            p[2] = SIDE * (0.12 * cos(5 * x) + 0.08 * cos(4 * y + 2 * x * x));
-        }
-    }
-    for (i = 0; i < SIDE; ++i) {
-        for (j = 0; j < SIDE; ++j, ++faces) {
-            const int32_t first = i * ACROSS + j, offset[4] = {0, ACROSS, ACROSS + 1, 1};
-            degree[faces] = 4;
-            for (k = 0; k < 4; ++k) corner[4 * faces + k] = first + offset[k];
-        }
-    }
-    return gproj_mesh_create(ACROSS * ACROSS, position, faces, degree, corner, NULL, error);
+static void roof(int32_t i, int32_t j, double p[3]) {
+    double x = (double)i / SIDE - 0.5, y = (double)j / SIDE - 0.5;
+    p[0] = SIDE * x;
+    p[1] = SIDE * y;
+    p[2] = SIDE * (0.12 * cos(5 * x) + 0.08 * cos(4 * y + 2 * x * x));
 }
 
 /* Drags the handle up by `way` mean edges in 5 moves, and releases it. */
@@ -82,7 +72,7 @@ int main(int count, char **argument) { /* any argument: times, too */
     int32_t vertex = MIDDLE, i, j, n = 0;
     double iteration = 0; /* seconds of one */
     gproj_host host = {{NULL, NULL, NULL, NULL, 0}, {NULL, NULL}, {seconds, NULL}};
-    gproj_mesh *mesh = make_roof(NULL);
+    gproj_mesh *mesh = make_grid(SIDE, SIDE, roof, NULL);
     gproj_form *form = gproj_form_create(mesh, &host);
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     gproj_result result;

@@ -9,6 +9,11 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
+#include "grid.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 enum {
@@ -79,24 +84,19 @@ static void handle(editor *e, const char *event) {
     }
 }
 
+static void roof(int32_t i, int32_t j, double p[3]) {
+    double x = (double)i / SIDE - 0.5, y = (double)j / SIDE - 0.5;
+    p[0] = SIDE * x, p[1] = SIDE * y, p[2] = SIDE * (0.2 * cos(3 * x + y) * cos(2 * y) + 0.1 * x * y);
+}
+
 int main(void) {
     static const char *const script[] = {"solve", "wait", "grab", "move",   "move", "move", "drop",
                                          "grab",  "move", "move", "escape", "undo", "redo", NULL};
-    static double position[3 * ACROSS * ACROSS];
-    static int32_t degree[SIDE * SIDE], corner[4 * SIDE * SIDE];
     gproj_host host = {{NULL, NULL, NULL, NULL, 0}, {NULL, NULL}, {seconds, NULL}};
     editor e = {NULL, NULL, NULL, {NULL}, {0}, 0, 0};
-    int32_t i, faces = 0;
+    int32_t i;
     const char *const *next = script;
-    for (i = 0; i < ACROSS * ACROSS; ++i) {
-        double x = (double)(i / ACROSS) / SIDE - 0.5, y = (double)(i % ACROSS) / SIDE - 0.5, *p = position + 3 * i;
-        p[0] = SIDE * x, p[1] = SIDE * y, p[2] = SIDE * (0.2 * cos(3 * x + y) * cos(2 * y) + 0.1 * x * y);
-        if (i / ACROSS == SIDE || i % ACROSS == SIDE) continue;
-        corner[4 * faces] = i, corner[4 * faces + 1] = i + ACROSS;
-        corner[4 * faces + 2] = i + ACROSS + 1, corner[4 * faces + 3] = i + 1;
-        degree[faces++] = 4;
-    }
-    e.mesh = gproj_mesh_create(ACROSS * ACROSS, position, faces, degree, corner, &host, NULL);
+    e.mesh = make_grid(SIDE, SIDE, roof, NULL);
     e.form = gproj_form_create(e.mesh, &host);
     gproj_add_planarity(e.form, 1);
     gproj_add_fixed_corners(e.form, 1);

@@ -10,6 +10,9 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { ROUND = 88, RINGS = 11 }; /* vertices around (even), rings of panels (odd) */
 
 /* The point of the dome at angle `turn` in 0..1 and height parameter `up` in 0 (ground) .. 1 (opening). */

@@ -10,8 +10,10 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
-
 #include "../tools/forces.h"
+
+#include <math.h>
+#include <stdio.h>
 
 enum { LONG = 16, WIDE = 6, AROUND = 2 * (LONG + WIDE), RINGS = 8, EDGES = 1200 };
 

@@ -11,6 +11,9 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { LONG = 24, WIDE = 14 };
 
 /* A waved carpet with noise; every third strip of quads is cut into triangles. */

@@ -11,6 +11,9 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { FEET = 5, SIDE = 12, SECTOR = SIDE * (SIDE + 1) }; /* SIDE x SIDE panels in each sector */
 
 /* Vertex (a, b) of a sector; its side a = 0 is the side b = 0 of the next one, and (0, 0) is the middle of all. */

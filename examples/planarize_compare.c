@@ -11,7 +11,7 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
-#include "../tools/plot.h"
+#include "../tools/plot.h" /* with math.h and stdio.h */
 
 enum { SIDE = 20, POINTS = (SIDE + 1) * (SIDE + 1), QUADS = SIDE * SIDE, STEPS = 12 };
 

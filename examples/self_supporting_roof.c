@@ -11,33 +11,21 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
-
 #include "../tools/forces.h"
+#include "grid.h"
+
+#include <math.h>
+#include <stdio.h>
 
 enum { AROUND = 50, ALONG = 18, RINGS = ALONG + 1 };
 
-/* A trumpet with a foot: radius and height of the rings, and a rim with six high arches. */
-static gproj_mesh *make_canopy(gproj_error *error) {
-    static double position[3 * RINGS * AROUND];
-    static int32_t degree[ALONG * AROUND], corner[4 * ALONG * AROUND];
-    const double pi = 3.14159265358979;
-    int32_t i, j, k, f = 0;
-    for (i = 0; i < RINGS; ++i)
-        for (j = 0; j < AROUND; ++j) {
-            double t = (double)i / ALONG, turn = 2 * pi * j / AROUND, *p = position + 3 * (i * AROUND + j);
-            double r = 2.3 - 4.2 * t + 6.6 * t * t, z = 4.2 * sin(2.2 * t);
-            p[0] = 1.15 * r * cos(turn);
-            p[1] = r * sin(turn);
-            p[2] = z + 0.4 * t * t * t * cos(5 * turn);
-        }
-    for (i = 0; i < ALONG; ++i)
-        for (j = 0; j < AROUND; ++j, ++f) {
-            int32_t a = i * AROUND, b = a + AROUND, ring[4];
-            ring[0] = a + j, ring[1] = b + j, ring[2] = b + (j + 1) % AROUND, ring[3] = a + (j + 1) % AROUND;
-            for (k = 0; k < 4; ++k) corner[4 * f + k] = ring[k];
-            degree[f] = 4;
-        }
-    return gproj_mesh_create(RINGS * AROUND, position, f, degree, corner, NULL, error);
+/* Places vertex j of ring i: a trumpet with a foot, and a rim with five high arches. */
+static void canopy(int32_t i, int32_t j, double p[3]) {
+    double t = (double)i / ALONG, turn = 2 * 3.14159265358979 * j / AROUND;
+    double r = 2.3 - 4.2 * t + 6.6 * t * t, z = 4.2 * sin(2.2 * t);
+    p[0] = 1.15 * r * cos(turn);
+    p[1] = r * sin(turn);
+    p[2] = z + 0.4 * t * t * t * cos(5 * turn);
 }
 
 int main(void) {
@@ -47,7 +35,7 @@ int main(void) {
     gproj_supports supports = {2 * AROUND, support, NULL};
     gproj_schedule fair = {1, 0.9, 10};
     gproj_error error;
-    gproj_mesh *mesh = make_canopy(&error), *start = gproj_mesh_copy(mesh, NULL, NULL);
+    gproj_mesh *mesh = make_rings(ALONG, AROUND, canopy, &error), *start = gproj_mesh_copy(mesh, NULL, NULL);
     gproj_surface *design = gproj_surface_create(mesh, NULL, NULL);
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_forces forces;

@@ -5,11 +5,12 @@
    error can be told. The pattern is analysed once; then a second matrix, -u_xx - u_yy + 100 u, is factored without a
    new analysis and without any allocation.
 
-   Build:  cc -O2 sparse_solver.c -o sparse_solver -lm
-   Prints the size of the matrix and its factor, and the error of both solutions. */
+   Build and run:   cc -O2 sparse_solver.c -lm -o sparse_solver && ./sparse_solver
+   Prints:          the size of the matrix and its factor, and the error of both solutions */
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
 #include <stdio.h>
 
 enum {

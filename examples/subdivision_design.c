@@ -12,6 +12,9 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+
 enum { VERTICES = 37, SPANS = 6, FACES = 4 * SPANS, ARCH = 5 };
 
 /* Arches of five points, from the ground to the ground. */

@@ -10,8 +10,11 @@
 
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
-
 #include "../tools/forces.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 enum { AROUND = 36, ALONG = 16, RINGS = ALONG + 1 };
 

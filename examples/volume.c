@@ -10,6 +10,10 @@
 #define GUIDEDPROJ_IMPLEMENTATION
 #include "../guidedproj.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 enum { LONG = 16, WIDE = 14, HIGH = 9, NODES = (LONG + 1) * (WIDE + 1) * (HIGH + 1) };
 
 /* Is the cell inside the house: a nave, wings across it, and a tower where they meet? */

@@ -1,15 +1,17 @@
 #!/bin/bash
-# check_examples.sh - every example builds, runs, prints what tests/expected/NAME.txt says, is short, and is shown in
-# examples/README.md.
+# check_examples.sh - every example builds, also alone by the command at its top, runs, prints what tests/expected/NAME.txt
+# says, is short, and is shown in examples/README.md.
 . "$(dirname "$0")/checks.sh"
 
 ls "$root"/examples/*.c >/dev/null 2>&1 || { fail 'no examples'; report; }
-# -O1: compiling the library 14 times with -O2 would take longer than all other tests
+# -O1, for speed; the commands at the top are only parsed
 ${MAKE:-make} --no-print-directory -k -C "$root/examples" CFLAGS=-O1 build >"$work/make.txt" 2>&1 || cat "$work/make.txt"
 clean 'the examples compile with warnings' "$(grep -E 'warning:|error:' "$work/make.txt")"
 for source in "$root"/examples/*.c; do
     name=$(basename "$source" .c) expected=$root/tests/expected/$(basename "$source" .c).txt
     [ "$(wc -l <"$source")" -lt 120 ] && pass || fail "$name.c has 120 lines or more"
+    command=$(sed -nE '1,20s/^   Build and run:   (cc [^&]*) && .*/\1/p' "$source")
+    clean "the command at the top of $name.c" "$(cd "$root/examples" && { ${command:-false} -fsyntax-only || echo "fails: $command"; } 2>&1)"
     grep -q '^/\*' <(head -n 1 "$source") && pass || fail "$name.c does not begin with a comment"
     if [ ! -x "$root/examples/build/$name" ]; then
         fail "$name does not build"

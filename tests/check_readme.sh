@@ -67,13 +67,15 @@ tool=$(realpath "${GPROJ_TOOL:-build/tool}")
 touch "$work/help.txt"
 [ ! -x "$tool" ] || "$tool" --help >"$work/help.txt"
 python3 "$work/readme.py" "$root" "$work" || fail 'readme.py'
+compile="gcc -std=c99 -O1 -Wall -Wextra -Wpedantic -Werror -I'$root'"
+library=$(realpath -q build/library.a) # compiled once for all tests
 for where in manual readme; do
     found=0
     for program in "$work/${where}"_*.c; do
         [ -f "$program" ] || continue
         found=1 name=$(basename "$program" .c)
         job "program of the $where does not compile ($name)" \
-            "gcc -std=c99 -O1 -Wall -Wextra -Wpedantic -Werror -I'$root' '$program' -lm -o $name"
+            "$compile -fsyntax-only '$program' && $compile ${library:+-DGPROJI_IMPLEMENTED} '$program' $library -lm -o $name"
     done
     [ $found = 1 ] || fail "no C program found in the $where"
 done

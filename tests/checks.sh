@@ -42,6 +42,20 @@ run_jobs() {
     queued=0
 }
 
+# symbols LABEL OBJECT: the library's object exports names with the prefix only, holds no mutable data, and calls no function
+# of the C library that it does without.
+symbols() {
+    local list
+    list=$(nm "$2" 2>&1)
+    grep -q ' T gproj_' <<<"$list" && pass || fail "$1: no function is exported"
+    clean "$1: exported names without the prefix gproj_" "$(awk 'NF == 3 && $2 ~ /[A-Z]/ && $3 !~ /^gproj_/' <<<"$list")"
+    clean "$1: mutable data" "$(awk 'NF == 3 && $2 ~ /^[DdBbCcGgSsVvu]$/' <<<"$list")"
+    clean "$1: functions of the C library that this library does without" "$(awk '
+        $1 == "U" && $2 ~ /^(setlocale|localeconv|strtod|strtof|strtold|atof|v?f?printf|v?sn?printf|v?f?scanf|puts|putchar|fputs|fputc|exit|_exit|abort|__errno_location|rand|time|clock|getenv|stdout|stderr|stdin)$/' <<<"$list")"
+}
+# Constant tables of pointers are constant data only if the code is not position-independent, else data to be relocated.
+fixed='-fno-pic -fno-pie'
+
 # The header and what a compiler needs to find it.
 printf '#include "guidedproj.h"\n' >"$work/header.c"
 printf '#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n' >"$work/whole.c"

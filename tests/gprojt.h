@@ -16,7 +16,8 @@ static int gprojt_failed_checks;
 static int gprojt_passed_tests, gprojt_failed_tests, gprojt_skipped_tests;
 static const char *gprojt_skip_reason;
 
-/* GPROJT_TEST(name) { ... } defines a test; GPROJT_RUN(name) in main runs it and prints a line. */
+/* GPROJT_TEST(name) { ... } defines a test; GPROJT_RUN(name) in main runs it and prints a line. With GPROJT_ONLY in the
+   environment it runs only if its name begins so. */
 #define GPROJT_TEST(name) static void gprojt_test_##name(void)
 #define GPROJT_RUN(name) gprojt_run(#name, gprojt_test_##name)
 
@@ -54,6 +55,8 @@ static void gprojt_fail(const char *file, int line, const char *what) {
 }
 
 static void gprojt_run(const char *name, void (*test)(void)) {
+    const char *only = getenv("GPROJT_ONLY");
+    if (only && strncmp(name, only, strlen(only)) != 0) return;
     gprojt_failed_checks = 0;
     gprojt_skip_reason = NULL;
     test();

@@ -107,6 +107,7 @@ for levels in 0 15 1.5 2,lop ,loop x; do
 done
 expect 2 "one is needed" grid.obj --fill curve.obj -o new.obj
 expect 2 "add --fill" grid.obj -o new.obj --planar --sides 4,4,4,4
+expect 2 "add --equilibrium" grid.obj -o new.obj --compressive
 for sides in 4,4,,4 4,4,0,4 4,4, x 1.5; do
     expect 2 "expected N,N,..." --fill curve.obj -o new.obj --sides "$sides"
 done

@@ -3,12 +3,17 @@
        cc -O2 -o guidedproj guidedproj.c -lm -lpthread
        ./guidedproj roof.obj -o flat.obj --planar --glide boundary --picture flat.svg
 
-   From top to bottom: the run and its errors; numbers and words; one reader for each kind of value; the table of
-   options; the command line; files; the form; progress; outputs (mesh, report, picture); signals; main. */
+   From top to bottom: the run and its errors; numbers and words; readers of values; files; seams; builders of
+   constraints and wishes; the table of options, which names a reader and a builder for each; the command line; the
+   solve; outputs (mesh, report, picture); signals; main.
+
+   A new option is a row in the table. Where no reader or builder fits, it has one of its own. */
 #define _XOPEN_SOURCE 700
 
+#ifndef GPROJI_IMPLEMENTED /* else the library is linked: tests compile it once */
 #define GPROJ_STATIC
 #define GUIDEDPROJ_IMPLEMENTATION
+#endif
 #include "../guidedproj.h"
 
 #include <ctype.h>
@@ -24,6 +29,7 @@
 #include <unistd.h>
 
 #include "picture.h"
+#include "report.h"
 #include "threads.h"
 
 #ifdef GPROJ_VERSION
@@ -53,27 +59,16 @@ enum {
 
 static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
 
-typedef struct tool_weight { /* a weight with its schedule; last 0: a few iterations */
+typedef struct tool_demand { /* what an option that adds to the form was given; each kind sets some members */
     bool given;
     double weight, decay;
-    int32_t last;
-} tool_weight;
-
-typedef struct tool_word { /* the value of --fix, --glide, --reference: a word or a path, and a weight */
-    const char *text;
+    int32_t last;     /* iteration with this weight; 0: a few iterations */
+    const char *text; /* a word or a path, `length` bytes */
     size_t length;
-    tool_weight weight;
-} tool_word;
-
-typedef struct tool_volume { /* an absolute one, or a factor of the input's */
-    bool given, factor;
-    double value;
-} tool_volume;
-
-typedef struct tool_range { /* at least and at most; 0: no bound */
-    bool given;
-    double min, max, weight;
-} tool_range;
+    double min, max; /* bounds */
+    double amount;   /* volume, area or cost */
+    bool factor;     /* `amount` multiplies the input's */
+} tool_demand;
 
 typedef struct tool_move {
     int32_t vertex;
@@ -88,16 +83,6 @@ typedef struct tool_subdivision {
 typedef struct tool_sides { /* numbers of edges */
     int32_t count, edges[MOST_SIDES];
 } tool_sides;
-
-typedef struct tool_record { /* of one iteration, for the report */
-    gproj_iteration iteration;
-    double planarity_max, planarity_mean;
-    int32_t group_start, group_count; /* in tool.group_record */
-} tool_record;
-
-typedef struct tool_group_record {
-    double weight, norm, max;
-} tool_group_record;
 
 typedef struct tool_output {
     const char *path;
@@ -127,36 +112,30 @@ typedef struct tool {
     tool_subdivision subdivision;
     double lift; /* 0: none */
     double weld; /* in mean edge lengths; 0: vertices at the same place stay apart */
-    tool_weight planar, circular, conical, planar_boundary, straight_boundary, orthogonal_boundary, lifting, closeness,
-        fairness, boundary_fairness, tangential, gauss, parallelograms, equal_areas;
-    tool_weight equal_lengths;
-    tool_range edge_length, face_area;
-    tool_volume volume, total_area, cost;
-    double length_price, area_price;
-    tool_weight equilibrium, compressive, tensile, force_fairness;
-    tool_range stress;
+    tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
+        supports, reference, closeness, equal_areas;
+    tool_demand own[MOST_OPTIONS];   /* by row: options that only their builders read */
+    double length_price, area_price; /* --cost */
     double density, area_load, snow;
     const char *loads;
-    bool loads_given; /* any of them */
-    tool_word supports;
-    tool_word *fix, *glide; /* as many as the command line has words, at most */
+    bool loads_given;         /* any of the four */
+    tool_demand *fix, *glide; /* room for all words of the command line */
     tool_move *move;
-    int32_t *move_group; /* for each of `move`: its group in the form, -1: none of its own */
+    int32_t *move_group; /* the group of each move in the form; -1: an earlier move has it */
     int32_t fix_count, glide_count, move_count;
-    tool_word reference;
     int32_t iterations, threads;
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
-    const struct tool_colour *colour; /* what colours the faces of the picture; NULL: planarity */
-    bool nearest, allow_spoiled, view_given, quiet, help, version;
-    bool seen[MOST_OPTIONS];
+    const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
+    bool nearest, allow_spoiled, quiet, help, version;
+    bool seen[MOST_OPTIONS]; /* by row */
 
     /* the work */
     gproj_host host;
     gprojx_threads *pool;
-    gproj_mesh *mesh, *reference_mesh, *probe; /* probe: a copy for measures of intermediate shapes */
+    gproj_mesh *mesh, *reference_mesh;
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
     int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
@@ -166,26 +145,23 @@ typedef struct tool {
     gproj_form *form;
     gproj_result result;
     double *original, *planarity_before, *planarity;
-    double *shade;                        /* of each face, what colours it; NULL: its planarity */
-    double *point_load;                   /* of --loads */
-    double *imbalance_before, *imbalance; /* of faces: what the best forces leave unbalanced */
+    double *shade;                        /* each face's --colour; NULL: planarity colours the faces */
+    double *point_load;                   /* --loads */
+    double *imbalance_before, *imbalance; /* each face's load that the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
     bool *is_support;
     gproj_forces forces;
     gproj_measures before, after;
     double volume_before;
-    tool_record *record;
-    int32_t record_count;
-    tool_group_record *group_record;
-    int32_t group_record_count, group_record_capacity;
+    gprojx_history history; /* with --report */
     double start, read_seconds, setup_seconds, solve_seconds;
     bool bar; /* the last thing on the terminal is the progress bar */
 
     int exit_code; /* once something has failed */
 } tool;
 
-/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F)
-   that terminals obey. */
+/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F) that
+   terminals obey. */
 static void print_plain(FILE *file, const char *text) {
     for (; *text; ++text) {
         unsigned char c = (unsigned char)*text, after = (unsigned char)text[1];
@@ -195,7 +171,7 @@ static void print_plain(FILE *file, const char *text) {
     }
 }
 
-/* Every failure of the tool passes through here: one sentence, and the exit code. Returns false. */
+/* Prints a failure's sentence and keeps the exit code; every failure passes through here. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
     char sentence[8192];
     va_list list;
@@ -213,7 +189,7 @@ static bool fail(tool *t, int exit_code, const char *format, ...) {
 
 static bool fail_memory(tool *t) { return fail(t, EXIT_MEMORY, "out of memory"); }
 
-/* An error of the library about a file, or about the form where `path` is NULL. */
+/* Passes on an error of the library about a file; path NULL: about the form. */
 static bool fail_library(tool *t, const char *path, const gproj_error *error) {
     int code = error->code == GPROJ_ERROR_MEMORY ? EXIT_MEMORY : EXIT_REFUSED;
     const char *message = error->message[0] ? error->message : gproj_code_string(error->code);
@@ -240,12 +216,12 @@ static bool same_word(const char *text, size_t size, const char *word) {
     return strlen(word) == size && memcmp(text, word, size) == 0;
 }
 
-/* All of text[0..size-1] is one finite number. */
+/* Reads text[0..size-1], all of which must be one finite number. */
 static bool read_number(const char *text, size_t size, double *value) {
     return size > 0 && gproj_number_read(text, size, value) == size && fabs(*value) <= 1.7976931348623157e308;
 }
 
-/* All of text[0..size-1] is a whole number in low..high. */
+/* Reads text[0..size-1], all of which must be a whole number in low..high. */
 static bool read_integer(const char *text, size_t size, int32_t low, int32_t high, int32_t *value) {
     int64_t sum = 0;
     size_t i;
@@ -258,37 +234,52 @@ static bool read_integer(const char *text, size_t size, int32_t low, int32_t hig
     return true;
 }
 
-/* W[*DECAY][:N] */
-static bool read_schedule(const char *text, size_t size, tool_weight *weight) {
+/* Reads W[*DECAY][:N]; leaves the demand alone if that fails. */
+static bool read_schedule(const char *text, size_t size, tool_demand *demand) {
     const char *colon = (const char *)memchr(text, ':', size), *star;
-    tool_weight read = {true, 1, 1, 0};
+    double weight, decay = 1;
+    int32_t last = 0;
     size_t body = colon ? (size_t)(colon - text) : size, first;
-    if (colon && !read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &read.last)) return false;
+    if (colon && !read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
     star = (const char *)memchr(text, '*', body);
     first = star ? (size_t)(star - text) : body;
-    if (!read_number(text, first, &read.weight) || read.weight < 0) return false;
-    if (star && !read_number(star + 1, body - first - 1, &read.decay)) return false;
-    if (read.decay <= 0 || read.decay > 1) return false;
-    *weight = read;
+    if (!read_number(text, first, &weight) || weight < 0) return false;
+    if (star && !read_number(star + 1, body - first - 1, &decay)) return false;
+    if (decay <= 0 || decay > 1) return false;
+    demand->given = true;
+    demand->weight = weight, demand->decay = decay, demand->last = last;
     return true;
 }
 
-/* WORD[=W[*DECAY][:N]], cut at the last '=' where a weight follows it. */
-static tool_word split_word(const char *text, double usual_weight) {
+/* Reads WORD[=W[*DECAY][:N]], cut at the last '=' if a weight follows it. */
+static tool_demand split_word(const char *text, double usual_weight) {
     const char *equals = strrchr(text, '=');
-    tool_word word;
+    tool_demand word;
+    memset(&word, 0, sizeof word);
+    word.given = true;
     word.text = text;
     word.length = strlen(text);
-    word.weight.given = true, word.weight.weight = usual_weight, word.weight.decay = 1, word.weight.last = 0;
-    if (equals && read_schedule(equals + 1, strlen(equals + 1), &word.weight)) word.length = (size_t)(equals - text);
+    word.weight = usual_weight, word.decay = 1;
+    if (equals && read_schedule(equals + 1, strlen(equals + 1), &word)) word.length = (size_t)(equals - text);
     return word;
 }
 
-/* The number of edits (insert, delete, replace, swap neighbours) that turn one word into another. */
+static bool has_constant_weight(const tool_demand *demand) { return demand->decay >= 1 && demand->last == 0; }
+
+static bool has_ending(const char *path, const char *ending) {
+    size_t size = strlen(path), length = strlen(ending), i;
+    if (size <= length) return false;
+    for (i = 0; i < length; ++i)
+        if (tolower((unsigned char)path[size - length + i]) != ending[i]) return false;
+    return true;
+}
+
+/* Counts the edits (insert, delete, replace, swap neighbours) that turn one word into another [Damerau 1964]. */
 static int edit_distance(const char *a, size_t size, const char *b) {
     enum {
         MOST = 24
     };
+    /* d[i][j]: between the first i letters of a and the first j of b. */
     int d[MOST + 1][MOST + 1] = {{0}}, rows = (int)size, columns = (int)strlen(b), i, j;
     if (rows > MOST || columns > MOST) return MOST;
     for (i = 0; i <= rows; ++i)
@@ -312,9 +303,9 @@ enum {
     HINT_SIZE = 48
 };
 
-/* "; did you mean WORD?" where one of the words, which end with NULL, is like this one; else "". */
+/* Returns "; did you mean WORD?" if one of the words (NULL at the end) is like this one, else "". */
 static const char *did_you_mean(const char *text, size_t size, const char *const *words, char hint[HINT_SIZE]) {
-    int best = 3; /* edits that are no typing error any more */
+    int best = 3; /* edits: too many for a typing error */
     hint[0] = 0;
     for (; *words; ++words) {
         int distance = edit_distance(text, size, *words);
@@ -325,7 +316,11 @@ static const char *did_you_mean(const char *text, size_t size, const char *const
     return hint;
 }
 
-/* ---- readers of values: `place` is the option's member of the tool ---- */
+/* ---- readers of values: `place` is the member of the tool that an option sets ---- */
+
+static bool fail_value(tool *t, const char *name, const char *value, const char *expected) {
+    return fail(t, EXIT_USAGE, "--%s %s: expected %s", name, value, expected);
+}
 
 static bool set_flag(tool *t, void *place, const char *name, const char *value) {
     (void)t, (void)name, (void)value;
@@ -334,155 +329,151 @@ static bool set_flag(tool *t, void *place, const char *name, const char *value) 
 }
 
 static bool set_path(tool *t, void *place, const char *name, const char *value) {
-    if (!value[0]) return fail(t, EXIT_USAGE, "--%s needs a path", name);
-    ((tool_output *)place)->path = value;
-    return true;
+    *(const char **)place = value;
+    return value[0] || fail(t, EXIT_USAGE, "--%s needs a path", name);
 }
 
-/* DISTANCE,FILE */
+static bool set_output(tool *t, void *place, const char *name, const char *value) {
+    return set_path(t, &((tool_output *)place)->path, name, value);
+}
+
+/* Reads DISTANCE,FILE. */
 static bool set_offset(tool *t, void *place, const char *name, const char *value) {
     const char *comma = strchr(value, ',');
     ((tool_output *)place)->path = comma ? comma + 1 : NULL;
-    if (comma && comma[1] && read_number(value, (size_t)(comma - value), &t->offset_distance) &&
-        fabs(t->offset_distance) > 0)
-        return true;
-    return fail(t, EXIT_USAGE,
-                "--%s %s: expected DISTANCE,FILE: a distance other than 0, and where to write (as in "
-                "0.3,offset.obj)",
-                name, value);
+    return (comma && comma[1] && read_number(value, (size_t)(comma - value), &t->offset_distance) &&
+            fabs(t->offset_distance) > 0) ||
+           fail_value(t, name, value,
+                      "DISTANCE,FILE: a distance other than 0, and where to write (as in 0.3,offset.obj)");
 }
 
-/* What must hold: a constant weight. */
+/* Reads the constant weight of what must hold: 1 if it is left out. */
 static bool set_must(tool *t, void *place, const char *name, const char *value) {
-    tool_weight *weight = (tool_weight *)place;
-    weight->given = true, weight->weight = 1;
-    if (value && (!read_number(value, strlen(value), &weight->weight) || weight->weight < 0))
-        return fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number, 0 or larger", name, value);
-    return true;
+    tool_demand *demand = (tool_demand *)place;
+    demand->given = true, demand->weight = 1;
+    return !value || (read_number(value, strlen(value), &demand->weight) && demand->weight >= 0) ||
+           fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number, 0 or larger", name, value);
 }
 
+/* Reads a wish's schedule: weight 1 if it is left out. */
 static bool set_wish(tool *t, void *place, const char *name, const char *value) {
-    if (read_schedule(value, strlen(value), (tool_weight *)place)) return true;
-    return fail(
-        t, EXIT_USAGE,
-        "--%s %s: expected W[*DECAY][:N] with a weight W of 0 or larger, a DECAY above 0 and at most 1, and a last "
-        "iteration N of 1 or larger (as in '0.2*0.9:6')",
-        name, value);
+    if (!value) value = "1";
+    return read_schedule(value, strlen(value), (tool_demand *)place) ||
+           fail_value(t, name, value,
+                      "W[*DECAY][:N] with a weight W of 0 or larger, a DECAY above 0 and at most 1, and a last "
+                      "iteration N of 1 or larger (as in '0.2*0.9:6')");
 }
 
-/* A wish whose value may be left out: then it has weight 1. */
-static bool set_wish_or_one(tool *t, void *place, const char *name, const char *value) {
-    return set_wish(t, place, name, value ? value : "1");
-}
-
-/* V, or xF. */
-static bool read_volume(const char *text, tool_volume *volume) {
-    volume->given = true;
-    volume->factor = text[0] == 'x';
-    return read_number(text + volume->factor, strlen(text + volume->factor), &volume->value);
+/* Reads V, or xF. */
+static bool read_amount(const char *text, tool_demand *demand) {
+    demand->given = true, demand->weight = 1;
+    demand->factor = text[0] == 'x';
+    return read_number(text + demand->factor, strlen(text + demand->factor), &demand->amount);
 }
 
 static bool set_volume(tool *t, void *place, const char *name, const char *value) {
-    if (read_volume(value, (tool_volume *)place)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a volume, or x and a factor of the input's volume (as in x1.2)", name,
-                value);
+    return read_amount(value, (tool_demand *)place) ||
+           fail_value(t, name, value, "a volume, or x and a factor of the input's volume (as in x1.2)");
 }
 
 static bool set_total_area(tool *t, void *place, const char *name, const char *value) {
-    tool_volume *area = (tool_volume *)place;
-    if (read_volume(value, area) && area->value > 0) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected an area above 0, or x and a factor of the input's area (as in x1.2)",
-                name, value);
+    tool_demand *area = (tool_demand *)place;
+    return (read_amount(value, area) && area->amount > 0) ||
+           fail_value(t, name, value, "an area above 0, or x and a factor of the input's area (as in x1.2)");
 }
 
-/* MIN,MAX[=W]; what is left out stays as it is. */
-static bool read_range(const char *value, tool_range *range) {
-    tool_word word = split_word(value, 1);
+/* Reads MIN,MAX[=W]; a bound that is left out stays as it is. */
+static bool read_range(const char *value, tool_demand *range) {
+    tool_demand word = split_word(value, 1);
     const char *comma = (const char *)memchr(word.text, ',', word.length);
     size_t first = comma ? (size_t)(comma - word.text) : 0, rest = comma ? word.length - first - 1 : 0;
-    range->given = true;
-    range->weight = word.weight.weight;
-    return first + rest > 0 && !(word.weight.decay < 1) && word.weight.last == 0 &&
+    word.min = range->min, word.max = range->max;
+    *range = word;
+    return first + rest > 0 && has_constant_weight(range) &&
            (first == 0 || read_number(word.text, first, &range->min)) &&
            (rest == 0 || read_number(comma + 1, rest, &range->max)) &&
            (first == 0 || rest == 0 || range->min <= range->max);
 }
 
-/* Of lengths and areas: 0 is no bound. */
+/* Reads bounds of lengths and areas: 0 is none. */
 static bool set_range(tool *t, void *place, const char *name, const char *value) {
-    tool_range *range = (tool_range *)place;
+    tool_demand *range = (tool_demand *)place;
     const char *comma = strchr(value, ',');
     bool bounded = comma && comma[1] && comma[1] != '=';
-    if (read_range(value, range) && range->min >= 0 && range->max >= 0 && (!bounded || range->max > 0)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX", name, value);
+    return (read_range(value, range) && range->min >= 0 && range->max >= 0 && (!bounded || range->max > 0)) ||
+           fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX");
 }
 
-/* Of stresses, of either sign. */
+/* Reads bounds of stresses, of either sign. */
 static bool set_stress(tool *t, void *place, const char *name, const char *value) {
-    tool_range *range = (tool_range *)place;
+    tool_demand *range = (tool_demand *)place;
     range->min = -HUGE_VAL, range->max = HUGE_VAL;
-    if (read_range(value, range)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected MIN,MAX or MIN, or ,MAX with MIN <= MAX", name, value);
+    return read_range(value, range) || fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with MIN <= MAX");
 }
 
-/* LENGTHPRICE,AREAPRICE,MAX or ...,xF */
+/* Reads LENGTHPRICE,AREAPRICE,MAX; MAX may be xF. */
 static bool set_cost(tool *t, void *place, const char *name, const char *value) {
     const char *first = strchr(value, ','), *second = first ? strchr(first + 1, ',') : NULL;
-    tool_volume *cost = (tool_volume *)place;
+    tool_demand *cost = (tool_demand *)place;
     if (second && read_number(value, (size_t)(first - value), &t->length_price) &&
-        read_number(first + 1, (size_t)(second - first - 1), &t->area_price) && read_volume(second + 1, cost) &&
-        t->length_price >= 0 && t->area_price >= 0 && t->length_price + t->area_price > 0 && cost->value > 0)
+        read_number(first + 1, (size_t)(second - first - 1), &t->area_price) && read_amount(second + 1, cost) &&
+        t->length_price >= 0 && t->area_price >= 0 && t->length_price + t->area_price > 0 && cost->amount > 0)
         return true;
-    return fail(t, EXIT_USAGE,
-                "--%s %s: expected LENGTHPRICE,AREAPRICE,MAX: prices of 0 or larger, not both 0, and the largest cost, "
-                "or x and a factor of the input's cost (as in 1,2,x0.9)",
-                name, value);
+    return fail_value(t, name, value,
+                      "LENGTHPRICE,AREAPRICE,MAX: prices of 0 or larger, not both 0, and the largest cost, or x and a "
+                      "factor of the input's cost (as in 1,2,x0.9)");
 }
 
 static bool set_load(tool *t, void *place, const char *name, const char *value) {
     t->loads_given = true;
-    if (read_number(value, strlen(value), (double *)place)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a number", name, value);
+    return read_number(value, strlen(value), (double *)place) || fail_value(t, name, value, "a number");
 }
 
 static bool set_loads_file(tool *t, void *place, const char *name, const char *value) {
     t->loads_given = true;
-    if (!value[0]) return fail(t, EXIT_USAGE, "--%s needs a path", name);
-    *(const char **)place = value;
-    return true;
+    return set_path(t, place, name, value);
 }
 
 static bool set_supports(tool *t, void *place, const char *name, const char *value) {
     (void)t, (void)name;
-    ((tool_word *)place)->text = value;
-    ((tool_word *)place)->length = strlen(value);
+    ((tool_demand *)place)->text = value;
+    ((tool_demand *)place)->length = strlen(value);
     return true;
 }
 
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
-    if (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a number larger than 0", name, value);
+    return (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) ||
+           fail_value(t, name, value, "a number larger than 0");
+}
+
+static bool read_count(tool *t, int32_t *count, const char *name, const char *value, int32_t low, int32_t high) {
+    return read_integer(value, strlen(value), low, high, count) ||
+           fail(t, EXIT_USAGE, "--%s %s: expected a whole number from %d to %d", name, value, (int)low, (int)high);
 }
 
 static bool set_iterations(tool *t, void *place, const char *name, const char *value) {
-    if (read_integer(value, strlen(value), 1, MOST_ITERATIONS, (int32_t *)place)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_ITERATIONS);
+    return read_count(t, (int32_t *)place, name, value, 1, MOST_ITERATIONS);
+}
+
+static bool set_threads(tool *t, void *place, const char *name, const char *value) {
+    int32_t *threads = (int32_t *)place;
+    if (!read_count(t, threads, name, value, 0, MOST_THREADS)) return false;
+    if (*threads == 0) *threads = (int32_t)fmax(1, fmin(MOST_THREADS, (double)sysconf(_SC_NPROCESSORS_ONLN)));
+    return true;
 }
 
 static bool set_file_limit(tool *t, void *place, const char *name, const char *value) {
-    if (read_integer(value, strlen(value), 1, MOST_MEGABYTES, (int32_t *)place)) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d", name, value, MOST_MEGABYTES);
+    return read_count(t, (int32_t *)place, name, value, 1, MOST_MEGABYTES);
 }
 
 static bool set_subdivision(tool *t, void *place, const char *name, const char *value) {
     tool_subdivision *subdivision = (tool_subdivision *)place;
     size_t size = strcspn(value, ",");
-    const char *rest = value + size;
-    if (!read_integer(value, size, 1, MOST_LEVELS, &subdivision->levels) || (*rest && strcmp(rest, ",loop") != 0))
-        return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d, with ,loop for triangles", name,
-                    value, MOST_LEVELS);
-    subdivision->scheme = *rest ? GPROJ_LOOP : GPROJ_CATMULL_CLARK;
-    return true;
+    bool loop = strcmp(value + size, ",loop") == 0;
+    subdivision->scheme = loop ? GPROJ_LOOP : GPROJ_CATMULL_CLARK;
+    return (read_integer(value, size, 1, MOST_LEVELS, &subdivision->levels) && (loop || !value[size])) ||
+           fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d, with ,loop for triangles", name, value,
+                MOST_LEVELS);
 }
 
 static bool set_sides(tool *t, void *place, const char *name, const char *value) {
@@ -491,7 +482,7 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
     for (;; ++at) {
         size_t size = strcspn(at, ",");
         if (sides->count == MOST_SIDES || !read_integer(at, size, 1, 100000, &sides->edges[sides->count]))
-            return fail(t, EXIT_USAGE, "--%s %s: expected N,N,...: a number of edges for each side", name, value);
+            return fail_value(t, name, value, "N,N,...: a number of edges for each side");
         sides->count++;
         at += size;
         if (!*at) return true;
@@ -500,32 +491,21 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
 
 static bool set_lift(tool *t, void *place, const char *name, const char *value) {
     double *lift = (double *)place;
-    if (read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) return true;
-    return fail(t, EXIT_USAGE, "--%s %s: expected a height, not 0, of at most 1e50", name, value);
+    return (read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) ||
+           fail_value(t, name, value, "a height, not 0, of at most 1e50");
 }
 
 static bool set_weld(tool *t, void *place, const char *name, const char *value) {
     double *weld = (double *)place;
     *weld = SAME_PLACE;
-    if (!value || (read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1)) return true;
-    return fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, above 0 and at most 1", name, value);
+    return !value || (read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1) ||
+           fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, above 0 and at most 1", name, value);
 }
 
-static bool set_threads(tool *t, void *place, const char *name, const char *value) {
-    int32_t *threads = (int32_t *)place;
-    if (!read_integer(value, strlen(value), 0, MOST_THREADS, threads))
-        return fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 0 to %d", name, value, MOST_THREADS);
-    if (*threads == 0) {
-        long cores = sysconf(_SC_NPROCESSORS_ONLN);
-        *threads = cores < 1 ? 1 : cores > MOST_THREADS ? MOST_THREADS : (int32_t)cores;
-    }
-    return true;
-}
-
-static bool add_word(tool *t, tool_word *words, int32_t *count, const char *name, const char *value) {
-    tool_word word = split_word(value, 1);
+static bool add_word(tool *t, tool_demand *words, int32_t *count, const char *name, const char *value) {
+    tool_demand word = split_word(value, 1);
     if (word.length == 0) return fail(t, EXIT_USAGE, "--%s: expected a word, a list or a file before the weight", name);
-    if (word.weight.decay < 1 || word.weight.last > 0)
+    if (!has_constant_weight(&word))
         return fail(t, EXIT_USAGE, "--%s %s: what must hold has a constant weight", name, value);
     words[(*count)++] = word;
     return true;
@@ -542,13 +522,13 @@ static bool add_glide(tool *t, void *place, const char *name, const char *value)
 }
 
 static bool set_reference(tool *t, void *place, const char *name, const char *value) {
-    *(tool_word *)place = split_word(value, 0.1);
-    return ((tool_word *)place)->length > 0 || fail(t, EXIT_USAGE, "--%s: expected a mesh file", name);
+    *(tool_demand *)place = split_word(value, 0.1);
+    return ((tool_demand *)place)->length > 0 || fail(t, EXIT_USAGE, "--%s: expected a mesh file", name);
 }
 
-/* I,X,Y,Z[=W] */
+/* Reads I,X,Y,Z[=W]. */
 static bool add_move(tool *t, void *place, const char *name, const char *value) {
-    tool_word word = split_word(value, 1);
+    tool_demand word = split_word(value, 1);
     tool_move *move = &t->move[t->move_count];
     const char *at = word.text, *end = word.text + word.length, *comma;
     int32_t k, i;
@@ -559,11 +539,10 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
         if (!comma) comma = end;
         good = k == 0 ? read_integer(at, (size_t)(comma - at), 0, INT32_MAX - 1, &move->vertex)
                       : read_number(at, (size_t)(comma - at), &move->position[k - 1]);
-        if (!good || (comma < end) != (k < 3) || word.weight.decay < 1 || word.weight.last > 0)
-            return fail(t, EXIT_USAGE, "--%s %s: expected I,X,Y,Z: a vertex and the three coordinates of its new place",
-                        name, value);
+        if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word))
+            return fail_value(t, name, value, "I,X,Y,Z: a vertex and the three coordinates of its new place");
     }
-    move->weight = word.weight.weight;
+    move->weight = word.weight;
     for (i = 0; i < t->move_count; ++i)
         if (t->move[i].vertex == move->vertex)
             return fail(t, EXIT_USAGE, "--%s: vertex %ld is moved twice", name, (long)move->vertex);
@@ -571,7 +550,7 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
     return true;
 }
 
-/* A name, or AZIMUTH,ELEVATION in degrees. */
+/* Reads a name, or AZIMUTH,ELEVATION in degrees. */
 static bool set_view(tool *t, void *place, const char *name, const char *value) {
     static const struct {
         const char *name;
@@ -582,31 +561,27 @@ static bool set_view(tool *t, void *place, const char *name, const char *value) 
     gprojx_view *view = (gprojx_view *)place;
     const char *comma = strchr(value, ',');
     size_t i;
-    t->view_given = true;
     for (i = 0; i < sizeof views / sizeof views[0]; ++i)
         if (strcmp(value, views[i].name) == 0) {
             *view = views[i].view;
             return true;
         }
-    view->parallel = false;
-    if (comma && read_number(value, (size_t)(comma - value), &view->azimuth) &&
-        read_number(comma + 1, strlen(comma + 1), &view->elevation) && fabs(view->azimuth) <= 3600 &&
-        fabs(view->elevation) <= 90)
-        return true;
-    return fail(t, EXIT_USAGE,
-                "--%s %s: expected iso, top, bottom, front, back, left, right, side, or AZIMUTH,ELEVATION in degrees",
-                name, value);
+    return (comma && read_number(value, (size_t)(comma - value), &view->azimuth) &&
+            read_number(comma + 1, strlen(comma + 1), &view->elevation) && fabs(view->azimuth) <= 3600 &&
+            fabs(view->elevation) <= 90) ||
+           fail_value(t, name, value,
+                      "iso, top, bottom, front, back, left, right, side, or AZIMUTH,ELEVATION in degrees");
 }
 
-/* ---- what colours the faces of a picture ---- */
+/* ---- colours of faces in a picture ---- */
 
 typedef struct tool_colour {
     const char *name, *legend;
-    double high; /* the end of its linear scale, which begins at 0 */
+    double high; /* the linear scale goes from 0 to this */
     double (*value)(const tool *t, int32_t face);
 } tool_colour;
 
-/* The area of a face over the mean of all. */
+/* A face's area over the mean area. */
 static double area_of_face(const tool *t, int32_t face) {
     double a[3];
     gproj_mesh_face_area_vector(t->mesh, face, a);
@@ -654,407 +629,17 @@ static const tool_colour colours[] = {
 };
 
 static bool set_colour(tool *t, void *place, const char *name, const char *value) {
-    static const char *const words[] = {"planarity", "area", "parallelogram", "bend", NULL};
+    const char *words[sizeof colours / sizeof colours[0] + 1] = {NULL};
     char hint[HINT_SIZE];
     size_t i;
-    for (i = 0; i < sizeof colours / sizeof colours[0]; ++i)
-        if (strcmp(value, colours[i].name) == 0) {
-            *(const tool_colour **)place = &colours[i];
-            return true;
-        }
+    for (i = 0; i < sizeof colours / sizeof colours[0]; ++i) {
+        words[i] = colours[i].name;
+        if (strcmp(value, words[i]) != 0) continue;
+        *(const tool_colour **)place = &colours[i];
+        return true;
+    }
     return fail(t, EXIT_USAGE, "--%s %s: expected planarity, area, parallelogram or bend%s", name, value,
                 did_you_mean(value, strlen(value), words, hint));
-}
-
-/* ---- the table of options ---- */
-
-typedef struct tool_option {
-    char letter; /* 'o' for -o; 0: none */
-    const char *name;
-    const char *value; /* its syntax: "" none, "[=W]" may be left out, else needed */
-    bool repeatable;
-    const char *help;
-    const char *section; /* a heading above this option; NULL: none */
-    bool (*read)(tool *t, void *place, const char *name, const char *value);
-    size_t place; /* offset in tool, for `read` */
-} tool_option;
-
-#define PLACE(member) offsetof(tool, member)
-
-static const tool_option options[] = {
-    {'o', "output", "FILE", false, "the result, .obj or .off (needed)", "files", set_path, PLACE(output[OUTPUT_MESH])},
-
-    {0, "file-limit", "MB", false, "files are read up to this size (1024)", NULL, set_file_limit, PLACE(file_limit)},
-
-    {0, "fill", "CURVE", false,
-     "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
-     "first polyline, closed, else all "
-     "its vertices. The boundary's vertices come first",
-     "where it begins", set_path, PLACE(fill)},
-    {0, "sides", "N,N,...", false,
-     "the numbers of edges of the curve's sides, from corner to corner (by its mean edge if left out)", NULL, set_sides,
-     PLACE(sides)},
-    {0, "subdivide", "N[,loop]", false,
-     "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
-     "triangle four (Loop). The cage's vertices keep their numbers",
-     NULL, set_subdivision, PLACE(subdivision)},
-    {0, "weld", "[=TOL]", false,
-     "boundary vertices at the same place, within TOL mean edge lengths (1e-6), become one: seams are closed. Vertices "
-     "are "
-     "numbered anew, and polylines left out",
-     NULL, set_weld, PLACE(weld)},
-    {0, "lift", "HEIGHT", false,
-     "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly", NULL, set_lift,
-     PLACE(lift)},
-    {0, "state", "FILE", false,
-     "where FILE exists, the work goes on from there: it was written with the same input and options. At the end the "
-     "state is written to it. With --time-limit or --iterations long work can be done in parts",
-     NULL, set_path, PLACE(output[OUTPUT_STATE])},
-
-    {0, "planar", "[=W]", false, "all faces are planar", "what must hold (weight W: 1 if left out)", set_must,
-     PLACE(planar)},
-    {0, "circular", "[=W]", false, "faces have a circumcircle (with --planar)", NULL, set_must, PLACE(circular)},
-    {0, "conical", "[=W]", false, "the faces around a vertex touch a cone (with --planar)", NULL, set_must,
-     PLACE(conical)},
-    {0, "equal-lengths", "[=W]", false, "all edges have the same length", NULL, set_must, PLACE(equal_lengths)},
-    {0, "edge-length", "MIN,MAX[=W]", false, "edges are at least MIN and at most MAX long; one may be left out", NULL,
-     set_range, PLACE(edge_length)},
-    {0, "face-area", "MIN,MAX[=W]", false, "face areas are at least MIN and at most MAX; one may be left out", NULL,
-     set_range, PLACE(face_area)},
-    {0, "total-area", "A", false, "the area of all faces is A, or xF: F times the input's", NULL, set_total_area,
-     PLACE(total_area)},
-    {0, "cost", "CL,CA,MAX", false,
-     "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
-     NULL, set_cost, PLACE(cost)},
-    {0, "planar-boundary", "[=W]", false, "each part of the boundary between corners lies in a plane of its own", NULL,
-     set_must, PLACE(planar_boundary)},
-    {0, "straight-boundary", "[=W]", false, "the boundary is straight between its corners", NULL, set_must,
-     PLACE(straight_boundary)},
-    {0, "orthogonal-boundary", "[=W]", false, "inner edges meet the boundary at right angles", NULL, set_must,
-     PLACE(orthogonal_boundary)},
-    {0, "lifting", "[=W]", false, "vertices keep their x and y and move in z only", NULL, set_must, PLACE(lifting)},
-    {0, "volume", "V", false,
-     "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's", NULL,
-     set_volume, PLACE(volume)},
-    {0, "fix", "WHICH[=W]", true,
-     "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
-     NULL, add_fix, 0},
-    {0, "glide", "WHERE[=W]", true,
-     "boundary vertices stay on a curve. WHERE: boundary (each on its own boundary polyline; corners stay), or an OBJ "
-     "file "
-     "with polylines (else its boundary loops are taken)",
-     NULL, add_glide, 0},
-    {0, "move", "I,X,Y,Z[=W]", true,
-     "vertex I goes to X,Y,Z: it is dragged there, while what must hold goes on holding, and stays. It is then free of "
-     "--fix and --glide",
-     NULL, add_move, 0},
-
-    {0, "equilibrium", "[=W]", false, "forces in the edges balance the loads at all vertices without support (z is up)",
-     "statics", set_must, PLACE(equilibrium)},
-    {0, "compressive", "[=W]", false, "edges carry compression only", NULL, set_must, PLACE(compressive)},
-    {0, "tensile", "[=W]", false, "edges carry tension only", NULL, set_must, PLACE(tensile)},
-    {0, "stress", "MIN,MAX[=W]", false,
-     "axial forces (compression > 0) are at least MIN and at most MAX; one may be left out, 0 is a bound", NULL,
-     set_stress, PLACE(stress)},
-    {0, "supports", "WHICH", false,
-     "where forces go to the ground: boundary (if left out), corners, a list or a file, as in --fix. This does not "
-     "hold "
-     "them in place: without --fix or --glide of the same vertices they move",
-     NULL, set_supports, PLACE(supports)},
-    {0, "density", "R", false, "each edge weighs R times its length (1 where no load is given)", NULL, set_load,
-     PLACE(density)},
-    {0, "area-load", "Q", false, "each face weighs Q times its area", NULL, set_load, PLACE(area_load)},
-    {0, "snow", "Q", false, "each face bears Q times its plan area", NULL, set_load, PLACE(snow)},
-    {0, "loads", "FILE", false, "forces on vertices: CSV with the lines VERTEX,FX,FY,FZ", NULL, set_loads_file,
-     PLACE(loads)},
-    {0, "force-fairness", "[=W]", false, "opposite edges of quads carry equal forces (a wish; W: 1 if left out)", NULL,
-     set_wish_or_one, PLACE(force_fairness)},
-
-    {0, "reference", "FILE[=W]", false, "stay near the surface of this mesh (W: 0.1 if left out)",
-     "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: 6, with "
-     "--equilibrium 9, if left out)",
-     set_reference, PLACE(reference)},
-    {0, "closeness", "W", false,
-     "stay near the original places; --closeness 0: the plain projection, whose steps are neither smooth nor guided",
-     NULL, set_wish, PLACE(closeness)},
-    {0, "fairness", "W", false, "smooth polylines of edges", NULL, set_wish, PLACE(fairness)},
-    {0, "boundary-fairness", "W", false, "smooth boundary", NULL, set_wish, PLACE(boundary_fairness)},
-    {0, "tangential", "W", false, "smooth polylines, as seen along the surface's normals", NULL, set_wish,
-     PLACE(tangential)},
-    {0, "gauss", "W", false, "smooth Gauss image: face normals change evenly", NULL, set_wish, PLACE(gauss)},
-    {0, "parallelograms", "[=W]", false, "quads are like parallelograms (W: 1 if left out)", NULL, set_wish_or_one,
-     PLACE(parallelograms)},
-    {0, "equal-areas", "[=W]", false, "faces have equal areas (W: 1 if left out)", NULL, set_wish_or_one,
-     PLACE(equal_areas)},
-
-    {0, "nearest", "", false,
-     "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
-     "best: they keep their weights W to the end",
-     "how", set_flag, PLACE(nearest)},
-    {0, "iterations", "N", false, "at most so many (200, most take about 10; with --nearest 30)", NULL, set_iterations,
-     PLACE(iterations)},
-    {0, "tolerance", "T", false, "what must hold holds to this, in mean edge lengths (1e-13)", NULL, set_positive,
-     PLACE(tolerance)},
-    {0, "epsilon", "E", false, "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", NULL,
-     set_positive, PLACE(epsilon)},
-    {0, "time-limit", "SECONDS", false, "stop after the iteration that passes this", NULL, set_positive,
-     PLACE(time_limit)},
-    {0, "allow-spoiled", "", false,
-     "exit status 0 where all holds, though faces turned over, crossed or collapsed, or edges folded, collapsed or "
-     "became "
-     "spikes (1 otherwise: see the sentence)",
-     NULL, set_flag, PLACE(allow_spoiled)},
-    {0, "threads", "N", false, "work with N threads (1); 0: one per core. The result does not depend on it", NULL,
-     set_threads, PLACE(threads)},
-
-    {0, "report", "FILE", false, "JSON: counts, every iteration, verdict, measures, seconds", "out", set_path,
-     PLACE(output[OUTPUT_REPORT])},
-    {0, "forces", "FILE", false,
-     "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I", NULL,
-     set_path, PLACE(output[OUTPUT_FORCES])},
-    {0, "picture", "FILE", false,
-     "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges "
-     "(compression blue, tension red), and "
-     "without --planar coloured by how far the faces are from standing by themselves",
-     NULL, set_path, PLACE(output[OUTPUT_PICTURE])},
-    {0, "view", "VIEW", false,
-     "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", NULL,
-     set_view, PLACE(view)},
-    {0, "colour", "WHAT", false, "of the faces in the picture, by planarity, area, parallelogram or bend", NULL,
-     set_colour, PLACE(colour)},
-    {0, "offset", "DISTANCE,FILE", false,
-     "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
-     "(exact "
-     "with --conical)",
-     NULL, set_offset, PLACE(output[OUTPUT_OFFSET])},
-    {0, "support", "FILE", false, "the panels between the mesh and its --offset, .obj or .off: one quad an edge", NULL,
-     set_path, PLACE(output[OUTPUT_SUPPORT])},
-    {0, "quiet", "", false, "print errors only", NULL, set_flag, PLACE(quiet)},
-    {'h', "help", "", false, "print this", NULL, set_flag, PLACE(help)},
-    {0, "version", "", false, "print the version", NULL, set_flag, PLACE(version)},
-};
-
-enum {
-    OPTION_COUNT = (int)(sizeof options / sizeof options[0])
-};
-
-typedef char tool_seen_has_room[(int)OPTION_COUNT <= (int)MOST_OPTIONS ? 1 : -1];
-
-/* Prints words from column `indent` on, broken before column 80; the cursor stands in column `at`. */
-static void print_wrapped(const char *text, int at, int indent) {
-    while (*text) {
-        int size = (int)strcspn(text, " ");
-        if (at > indent && at + 1 + size > 79) {
-            fputc('\n', stdout);
-            at = 0;
-        }
-        if (at < indent)
-            printf("%*s", indent - at, ""), at = indent;
-        else if (at > indent)
-            fputc(' ', stdout), ++at;
-        printf("%.*s", size, text);
-        at += size;
-        text += size + (text[size] == ' ');
-    }
-    fputc('\n', stdout);
-}
-
-static void print_help(void) {
-    int i;
-    puts("usage: guidedproj INPUT.{obj,off} -o OUTPUT.{obj,off} OPTIONS\n\n"
-         "Moves the vertices of a polygon mesh so that what must hold holds to machine\n"
-         "precision, guided by what is wished. Vertices count from 0.");
-    for (i = 0; i < OPTION_COUNT; ++i) {
-        const tool_option *option = &options[i];
-        char head[64];
-        int size;
-        if (option->section) {
-            fputc('\n', stdout);
-            print_wrapped(option->section, 0, 0);
-        }
-        size = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", option->letter ? '-' : ' ',
-                        option->letter ? option->letter : ' ', option->letter ? ", " : "  ", option->name,
-                        option->value[0] && option->value[0] != '[' ? " " : "", option->value);
-        fputs(head, stdout);
-        if (size > 28) {
-            fputc('\n', stdout);
-            size = 0;
-        }
-        print_wrapped(option->help, size, 29);
-    }
-    puts("\nexamples\n"
-         "  guidedproj roof.obj -o flat.obj --planar --picture flat.svg\n"
-         "  guidedproj roof.obj -o fair.obj --planar --glide boundary \\\n"
-         "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
-         "  guidedproj roof.obj -o lifted.obj --planar --fix corners --move 220,0,0,5\n\n"
-         "exit status\n"
-         "  0 all that must hold holds to the tolerance, and the mesh is not spoiled: no\n"
-         "  face turned over, no new bow-tie or fold, nothing collapsed, no spike, against\n"
-         "  where the work began   1 it is not so (the output is written, sentence and\n"
-         "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
-         "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
-         "  of memory. After 2, 3 and 4 no output is touched, unless only printing failed\n"
-         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence\n"
-         "  and the report do.");
-}
-
-/* ---- the command line ---- */
-
-static const tool_option *find_option(const char *name, size_t size) {
-    int i;
-    for (i = 0; i < OPTION_COUNT; ++i)
-        if (same_word(name, size, options[i].name)) return &options[i];
-    return NULL;
-}
-
-/* `word` is the whole argument, `name` the option in it. */
-static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
-    int i, best = -1, least = size < 5 ? 2 : 3; /* two edits, in a short name one, make a typing error */
-    for (i = 0; i < OPTION_COUNT; ++i) {
-        const char *known = options[i].name;
-        int distance = edit_distance(name, size, known);
-        if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
-        if (distance < least) best = i, least = distance;
-    }
-    if (best < 0) return fail(t, EXIT_USAGE, "there is no option %.*s", (int)(name + size - word), word);
-    return fail(t, EXIT_USAGE, "there is no option %.*s; did you mean --%s?", (int)(name + size - word), word,
-                options[best].name);
-}
-
-/* Reads the option at argv[*i] and, where it stands apart, its value. */
-static bool read_option(tool *t, int argc, char **argv, int *i) {
-    const char *word = argv[*i], *name = word + (word[1] == '-' ? 2 : 1), *equals = strchr(name, '=');
-    size_t size = equals ? (size_t)(equals - name) : strlen(name);
-    const tool_option *option = word[1] == '-' ? find_option(name, size) : NULL;
-    const char *value = equals ? equals + 1 : NULL;
-    int k;
-    for (k = 0; k < OPTION_COUNT && word[1] != '-'; ++k)
-        if (size == 1 && options[k].letter == name[0]) option = &options[k];
-    if (!option) return fail_unknown(t, word, name, size);
-    if (t->seen[option - options] && !option->repeatable)
-        return fail(t, EXIT_USAGE, "--%s is given twice", option->name);
-    t->seen[option - options] = true;
-    if (value && !option->value[0]) return fail(t, EXIT_USAGE, "--%s takes no value", option->name);
-    if (!value && option->value[0] && option->value[0] != '[') {
-        if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
-            return fail(t, EXIT_USAGE, "--%s needs a value: --%s %s", option->name, option->name, option->value);
-        value = argv[++*i];
-    }
-    return option->read(t, (char *)t + option->place, option->name, value);
-}
-
-static bool read_input_name(tool *t, const char *word, const char *before) {
-    double number;
-    if (!word[0]) return fail(t, EXIT_USAGE, "the input's name is empty");
-    if (read_number(word, strlen(word), &number) && before && strncmp(before, "--", 2) == 0)
-        return fail(t, EXIT_USAGE, "'%s' stands alone; a weight is written %s=%s", word, before, word);
-    if (t->input) return fail(t, EXIT_USAGE, "there are two inputs, '%s' and '%s'; one is needed", t->input, word);
-    if (strcmp(word, "-") == 0) return fail(t, EXIT_USAGE, "the input must be a file; there is no reading from a pipe");
-    t->input = word;
-    return true;
-}
-
-static bool has_ending(const char *path, const char *ending) {
-    size_t size = strlen(path), length = strlen(ending), i;
-    if (size <= length) return false;
-    for (i = 0; i < length; ++i)
-        if (tolower((unsigned char)path[size - length + i]) != ending[i]) return false;
-    return true;
-}
-
-static bool anything_asked(const tool *t) {
-    return t->planar.given || t->fix_count > 0 || t->glide_count > 0 || t->move_count > 0 || t->reference.text ||
-           t->closeness.weight > 0 || t->fairness.given || t->boundary_fairness.given || t->tangential.given ||
-           t->gauss.given || t->circular.given || t->conical.given || t->volume.given || t->parallelograms.given ||
-           t->equal_areas.given || t->equal_lengths.given || t->edge_length.given || t->face_area.given ||
-           t->total_area.given || t->cost.given || t->equilibrium.given || t->planar_boundary.given ||
-           t->straight_boundary.given || t->orthogonal_boundary.given || t->lifting.given || t->fill ||
-           t->subdivision.levels > 0 || fabs(t->lift) > 0;
-}
-
-static bool anything_wished(const tool *t) {
-    return t->reference.text || t->closeness.weight > 0 || t->fairness.weight > 0 || t->boundary_fairness.weight > 0 ||
-           t->tangential.weight > 0 || t->gauss.weight > 0 || t->parallelograms.weight > 0 ||
-           t->equal_areas.weight > 0 || t->force_fairness.weight > 0;
-}
-
-/* The first given option that means nothing without forces; NULL: none. */
-static const char *first_about_forces(const tool *t) {
-    static const char *const names[] = {"compressive", "tensile", "stress", "supports",       "density",
-                                        "area-load",   "snow",    "loads",  "force-fairness", "forces"};
-    size_t i;
-    for (i = 0; i < sizeof names / sizeof names[0]; ++i)
-        if (t->seen[find_option(names[i], strlen(names[i])) - options]) return names[i];
-    return NULL;
-}
-
-static bool check_options(tool *t) {
-    const char *output = t->output[OUTPUT_MESH].path;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
-    int i;
-    if (t->fill && t->input)
-        return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
-    if (t->sides.count > 0 && !t->fill)
-        return fail(t, EXIT_USAGE, "--sides are those of a curve: add --fill CURVE.obj");
-    if (t->fill) t->input = t->fill;
-    if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
-    if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
-    if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
-        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
-    if (!anything_asked(t))
-        return fail(t, EXIT_USAGE,
-                    "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
-                    "--fairness 0.2)");
-    if (t->view_given && !t->output[OUTPUT_PICTURE].path)
-        return fail(t, EXIT_USAGE, "--view is for a picture: add --picture FILE.svg");
-    if (t->colour && !t->output[OUTPUT_PICTURE].path)
-        return fail(t, EXIT_USAGE, "--colour is for a picture: add --picture FILE.svg");
-    if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
-        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
-    if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
-    if (!t->equilibrium.given && first_about_forces(t))
-        return fail(t, EXIT_USAGE,
-                    "--%s is about forces: add --equilibrium (the edges then bear their own weight, or what --density, "
-                    "--area-load, --snow and --loads say; supports are at the boundary, or where --supports says)",
-                    first_about_forces(t));
-    if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
-    if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--state is a file: give its name");
-    if (t->output[OUTPUT_SUPPORT].path && !t->output[OUTPUT_OFFSET].path)
-        return fail(t, EXIT_USAGE, "--support is between the mesh and its offset: add --offset DISTANCE,FILE.obj");
-    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
-        output = t->output[i].path;
-        if (output && !has_ending(output, ".obj") && !has_ending(output, ".off"))
-            return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
-    }
-    if (t->conical.weight > 0 && !(t->planar.weight > 0))
-        return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
-    if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
-        return fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
-    if (t->gauss.given && !t->planar.given)
-        return fail(t, EXIT_USAGE, "--gauss needs the normals of planar faces: add --planar");
-    return true;
-}
-
-static bool read_command_line(tool *t, int argc, char **argv) {
-    bool plain = false; /* after "--" */
-    int i;
-    t->fix = (tool_word *)take(t, (size_t)argc, sizeof *t->fix);
-    t->glide = (tool_word *)take(t, (size_t)argc, sizeof *t->glide);
-    t->move = (tool_move *)take(t, (size_t)argc, sizeof *t->move);
-    t->move_group = (int32_t *)take(t, (size_t)argc, sizeof *t->move_group);
-    if (!t->fix || !t->glide || !t->move || !t->move_group) return false;
-    for (i = 1; i < argc && !t->help && !t->version; ++i) {
-        if (!plain && strcmp(argv[i], "--") == 0)
-            plain = true;
-        else if (!plain && argv[i][0] == '-' && argv[i][1]) {
-            if (!read_option(t, argc, argv, &i)) return false;
-        } else if (!read_input_name(t, argv[i], i > 1 && !plain ? argv[i - 1] : NULL))
-            return false;
-    }
-    return t->help || t->version || check_options(t);
 }
 
 /* ---- files ---- */
@@ -1152,7 +737,7 @@ static bool prepare_outputs(tool *t) {
     return true;
 }
 
-/* The ending of files that other programs can convert; "" for others. */
+/* Recognises the ending of a file that other programs can convert; "" for others. */
 static const char *foreign_ending(const char *path) {
     static const char *const endings[] = {".stl", ".ply", ".gltf", ".glb", ".step", ".stp", ".iges", ".igs",
                                           ".fbx", ".dae", ".3ds",  ".3mf", ".3dm",  ".dxf", ".dwg",  ".skp",
@@ -1163,8 +748,15 @@ static const char *foreign_ending(const char *path) {
     return "";
 }
 
-/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text
-   has: devices give such bytes without end. */
+/* Copies text[0..size-1], with a NUL behind it. */
+static char *copy_text(tool *t, const char *text, size_t size) {
+    char *copy = (char *)take(t, size + 1, 1);
+    if (copy) memcpy(copy, text, size);
+    return copy;
+}
+
+/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text has:
+   devices give such bytes without end. */
 static char *load_file(tool *t, const char *path, bool text, size_t *length) {
     FILE *file = fopen(path, "rb");
     size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
@@ -1211,9 +803,8 @@ static gproj_mesh *load(tool *t, const char *path, size_t size) {
     gproj_mesh *mesh = NULL;
     gproj_format format;
     size_t length;
-    char *copy = (char *)take(t, size + 1, 1), *text;
+    char *copy = copy_text(t, path, size), *text;
     if (!copy) return NULL;
-    memcpy(copy, path, size);
     text = load_file(t, copy, true, &length);
     if (text) {
         format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
@@ -1231,8 +822,8 @@ static gproj_mesh *load(tool *t, const char *path, size_t size) {
     return mesh;
 }
 
-/* The first closed polyline in a file, where there is none and no boundary the first one; -1: there is none. (The sides
-   of a filled curve are polylines, and none of them is closed.) */
+/* Finds the first closed polyline in a file, else, if there is no boundary, the first one; -1: there is none. (Sides of
+   a filled curve are polylines, and none of them is closed.) */
 static int32_t curve_polyline(const gproj_mesh *file) {
     int32_t k;
     for (k = 0; k < file->polyline_count; ++k)
@@ -1241,7 +832,7 @@ static int32_t curve_polyline(const gproj_mesh *file) {
     return file->polyline_count > 0 && file->loop_count == 0 ? 0 : -1;
 }
 
-/* Makes curves of a mesh's polylines, else of its boundary loops; the mesh's own loops for `loops`. */
+/* Makes curves of a mesh's polylines, else (or for `loops`) of its boundary loops. */
 static bool add_curves(tool *t, const gproj_mesh *mesh, bool loops, const char *path) {
     int32_t count = loops || mesh->polyline_count == 0 ? mesh->loop_count : mesh->polyline_count, i;
     gproj_curve **more =
@@ -1259,7 +850,7 @@ static bool add_curves(tool *t, const gproj_mesh *mesh, bool loops, const char *
     return true;
 }
 
-/* The curve of first..last-1 that is nearest to a point. */
+/* Finds the curve of first..last-1 that is nearest to a point. */
 static int32_t nearest_curve(const tool *t, int32_t first, int32_t last, const double *point, double *distance) {
     int32_t i, best = first;
     *distance = INFINITY;
@@ -1270,7 +861,7 @@ static int32_t nearest_curve(const tool *t, int32_t first, int32_t last, const d
     return best;
 }
 
-/* The points of the curve in a file: of a polyline, its first boundary loop, or all vertices. Their number. */
+/* Copies the points of the curve in a file: a polyline, the first boundary loop, or all vertices. Returns how many. */
 static int32_t take_curve(const gproj_mesh *file, double *point) {
     int32_t count = 0, k, first, h, polyline = curve_polyline(file);
     if (polyline >= 0) {
@@ -1289,7 +880,7 @@ static int32_t take_curve(const gproj_mesh *file, double *point) {
 }
 
 static bool fill_curve(tool *t) {
-    gproj_fill_options options;
+    const gproj_fill_options options = {.side_count = t->sides.count, .subdivisions = t->sides.edges};
     gproj_error error;
     gproj_mesh *file = load(t, t->fill, strlen(t->fill));
     double *point;
@@ -1298,9 +889,6 @@ static bool fill_curve(tool *t) {
     point =
         (double *)take(t, 3 * (size_t)(file->vertex_count + file->polyline_start[file->polyline_count]), sizeof *point);
     if (point) {
-        memset(&options, 0, sizeof options);
-        options.side_count = t->sides.count;
-        options.subdivisions = t->sides.edges;
         count = take_curve(file, point);
         t->mesh = gproj_mesh_fill(count, point, &options, NULL, &t->host, &error);
         if (!t->mesh && count == 0)
@@ -1314,18 +902,15 @@ static bool fill_curve(tool *t) {
 }
 
 static bool subdivide(tool *t) {
-    gproj_subdivide_options options;
+    const gproj_subdivide_options options = {.levels = t->subdivision.levels, .scheme = t->subdivision.scheme};
     gproj_error error;
     gproj_mesh *coarse = t->mesh;
-    memset(&options, 0, sizeof options);
-    options.levels = t->subdivision.levels;
-    options.scheme = t->subdivision.scheme;
     t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
     gproj_mesh_destroy(coarse);
     return t->mesh || fail_library(t, t->input, &error);
 }
 
-/* The vertex inside that is farthest from the boundary, whose loops are the curves from `first` on; -1: there is none. */
+/* Finds the vertex inside that is farthest from the boundary (curves `first` and after); -1: there is none. */
 static int32_t innermost_vertex(const tool *t, int32_t first) {
     int32_t best = -1, v;
     double farthest = 0, distance;
@@ -1337,8 +922,8 @@ static int32_t innermost_vertex(const tool *t, int32_t first) {
     return best;
 }
 
-/* An auxiliary projection: one vertex goes up, the boundary stays, and fairness guides the others. Closeness only decides
-   what fairness leaves open; what has to hold is linear, so few iterations do. */
+/* Projects once before the solve: one vertex goes up, the boundary stays, fairness guides the others, and closeness
+   decides between shapes that are equally fair. The constraints are linear: a few iterations are enough. */
 static bool lift(tool *t) {
     int32_t first = t->curve_count, vertex = -1;
     gproj_form *form;
@@ -1374,7 +959,7 @@ static int compare_projected(const void *a, const void *b) {
     return p->vertex < q->vertex ? -1 : 1;
 }
 
-/* The smallest vertex that this one is the same as. */
+/* Finds the smallest vertex at the place of this one, and shortens the way to it (union-find, halving paths). */
 static int32_t same_as(int32_t *same, int32_t vertex) {
     while (same[vertex] != vertex) vertex = same[vertex] = same[same[vertex]];
     return vertex;
@@ -1389,8 +974,8 @@ static bool are_joined(const gproj_mesh *mesh, int32_t a, int32_t b) {
     return false;
 }
 
-/* Finds boundary vertices within `distance` of each other that no edge joins. same, vertex_count entries: of each vertex
-   the smallest one at its place. Returns how many are not that; -1 without memory. */
+/* Finds boundary vertices that are within `distance` and that no edge joins. same, vertex_count entries: the smallest
+   vertex at the place of each. Returns how many have a smaller one; -1 without memory. */
 static int32_t find_seams(tool *t, double distance, int32_t *same) {
     static const double direction[3] = {0.5466, 0.6131, 0.5704}; /* a little longer than 1 */
     const gproj_mesh *mesh = t->mesh;
@@ -1404,6 +989,7 @@ static int32_t find_seams(tool *t, double distance, int32_t *same) {
         list[count].along = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
         list[count++].vertex = i;
     }
+    /* Vertices within `distance` are as near along the direction: only neighbours in the sorted list are compared. */
     qsort(list, (size_t)count, sizeof *list, compare_projected);
     for (i = 0; i < count; ++i)
         for (j = i - 1; j >= 0 && list[i].along - list[j].along <= 1.1 * distance; --j) {
@@ -1418,7 +1004,7 @@ static int32_t find_seams(tool *t, double distance, int32_t *same) {
     return merged;
 }
 
-/* The mesh with vertices that are the same made one; `merged` of them go. */
+/* Makes one vertex of those at the same place; `merged` of them go. */
 static bool weld(tool *t, int32_t *same, int32_t merged) {
     gproj_mesh *old = t->mesh;
     size_t vertices = (size_t)old->vertex_count, at = 0;
@@ -1426,6 +1012,7 @@ static bool weld(tool *t, int32_t *same, int32_t merged) {
     int32_t *number = (int32_t *)take(t, vertices, sizeof *number);
     int32_t *corner = (int32_t *)take(t, (size_t)old->halfedge_count, sizeof *corner), count = 0, i, k;
     gproj_error error;
+    /* Vertices that stay are numbered anew, in their order; faces then speak of these numbers. */
     for (i = 0; position && number && corner && i < old->vertex_count; ++i) {
         if (same_as(same, i) != i) continue;
         memcpy(position + 3 * (size_t)count, old->position + 3 * (size_t)i, 3 * sizeof *position);
@@ -1449,7 +1036,7 @@ static bool weld(tool *t, int32_t *same, int32_t merged) {
     return t->exit_code == 0;
 }
 
-/* Merges boundary vertices at the same place with --weld; else counts them. */
+/* With --weld merges boundary vertices at the same place, else counts them. */
 static bool treat_seams(tool *t) {
     int32_t *same = (int32_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *same);
     double edge = gproj_mesh_mean_edge_length(t->mesh);
@@ -1463,7 +1050,7 @@ static bool treat_seams(tool *t) {
     return good;
 }
 
-/* The mesh from which the work begins. */
+/* Makes the mesh from which the work begins. */
 static bool make_mesh(tool *t) {
     if (t->fill) {
         if (!fill_curve(t)) return false;
@@ -1495,7 +1082,7 @@ static bool read_mesh(tool *t) {
     return true;
 }
 
-/* ---- the form ---- */
+/* ---- builders: each adds what an option asks for to the form ---- */
 
 static bool is_moved(const tool *t, int32_t vertex) {
     int32_t i;
@@ -1507,53 +1094,43 @@ static bool is_moved(const tool *t, int32_t vertex) {
 /* Marks the vertices of a list I,J,K-L in any layout; comments go from # to the end of the line. `where` names it. */
 static bool mark_list(tool *t, const char *text, const char *where, int exit_code, bool *mark) {
     const char *at = text;
-    while (*at) {
+    for (;;) {
         int32_t range[2], k;
-        size_t size = strspn(at, "0123456789");
-        if (*at == '#') {
-            at += strcspn(at, "\n");
-            continue;
-        }
-        if (*at == ',' || isspace((unsigned char)*at)) {
-            ++at;
-            continue;
-        }
+        while (*at == ',' || *at == '#' || isspace((unsigned char)*at)) at += *at == '#' ? strcspn(at, "\n") : 1;
+        if (!*at) return true;
         for (k = 0; k < 2; ++k) {
-            if (size == 0 || !read_integer(at, size, 0, t->mesh->vertex_count - 1, &range[k])) {
-                if (size == 0)
-                    return fail(t, exit_code, "%s: expected vertices, such as 0,7,20-29, at '%.12s'", where, at);
+            size_t size = strspn(at, "0123456789");
+            if (size == 0) return fail(t, exit_code, "%s: expected vertices, such as 0,7,20-29, at '%.12s'", where, at);
+            if (!read_integer(at, size, 0, t->mesh->vertex_count - 1, &range[k]))
                 return fail(t, exit_code, "%s: there is no vertex %.*s; the mesh has %ld, counted from 0", where,
                             (int)size, at, (long)t->mesh->vertex_count);
-            }
             at += size;
             if (k == 0 && *at != '-') range[k = 1] = range[0];
-            if (k == 0) size = strspn(++at, "0123456789");
+            at += k == 0;
         }
         if (range[1] < range[0])
             return fail(t, exit_code, "%s: the range %ld-%ld runs backwards", where, (long)range[0], (long)range[1]);
         for (k = range[0]; k <= range[1]; ++k) mark[k] = true;
     }
-    return true;
 }
 
-/* Fails where the value of an option is neither a word nor a file. `what`: what it may be. */
-static bool must_exist(tool *t, const char *option, const char *name, const char *what, const char *const *words) {
+/* Fails if the value of an option is neither a word nor a file. expected: both, for the sentence. */
+static bool must_exist(tool *t, const char *option, const char *name, const char *expected, const char *const *words) {
     char hint[HINT_SIZE];
     if (access(name, F_OK) == 0) return true;
     return fail(t, strpbrk(name, "./") ? EXIT_REFUSED : EXIT_USAGE, "%s %s: there is no such file; expected %s%s",
-                option, name, what, did_you_mean(name, strlen(name), words, hint));
+                option, name, expected, did_you_mean(name, strlen(name), words, hint));
 }
 
-/* The vertices that the value of an option names. */
-static bool mark_vertices(tool *t, const char *option, const tool_word *word, bool *mark) {
+/* Marks the vertices that the value of an option names. */
+static bool mark_vertices(tool *t, const char *option, const tool_demand *word, bool *mark) {
     static const char *const words[] = {"boundary", "corners", NULL};
     bool boundary = same_word(word->text, word->length, "boundary"),
          corners = same_word(word->text, word->length, "corners");
-    char *name = (char *)take(t, word->length + 1, 1), *text;
+    char *name = copy_text(t, word->text, word->length), *text;
     bool good = name != NULL;
     int32_t i;
     if (!name) return false;
-    memcpy(name, word->text, word->length);
     if (boundary || corners) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
             mark[i] = boundary ? gproj_mesh_is_boundary_vertex(t->mesh, i) : gproj_form_is_corner(t->form, i);
@@ -1570,31 +1147,28 @@ static bool mark_vertices(tool *t, const char *option, const tool_word *word, bo
     return good;
 }
 
-/* The marked vertices that no --move takes, as a list; returns their number. */
-static int32_t gather(const tool *t, const bool *mark, int32_t *list) {
-    int32_t i, count = 0;
-    for (i = 0; i < t->mesh->vertex_count; ++i)
-        if (mark[i] && !is_moved(t, i)) list[count++] = i;
-    return count;
-}
-
-static bool add_fixed(tool *t, const tool_word *word) {
+/* Adds one group for each --fix, without vertices that a --move takes. */
+static int32_t add_fixed(tool *t, const tool_demand *none) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     bool *mark = (bool *)take(t, vertices, sizeof *mark);
-    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), count;
-    bool good = mark && list && mark_vertices(t, "--fix", word, mark);
-    if (good && word->weight.weight > 0) {
-        count = gather(t, mark, list);
-        if (count > 0) gproj_add_fixed(t->form, count, list, word->weight.weight);
+    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), count, i, k;
+    (void)none;
+    for (k = 0; mark && list && k < t->fix_count; ++k) {
+        memset(mark, 0, vertices * sizeof *mark);
+        if (!mark_vertices(t, "--fix", &t->fix[k], mark)) break;
+        for (count = i = 0; i < t->mesh->vertex_count; ++i)
+            if (mark[i] && !is_moved(t, i)) list[count++] = i;
+        if (count > 0 && t->fix[k].weight > 0) gproj_add_fixed(t->form, count, list, t->fix[k].weight);
     }
     free(mark), free(list);
-    return good;
+    return -1;
 }
 
-/* One group for each weight. */
-static bool add_moves(tool *t) {
+/* Adds one group for each weight of a --move. */
+static int32_t add_moves(tool *t, const tool_demand *none) {
     int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, j;
     double *place = (double *)take(t, 3 * (size_t)t->move_count, sizeof *place);
+    (void)none;
     for (i = 0; vertex && place && i < t->move_count; ++i) {
         int32_t count = 0, earlier = 0;
         for (j = 0; j < t->move_count; ++j) {
@@ -1608,10 +1182,10 @@ static bool add_moves(tool *t) {
                                : gproj_add_targets(t->form, count, vertex, place, t->move[i].weight);
     }
     free(vertex), free(place);
-    return t->exit_code == 0;
+    return -1;
 }
 
-/* Every boundary vertex glides along the nearest of the curves from `first` on; corners that lie on it stay. */
+/* Lets every boundary vertex glide along the nearest of the curves from `first` on; corners on it stay. */
 static bool glide_along(tool *t, int32_t first, double weight) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     int32_t *owner = (int32_t *)take(t, vertices, sizeof *owner), *list = (int32_t *)take(t, vertices, sizeof *list);
@@ -1637,7 +1211,7 @@ static bool glide_along(tool *t, int32_t first, double weight) {
     return good;
 }
 
-static bool add_gliding(tool *t, const tool_word *word) {
+static bool add_gliding(tool *t, const tool_demand *word) {
     int32_t first = t->curve_count, i;
     bool moved = false, good;
     if (same_word(word->text, word->length, "boundary")) {
@@ -1645,86 +1219,73 @@ static bool add_gliding(tool *t, const tool_word *word) {
             return fail(t, EXIT_USAGE, "--glide boundary: the mesh is closed and has no boundary");
         for (i = 0; i < t->move_count; ++i) moved |= gproj_mesh_is_boundary_vertex(t->mesh, t->move[i].vertex);
         if (!moved) {
-            if (word->weight.weight > 0) gproj_add_gliding_boundary(t->form, word->weight.weight);
+            if (word->weight > 0) gproj_add_gliding_boundary(t->form, word->weight);
             return true;
         }
         good = add_curves(t, t->mesh, true, t->input);
     } else {
         static const char *const words[] = {"boundary", NULL};
-        char *name = (char *)take(t, word->length + 1, 1);
+        char *name = copy_text(t, word->text, word->length);
         gproj_mesh *mesh = NULL;
-        if (name) memcpy(name, word->text, word->length);
         if (name && must_exist(t, "--glide", name, "boundary, or an OBJ file with polylines", words))
             mesh = load(t, word->text, word->length);
         free(name);
         good = mesh && add_curves(t, mesh, false, word->text);
         gproj_mesh_destroy(mesh);
     }
-    if (!good || word->weight.weight <= 0) return good;
-    return glide_along(t, first, word->weight.weight);
+    if (!good || word->weight <= 0) return good;
+    return glide_along(t, first, word->weight);
 }
 
-/* A wish with its schedule. The first few iterations where no last one is given; all with --nearest. */
-static void add_wish(tool *t, const tool_weight *weight, int32_t group) {
-    gproj_schedule schedule;
-    schedule.weight = weight->weight;
-    schedule.decay = weight->decay;
-    schedule.last = weight->last > 0 ? weight->last : t->equilibrium.weight > 0 ? 9 : 6;
-    if (weight->last == 0 && schedule.last > t->iterations / 2)
-        schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
-    if (t->nearest) schedule.decay = 0, schedule.last = 0;
-    if (group >= 0) gproj_set_schedule(t->form, group, schedule);
+static int32_t add_all_gliding(tool *t, const tool_demand *none) {
+    int32_t i;
+    (void)none;
+    for (i = 0; i < t->glide_count && add_gliding(t, &t->glide[i]); ++i) continue;
+    return -1;
 }
 
-static bool add_reference(tool *t) {
+static int32_t add_reference(tool *t, const tool_demand *demand) {
     gproj_error error;
-    t->reference_mesh = load(t, t->reference.text, t->reference.length);
-    if (!t->reference_mesh) return false;
+    t->reference_mesh = load(t, demand->text, demand->length);
+    if (!t->reference_mesh) return -1;
     t->surface = gproj_surface_create(t->reference_mesh, &t->host, &error);
-    if (!t->surface) return fail_library(t, t->reference.text, &error);
-    if (t->reference.weight.weight > 0)
-        add_wish(t, &t->reference.weight, gproj_add_reference(t->form, t->surface, t->reference.weight.weight));
-    return true;
+    if (!t->surface) fail_library(t, demand->text, &error);
+    return t->surface && demand->weight > 0 ? gproj_add_reference(t->form, t->surface, demand->weight) : -1;
 }
 
-static void add_energies(tool *t) {
-    gproj_form *form = t->form;
-    if (t->closeness.weight > 0) add_wish(t, &t->closeness, gproj_add_closeness(form, t->closeness.weight));
-    if (t->fairness.weight > 0) add_wish(t, &t->fairness, gproj_add_fairness(form, t->fairness.weight));
-    if (t->boundary_fairness.weight > 0)
-        add_wish(t, &t->boundary_fairness, gproj_add_boundary_fairness(form, t->boundary_fairness.weight));
-    if (t->tangential.weight > 0)
-        add_wish(t, &t->tangential, gproj_add_tangential_fairness(form, t->tangential.weight));
-    if (t->gauss.weight > 0) add_wish(t, &t->gauss, gproj_add_gauss_fairness(form, t->gauss.weight));
-    if (t->parallelograms.weight > 0)
-        add_wish(t, &t->parallelograms, gproj_add_parallelograms(form, t->parallelograms.weight));
-    if (t->equal_areas.weight > 0) add_wish(t, &t->equal_areas, gproj_add_equal_areas(form, t->equal_areas.weight));
+static int32_t add_edge_length(tool *t, const tool_demand *demand) {
+    if (demand->weight <= 0) return -1;
+    return gproj_add_length_bounds(t->form, t->mesh->edge_count, NULL, demand->min, demand->max, demand->weight);
 }
 
-/* What a measure costs. */
+static int32_t add_face_area(tool *t, const tool_demand *demand) {
+    if (demand->weight <= 0) return -1;
+    return gproj_add_area_bounds(t->form, t->mesh->face_count, NULL, demand->min, demand->max, demand->weight);
+}
+
 static double cost_of(const tool *t, const gproj_measures *m) {
     return t->length_price * m->length + t->area_price * m->area;
 }
 
-/* The value that is asked for, where the input has `have`. */
-static double value_of(const tool_volume *volume, double have) {
-    return volume->factor ? volume->value * have : volume->value;
+/* The amount that a demand means, if the input has `have`. */
+static double amount_of(const tool_demand *demand, double have) {
+    return demand->factor ? demand->amount * have : demand->amount;
 }
 
-static void add_sizes(tool *t) {
-    gproj_form *form = t->form;
-    const tool_range *length = &t->edge_length, *area = &t->face_area;
-    int32_t edges = t->mesh->edge_count, faces = t->mesh->face_count;
-    if (t->equal_lengths.weight > 0) gproj_add_equal_lengths(form, edges, NULL, t->equal_lengths.weight);
-    if (length->weight > 0) gproj_add_length_bounds(form, edges, NULL, length->min, length->max, length->weight);
-    if (area->weight > 0) gproj_add_area_bounds(form, faces, NULL, area->min, area->max, area->weight);
-    if (t->total_area.given) gproj_add_total_area(form, value_of(&t->total_area, t->before.area), 1);
-    if (t->cost.given)
-        gproj_add_cost_bounds(form, t->length_price, t->area_price, 0, value_of(&t->cost, cost_of(t, &t->before)), 1);
-    if (t->volume.given) gproj_add_volume(form, value_of(&t->volume, gproj_volume(t->mesh)), 1);
+static int32_t add_total_area(tool *t, const tool_demand *demand) {
+    return gproj_add_total_area(t->form, amount_of(demand, t->before.area), 1);
 }
 
-/* A heading: words, and no number behind the first comma. */
+static int32_t add_cost(tool *t, const tool_demand *demand) {
+    double most = amount_of(demand, cost_of(t, &t->before));
+    return gproj_add_cost_bounds(t->form, t->length_price, t->area_price, 0, most, 1);
+}
+
+static int32_t add_volume(tool *t, const tool_demand *demand) {
+    return gproj_add_volume(t->form, amount_of(demand, gproj_volume(t->mesh)), 1);
+}
+
+/* Recognises a heading: it begins with a letter, and no number stands behind the first comma. */
 static bool is_heading(const char *line, size_t size) {
     const char *comma = (const char *)memchr(line, ',', size);
     size_t at = comma ? (size_t)(comma - line) + 1 : size;
@@ -1732,7 +1293,7 @@ static bool is_heading(const char *line, size_t size) {
     return isalpha((unsigned char)line[0]) && (at == size || !strchr("+-.0123456789", line[at]));
 }
 
-/* One line VERTEX,FX,FY,FZ; empty lines, comments after # and a heading in the first line are passed over. */
+/* Reads a line VERTEX,FX,FY,FZ; skips empty lines, comments after # and a heading in the first line. */
 static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
     double field[4];
     size_t at = 0, end;
@@ -1773,99 +1334,490 @@ static bool read_loads(tool *t) {
     return good;
 }
 
-static bool add_equilibrium(tool *t) {
-    static const tool_word boundary = {"boundary", 8, {false, 0, 0, 0}};
+static int32_t add_equilibrium(tool *t, const tool_demand *demand) {
+    const tool_demand boundary = split_word("boundary", 1);
     size_t vertices = (size_t)t->mesh->vertex_count;
     int32_t *list = (int32_t *)take(t, vertices, sizeof *list), i;
-    gproj_loads loads;
-    gproj_supports supports;
-    bool good;
-    memset(&loads, 0, sizeof loads);
-    memset(&supports, 0, sizeof supports);
+    gproj_supports supports = {.vertex = list};
     t->is_support = (bool *)take(t, vertices, sizeof *t->is_support);
-    good = list && t->is_support && (!t->loads || read_loads(t)) &&
-           mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support);
-    if (good) {
+    if (list && t->is_support && (!t->loads || read_loads(t)) &&
+        mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support)) {
+        const gproj_loads loads = {.density = t->loads_given ? t->density : 1,
+                                   .area_load = t->area_load,
+                                   .snow = t->snow,
+                                   .point_load = t->point_load};
         for (i = 0; i < t->mesh->vertex_count; ++i)
             if (t->is_support[i]) list[supports.count++] = i;
         if (supports.count == 0)
-            good = fail(t, EXIT_USAGE, "%s",
-                        t->supports.text ? "--supports names no vertex"
-                                         : "there is no support: the mesh has no boundary, so name some by --supports");
-    }
-    if (good) {
-        supports.vertex = list;
-        loads.density = t->loads_given ? t->density : 1;
-        loads.area_load = t->area_load;
-        loads.snow = t->snow;
-        loads.point_load = t->point_load;
-        gproj_add_equilibrium(t->form, &loads, &supports, t->equilibrium.weight);
+            fail(t, EXIT_USAGE, "%s",
+                 t->supports.text ? "--supports names no vertex"
+                                  : "there is no support: the mesh has no boundary, so name some by --supports");
+        else
+            gproj_add_equilibrium(t->form, &loads, &supports, demand->weight);
     }
     free(list);
-    return good;
+    return -1;
 }
 
-static bool add_statics(tool *t) {
-    int32_t edges = t->mesh->edge_count;
-    if (!t->equilibrium.given) return true;
-    if (!add_equilibrium(t)) return false;
-    if (t->compressive.weight > 0) gproj_add_compression(t->form, edges, NULL, t->compressive.weight);
-    if (t->tensile.weight > 0) gproj_add_tension(t->form, edges, NULL, t->tensile.weight);
-    if (t->stress.given)
-        gproj_add_stress_bounds(t->form, edges, NULL, NULL, t->stress.min, t->stress.max, t->stress.weight);
-    if (t->force_fairness.weight > 0)
-        add_wish(t, &t->force_fairness, gproj_add_force_fairness(t->form, t->force_fairness.weight));
+static int32_t add_stress(tool *t, const tool_demand *demand) {
+    return gproj_add_stress_bounds(t->form, t->mesh->edge_count, NULL, NULL, demand->min, demand->max, demand->weight);
+}
+
+/* ---- the table of options ---- */
+
+typedef enum tool_kind {
+    SETTING,
+    BEGINNING, /* changes the mesh before the solve */
+    HARD,      /* must hold */
+    SOFT       /* is wished, until the schedule ends */
+} tool_kind;
+
+typedef enum tool_stage { /* the order in which options are added to the form; within a stage, that of the table */
+    NO_STAGE,             /* adds nothing */
+    SHAPES,
+    STATICS,
+    SIZES,
+    WISHES,
+    STAGE_COUNT
+} tool_stage;
+
+typedef struct tool_need { /* an option that must be given too, and the sentence that asks for it */
+    size_t place;
+    const char *why;
+} tool_need;
+
+typedef struct tool_option {
+    const char *name;
+    const char *value; /* syntax: "" none, "[=W]" may be left out, else needed */
+    const char *help;
+    bool (*read)(tool *t, void *place, const char *name, const char *value);
+    size_t place; /* offset of the member of tool that `read` sets; 0: tool.own[row] */
+    tool_kind kind;
+    tool_stage stage;
+    /* One of these adds it to the form and returns the group: the first two if the weight is above 0, with all edges,
+       the third for any weight (-1: there is no group; t->exit_code tells of errors). */
+    int32_t (*build)(gproj_form *form, double weight);
+    int32_t (*build_edges)(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+    int32_t (*add)(tool *t, const tool_demand *demand);
+    const tool_need *needs;
+    bool repeatable;
+    char letter;         /* 'o' for -o; 0: none */
+    const char *section; /* a heading above this option; NULL: none */
+} tool_option;
+
+#define PLACE(member) offsetof(tool, member)
+#define SETS(member) .place = PLACE(member)
+
+static const tool_need a_curve = {PLACE(fill), "are those of a curve: add --fill CURVE.obj"};
+static const tool_need a_picture = {PLACE(output[OUTPUT_PICTURE]), "is for a picture: add --picture FILE.svg"};
+static const tool_need an_offset = {PLACE(output[OUTPUT_OFFSET]),
+                                    "is between the mesh and its offset: add --offset DISTANCE,FILE.obj"};
+static const tool_need normals = {PLACE(planar), "needs the normals of planar faces: add --planar"};
+static const tool_need statics = {
+    PLACE(equilibrium),
+    "is about forces: add --equilibrium (the edges then bear their own weight, or what --density, --area-load, --snow "
+    "and --loads say; supports are at the boundary, or where --supports says)"};
+
+/* --help shows the rows as they stand here. */
+static const tool_option options[] = {
+    {"output", "FILE", "the result, .obj or .off (needed)", set_output, SETS(output[OUTPUT_MESH]), .letter = 'o',
+     .section = "files"},
+    {"file-limit", "MB", "files are read up to this size (1024)", set_file_limit, SETS(file_limit)},
+
+    {"fill", "CURVE",
+     "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
+     "first polyline, closed, else all its vertices. The boundary's vertices come first",
+     set_path, SETS(fill), .kind = BEGINNING, .section = "where it begins"},
+    {"sides", "N,N,...",
+     "the numbers of edges of the curve's sides, from corner to corner (by its mean edge if left out)", set_sides,
+     SETS(sides), .needs = &a_curve},
+    {"subdivide", "N[,loop]",
+     "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
+     "triangle four (Loop). The cage's vertices keep their numbers",
+     set_subdivision, SETS(subdivision), .kind = BEGINNING},
+    {"weld", "[=TOL]",
+     "boundary vertices at the same place, within TOL mean edge lengths (1e-6), become one: seams are closed. Vertices "
+     "are numbered anew, and polylines left out",
+     set_weld, SETS(weld)},
+    {"lift", "HEIGHT", "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly",
+     set_lift, SETS(lift), .kind = BEGINNING},
+    {"state", "FILE",
+     "where FILE exists, the work goes on from there: it was written with the same input and options. At the end the "
+     "state is written to it. With --time-limit or --iterations long work can be done in parts",
+     set_output, SETS(output[OUTPUT_STATE])},
+
+    {"planar", "[=W]", "all faces are planar", set_must, PLACE(planar), HARD, SHAPES, .build = gproj_add_planarity,
+     .section = "what must hold (weight W: 1 if left out)"},
+    {"circular", "[=W]", "faces have a circumcircle (with --planar)", set_must, PLACE(circular), HARD, SHAPES,
+     .build = gproj_add_circularity},
+    {"conical", "[=W]", "the faces around a vertex touch a cone (with --planar)", set_must, PLACE(conical), HARD, SIZES,
+     .build = gproj_add_conicality},
+    {"equal-lengths", "[=W]", "all edges have the same length", set_must, PLACE(equal_lengths), HARD, SIZES,
+     .build_edges = gproj_add_equal_lengths},
+    {"edge-length", "MIN,MAX[=W]", "edges are at least MIN and at most MAX long; one may be left out", set_range,
+     PLACE(edge_length), HARD, SIZES, .add = add_edge_length},
+    {"face-area", "MIN,MAX[=W]", "face areas are at least MIN and at most MAX; one may be left out", set_range,
+     PLACE(face_area), HARD, SIZES, .add = add_face_area},
+    {"total-area", "A", "the area of all faces is A, or xF: F times the input's", set_total_area, PLACE(total_area),
+     HARD, SIZES, .add = add_total_area},
+    {"cost", "CL,CA,MAX",
+     "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
+     set_cost, PLACE(cost), HARD, SIZES, .add = add_cost},
+    {"planar-boundary", "[=W]", "each part of the boundary between corners lies in a plane of its own", set_must, 0,
+     HARD, SHAPES, .build = gproj_add_planar_boundary},
+    {"straight-boundary", "[=W]", "the boundary is straight between its corners", set_must, 0, HARD, SHAPES,
+     .build = gproj_add_straight_boundary},
+    {"orthogonal-boundary", "[=W]", "inner edges meet the boundary at right angles", set_must, 0, HARD, SHAPES,
+     .build = gproj_add_orthogonal_boundary},
+    {"lifting", "[=W]", "vertices keep their x and y and move in z only", set_must, 0, HARD, SHAPES,
+     .build = gproj_add_lifting},
+    {"volume", "V",
+     "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's",
+     set_volume, PLACE(volume), HARD, SIZES, .add = add_volume},
+    {"fix", "WHICH[=W]",
+     "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
+     add_fix, 0, HARD, SIZES, .add = add_fixed, .repeatable = true},
+    {"glide", "WHERE[=W]",
+     "boundary vertices stay on a curve. WHERE: boundary (each on its own boundary polyline; corners stay), or an OBJ "
+     "file with polylines (else its boundary loops are taken)",
+     add_glide, 0, HARD, SIZES, .add = add_all_gliding, .repeatable = true},
+    {"move", "I,X,Y,Z[=W]",
+     "vertex I goes to X,Y,Z: it is dragged there, while what must hold goes on holding, and stays. It is then free of "
+     "--fix and --glide",
+     add_move, 0, HARD, SIZES, .add = add_moves, .repeatable = true},
+
+    {"equilibrium", "[=W]", "forces in the edges balance the loads at all vertices without support (z is up)", set_must,
+     PLACE(equilibrium), HARD, STATICS, .add = add_equilibrium, .section = "statics"},
+    {"compressive", "[=W]", "edges carry compression only", set_must, 0, HARD, STATICS,
+     .build_edges = gproj_add_compression, .needs = &statics},
+    {"tensile", "[=W]", "edges carry tension only", set_must, 0, HARD, STATICS, .build_edges = gproj_add_tension,
+     .needs = &statics},
+    {"stress", "MIN,MAX[=W]",
+     "axial forces (compression > 0) are at least MIN and at most MAX; one may be left out, 0 is a bound", set_stress,
+     0, HARD, STATICS, .add = add_stress, .needs = &statics},
+    {"supports", "WHICH",
+     "where forces go to the ground: boundary (if left out), corners, a list or a file, as in --fix. This does not "
+     "hold them in place: without --fix or --glide of the same vertices they move",
+     set_supports, SETS(supports), .needs = &statics},
+    {"density", "R", "each edge weighs R times its length (1 where no load is given)", set_load, SETS(density),
+     .needs = &statics},
+    {"area-load", "Q", "each face weighs Q times its area", set_load, SETS(area_load), .needs = &statics},
+    {"snow", "Q", "each face bears Q times its plan area", set_load, SETS(snow), .needs = &statics},
+    {"loads", "FILE", "forces on vertices: CSV with the lines VERTEX,FX,FY,FZ", set_loads_file, SETS(loads),
+     .needs = &statics},
+    {"force-fairness", "[=W]", "opposite edges of quads carry equal forces (a wish; W: 1 if left out)", set_wish, 0,
+     SOFT, STATICS, .build = gproj_add_force_fairness, .needs = &statics},
+
+    {"reference", "FILE[=W]", "stay near the surface of this mesh (W: 0.1 if left out)", set_reference,
+     PLACE(reference), SOFT, WISHES, .add = add_reference,
+     .section = "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: 6, with "
+                "--equilibrium 9, if left out)"},
+    {"closeness", "W",
+     "stay near the original places; --closeness 0: the plain projection, whose steps are neither smooth nor guided",
+     set_wish, PLACE(closeness), SOFT, WISHES, .build = gproj_add_closeness},
+    {"fairness", "W", "smooth polylines of edges", set_wish, 0, SOFT, WISHES, .build = gproj_add_fairness},
+    {"boundary-fairness", "W", "smooth boundary", set_wish, 0, SOFT, WISHES, .build = gproj_add_boundary_fairness},
+    {"tangential", "W", "smooth polylines, as seen along the surface's normals", set_wish, 0, SOFT, WISHES,
+     .build = gproj_add_tangential_fairness},
+    {"gauss", "W", "smooth Gauss image: face normals change evenly", set_wish, 0, SOFT, WISHES,
+     .build = gproj_add_gauss_fairness, .needs = &normals},
+    {"parallelograms", "[=W]", "quads are like parallelograms (W: 1 if left out)", set_wish, 0, SOFT, WISHES,
+     .build = gproj_add_parallelograms},
+    {"equal-areas", "[=W]", "faces have equal areas (W: 1 if left out)", set_wish, PLACE(equal_areas), SOFT, WISHES,
+     .build = gproj_add_equal_areas},
+
+    {"nearest", "",
+     "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
+     "best: they keep their weights W to the end",
+     set_flag, SETS(nearest), .section = "how"},
+    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 30)", set_iterations,
+     SETS(iterations)},
+    {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
+    {"epsilon", "E", "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", set_positive,
+     SETS(epsilon)},
+    {"time-limit", "SECONDS", "stop after the iteration that passes this", set_positive, SETS(time_limit)},
+    {"allow-spoiled", "",
+     "exit status 0 where all holds, though faces turned over, crossed or collapsed, or edges folded, collapsed or "
+     "became spikes (1 otherwise: see the sentence)",
+     set_flag, SETS(allow_spoiled)},
+    {"threads", "N", "work with N threads (1); 0: one per core. The result does not depend on it", set_threads,
+     SETS(threads)},
+
+    {"report", "FILE", "JSON: counts, every iteration, verdict, measures, seconds", set_output,
+     SETS(output[OUTPUT_REPORT]), .section = "out"},
+    {"forces", "FILE",
+     "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I",
+     set_output, SETS(output[OUTPUT_FORCES]), .needs = &statics},
+    {"picture", "FILE",
+     "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges "
+     "(compression blue, tension red), and without --planar coloured by how far the faces are from standing by "
+     "themselves",
+     set_output, SETS(output[OUTPUT_PICTURE])},
+    {"view", "VIEW",
+     "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", set_view,
+     SETS(view), .needs = &a_picture},
+    {"colour", "WHAT", "of the faces in the picture, by planarity, area, parallelogram or bend", set_colour,
+     SETS(colour), .needs = &a_picture},
+    {"offset", "DISTANCE,FILE",
+     "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
+     "(exact with --conical)",
+     set_offset, SETS(output[OUTPUT_OFFSET])},
+    {"support", "FILE", "the panels between the mesh and its --offset, .obj or .off: one quad an edge", set_output,
+     SETS(output[OUTPUT_SUPPORT]), .needs = &an_offset},
+    {"quiet", "", "print errors only", set_flag, SETS(quiet)},
+    {"help", "", "print this", set_flag, SETS(help), .letter = 'h'},
+    {"version", "", "print the version", set_flag, SETS(version)},
+};
+
+enum {
+    OPTION_COUNT = (int)(sizeof options / sizeof options[0])
+};
+
+typedef char tool_has_room_for_options[(int)OPTION_COUNT <= (int)MOST_OPTIONS ? 1 : -1];
+
+/* Points to the member of the tool that this row sets. */
+static void *place_of(tool *t, int row) {
+    return options[row].place ? (void *)((char *)t + options[row].place) : &t->own[row];
+}
+
+/* Finds out whether the option with this member of the tool is on the command line. */
+static bool is_given(const tool *t, size_t place) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && options[i].place == place) return true;
+    return false;
+}
+
+/* Prints words from column `indent` on, broken before column 80; the cursor stands in column `at`. */
+static void print_wrapped(const char *text, int at, int indent) {
+    while (*text) {
+        int size = (int)strcspn(text, " ");
+        if (at > indent && at + 1 + size > 79) {
+            fputc('\n', stdout);
+            at = 0;
+        }
+        if (at < indent)
+            printf("%*s", indent - at, ""), at = indent;
+        else if (at > indent)
+            fputc(' ', stdout), ++at;
+        printf("%.*s", size, text);
+        at += size;
+        text += size + (text[size] == ' ');
+    }
+    fputc('\n', stdout);
+}
+
+static void print_help(void) {
+    int i;
+    puts("usage: guidedproj INPUT.{obj,off} -o OUTPUT.{obj,off} OPTIONS\n\n"
+         "Moves the vertices of a polygon mesh so that what must hold holds to machine\n"
+         "precision, guided by what is wished. Vertices count from 0.");
+    for (i = 0; i < OPTION_COUNT; ++i) {
+        const tool_option *option = &options[i];
+        char head[64];
+        int size;
+        if (option->section) {
+            fputc('\n', stdout);
+            print_wrapped(option->section, 0, 0);
+        }
+        size = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", option->letter ? '-' : ' ',
+                        option->letter ? option->letter : ' ', option->letter ? ", " : "  ", option->name,
+                        option->value[0] && option->value[0] != '[' ? " " : "", option->value);
+        fputs(head, stdout);
+        if (size > 28) {
+            fputc('\n', stdout);
+            size = 0;
+        }
+        print_wrapped(option->help, size, 29);
+    }
+    puts("\nexamples\n"
+         "  guidedproj roof.obj -o flat.obj --planar --picture flat.svg\n"
+         "  guidedproj roof.obj -o fair.obj --planar --glide boundary \\\n"
+         "      --reference roof.obj=0.1 --fairness '0.2*0.9' --report fair.json\n"
+         "  guidedproj roof.obj -o lifted.obj --planar --fix corners --move 220,0,0,5\n\n"
+         "exit status\n"
+         "  0 all that must hold holds to the tolerance, and the mesh is not spoiled: no\n"
+         "  face turned over, no new bow-tie or fold, nothing collapsed, no spike, against\n"
+         "  where the work began   1 it is not so (the output is written, sentence and\n"
+         "  report say why; --allow-spoiled: what must hold is enough)   2 wrong usage, or\n"
+         "  an output that cannot be written   3 input refused, or writing failed   4 out\n"
+         "  of memory. After 2, 3 and 4 no output is touched, unless only printing failed\n"
+         "  (3). With --nearest 0 does not say that a minimum was reached: the sentence\n"
+         "  and the report do.");
+}
+
+/* ---- the command line ---- */
+
+/* `word` is the whole argument, `name` the option in it. */
+static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
+    int i, best = -1, least = size < 5 ? 2 : 3; /* two edits, in a short name one, make a typing error */
+    for (i = 0; i < OPTION_COUNT; ++i) {
+        const char *known = options[i].name;
+        int distance = edit_distance(name, size, known);
+        if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
+        if (distance < least) best = i, least = distance;
+    }
+    if (best < 0) return fail(t, EXIT_USAGE, "there is no option %.*s", (int)(name + size - word), word);
+    return fail(t, EXIT_USAGE, "there is no option %.*s; did you mean --%s?", (int)(name + size - word), word,
+                options[best].name);
+}
+
+/* Reads the option at argv[*i], and the value behind it. */
+static bool read_option(tool *t, int argc, char **argv, int *i) {
+    const char *word = argv[*i], *name = word + (word[1] == '-' ? 2 : 1), *equals = strchr(name, '=');
+    size_t size = equals ? (size_t)(equals - name) : strlen(name);
+    const tool_option *option = NULL;
+    const char *value = equals ? equals + 1 : NULL;
+    int k;
+    /* A word after --, which may be followed by =VALUE, or one letter after -. */
+    for (k = 0; k < OPTION_COUNT; ++k)
+        if (word[1] == '-' ? same_word(name, size, options[k].name) : size == 1 && options[k].letter == name[0])
+            option = &options[k];
+    if (!option) return fail_unknown(t, word, name, size);
+    if (t->seen[option - options] && !option->repeatable)
+        return fail(t, EXIT_USAGE, "--%s is given twice", option->name);
+    t->seen[option - options] = true;
+    if (value && !option->value[0]) return fail(t, EXIT_USAGE, "--%s takes no value", option->name);
+    if (!value && option->value[0] && option->value[0] != '[') {
+        if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
+            return fail(t, EXIT_USAGE, "--%s needs a value: --%s %s", option->name, option->name, option->value);
+        value = argv[++*i];
+    }
+    return option->read(t, place_of(t, (int)(option - options)), option->name, value);
+}
+
+static bool read_input_name(tool *t, const char *word, const char *before) {
+    double number;
+    if (!word[0]) return fail(t, EXIT_USAGE, "the input's name is empty");
+    if (read_number(word, strlen(word), &number) && before && strncmp(before, "--", 2) == 0)
+        return fail(t, EXIT_USAGE, "'%s' stands alone; a weight is written %s=%s", word, before, word);
+    if (t->input) return fail(t, EXIT_USAGE, "there are two inputs, '%s' and '%s'; one is needed", t->input, word);
+    if (strcmp(word, "-") == 0) return fail(t, EXIT_USAGE, "the input must be a file; there is no reading from a pipe");
+    t->input = word;
     return true;
 }
 
-/* What the best forces leave unbalanced, as a mean over the corners of each face. */
-static bool measure_imbalance(tool *t, double *of_faces) {
-    const gproj_mesh *mesh = t->mesh;
-    double *residual = (double *)take(t, (size_t)mesh->vertex_count, sizeof *residual);
-    int32_t f, k;
-    bool good = residual && gproj_find_forces(t->form, NULL, residual) == GPROJ_OK;
-    for (f = 0; good && f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f];
-        of_faces[f] = 0;
-        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h])
-            of_faces[f] += residual[mesh->origin[h]] / mesh->face_degree[f];
-    }
-    free(residual);
-    return good || fail_library(t, NULL, gproj_form_error(t->form));
+/* Finds out whether there is something to do; --closeness 0 alone asks for nothing. */
+static bool anything_asked(const tool *t) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && options[i].kind != SETTING &&
+            (options[i].place != PLACE(closeness) || t->closeness.weight > 0))
+            return true;
+    return false;
 }
 
-/* The groups stand in the form in the order of the table, whatever their order on the command line. */
+static bool anything_wished(tool *t) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && options[i].kind == SOFT && ((tool_demand *)place_of(t, i))->weight > 0) return true;
+    return false;
+}
+
+/* Refuses options that mean nothing without another one. */
+static bool check_needs(tool *t) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && options[i].needs && !is_given(t, options[i].needs->place))
+            return fail(t, EXIT_USAGE, "--%s %s", options[i].name, options[i].needs->why);
+    return true;
+}
+
+static bool check_options(tool *t) {
+    const char *output = t->output[OUTPUT_MESH].path;
+    int i;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
+    if (t->fill && t->input)
+        return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
+    if (t->fill) t->input = t->fill;
+    if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
+    if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
+    if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
+        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
+    if (!anything_asked(t))
+        return fail(t, EXIT_USAGE,
+                    "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
+                    "--fairness 0.2)");
+    if (!check_needs(t)) return false;
+    if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
+        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
+    if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
+    if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
+    if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--state is a file: give its name");
+    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
+        output = t->output[i].path;
+        if (output && !has_ending(output, ".obj") && !has_ending(output, ".off"))
+            return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
+    }
+    if (t->conical.weight > 0 && !(t->planar.weight > 0))
+        return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
+    if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
+        return fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
+    return true;
+}
+
+static bool read_command_line(tool *t, int argc, char **argv) {
+    bool plain = false; /* after "--" */
+    int i;
+    t->fix = (tool_demand *)take(t, (size_t)argc, sizeof *t->fix);
+    t->glide = (tool_demand *)take(t, (size_t)argc, sizeof *t->glide);
+    t->move = (tool_move *)take(t, (size_t)argc, sizeof *t->move);
+    t->move_group = (int32_t *)take(t, (size_t)argc, sizeof *t->move_group);
+    if (!t->fix || !t->glide || !t->move || !t->move_group) return false;
+    for (i = 1; i < argc && !t->help && !t->version; ++i) {
+        if (!plain && strcmp(argv[i], "--") == 0)
+            plain = true;
+        else if (!plain && argv[i][0] == '-' && argv[i][1]) {
+            if (!read_option(t, argc, argv, &i)) return false;
+        } else if (!read_input_name(t, argv[i], i > 1 && !plain ? argv[i - 1] : NULL))
+            return false;
+    }
+    return t->help || t->version || check_options(t);
+}
+
+/* ---- the form ---- */
+
+/* Schedules a wish: --nearest keeps it on; else it ends after a few iterations, at most half of all. */
+static void schedule_wish(tool *t, const tool_demand *demand, int32_t group) {
+    gproj_schedule schedule;
+    schedule.weight = demand->weight;
+    schedule.decay = demand->decay;
+    schedule.last = demand->last > 0 ? demand->last : t->equilibrium.weight > 0 ? 9 : 6;
+    if (demand->last == 0 && schedule.last > t->iterations / 2)
+        schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
+    if (t->nearest) schedule.decay = 0, schedule.last = 0;
+    gproj_set_schedule(t->form, group, schedule);
+}
+
+/* Adds what the option of this row asks for. */
+static bool add_option(tool *t, int row) {
+    const tool_option *option = &options[row];
+    const tool_demand *demand = (const tool_demand *)place_of(t, row);
+    int32_t group = -1;
+    if (option->add)
+        group = option->add(t, demand);
+    else if (demand->weight > 0)
+        group = option->build ? option->build(t->form, demand->weight)
+                              : option->build_edges(t->form, t->mesh->edge_count, NULL, demand->weight);
+    if (option->kind == SOFT && group >= 0) schedule_wish(t, demand, group);
+    return t->exit_code == 0;
+}
+
+/* Adds the options that were given, stage by stage in the order of the table, whatever theirs on the command line. */
 static bool build_form(tool *t) {
-    int32_t i;
+    int stage, i;
     t->form = gproj_form_create(t->mesh, &t->host);
     if (!t->form) return fail_memory(t);
-    if (t->planar.weight > 0) gproj_add_planarity(t->form, t->planar.weight);
-    if (t->circular.weight > 0) gproj_add_circularity(t->form, t->circular.weight);
-    if (t->planar_boundary.weight > 0) gproj_add_planar_boundary(t->form, t->planar_boundary.weight);
-    if (t->straight_boundary.weight > 0) gproj_add_straight_boundary(t->form, t->straight_boundary.weight);
-    if (t->orthogonal_boundary.weight > 0) gproj_add_orthogonal_boundary(t->form, t->orthogonal_boundary.weight);
-    if (t->lifting.weight > 0) gproj_add_lifting(t->form, t->lifting.weight);
-    if (!add_statics(t)) return false;
-    if (t->conical.weight > 0) gproj_add_conicality(t->form, t->conical.weight);
-    add_sizes(t);
-    for (i = 0; i < t->fix_count; ++i)
-        if (!add_fixed(t, &t->fix[i])) return false;
-    for (i = 0; i < t->glide_count; ++i)
-        if (!add_gliding(t, &t->glide[i])) return false;
-    if (!add_moves(t)) return false;
-    if (t->reference.text && !add_reference(t)) return false;
-    add_energies(t);
-    if (gproj_form_error(t->form)->code != GPROJ_OK) return fail_library(t, NULL, gproj_form_error(t->form));
-    return true;
+    for (stage = NO_STAGE + 1; stage < STAGE_COUNT; ++stage)
+        for (i = 0; i < OPTION_COUNT; ++i)
+            if (t->seen[i] && (int)options[i].stage == stage && !add_option(t, i)) return false;
+    return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
 /* ---- progress ---- */
-
-static double weight_in(const gproj_schedule *schedule, int32_t n) {
-    double decay = schedule->decay > 0 ? schedule->decay : 1;
-    if (schedule->last > 0 && n > schedule->last) return 0;
-    return schedule->weight * pow(decay, n);
-}
 
 static void show_progress(tool *t, const gproj_iteration *iteration) {
     enum {
@@ -1887,48 +1839,27 @@ static void show_progress(tool *t, const gproj_iteration *iteration) {
     fflush(stderr);
 }
 
-static bool record_groups(tool *t, gproj_system *system, tool_record *record) {
-    int32_t count = gproj_system_group_count(system), i;
-    if (t->group_record_count + count > t->group_record_capacity) {
-        int32_t capacity = 2 * (t->group_record_count + count);
-        void *more = realloc(t->group_record, (size_t)capacity * sizeof *t->group_record);
-        if (!more) return fail_memory(t);
-        t->group_record = (tool_group_record *)more;
-        t->group_record_capacity = capacity;
-    }
-    record->group_start = t->group_record_count;
-    record->group_count = count;
-    for (i = 0; i < count; ++i) {
-        gproj_group_info info = gproj_system_group_info(system, i);
-        tool_group_record *group = &t->group_record[t->group_record_count++];
-        group->weight = weight_in(&info.schedule, record->iteration.number);
-        group->norm = info.rms * sqrt((double)info.rows);
-        group->max = info.max;
-    }
-    return true;
-}
-
-/* The shape as it is now: vertex i is variables 3i .. 3i + 2 in the form's units. Other measures wait for the end. */
-static void measure_now(tool *t, gproj_system *system, tool_record *record) {
-    const double *values = gproj_system_values(system);
-    double centre[3], scale = 1;
-    int32_t i;
-    gproj_form_units(t->form, centre, &scale);
-    for (i = 0; i < 3 * t->probe->vertex_count; ++i) t->probe->position[i] = centre[i % 3] + values[i] / scale;
-    record->planarity_max = gproj_measure_planarity(t->probe, NULL, &record->planarity_mean);
-}
-
 static bool on_iteration(void *user, gproj_system *system, const gproj_iteration *iteration) {
     tool *t = (tool *)user;
     show_progress(t, iteration);
-    if (t->record && t->record_count < t->iterations) {
-        tool_record *record = &t->record[t->record_count];
-        record->iteration = *iteration;
-        if (!record_groups(t, system, record)) return false;
-        measure_now(t, system, record);
-        t->record_count++;
+    if (!t->history.probe || t->history.record_count >= t->iterations) return true;
+    return gprojx_history_keep(&t->history, t->form, system, iteration) || fail_memory(t);
+}
+
+/* Measures the load that the best forces leave unbalanced, as a mean over the corners of each face. */
+static bool measure_imbalance(tool *t, double *of_faces) {
+    const gproj_mesh *mesh = t->mesh;
+    double *residual = (double *)take(t, (size_t)mesh->vertex_count, sizeof *residual);
+    int32_t f, k;
+    bool good = residual && gproj_find_forces(t->form, NULL, residual) == GPROJ_OK;
+    for (f = 0; good && f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f];
+        of_faces[f] = 0;
+        for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+            of_faces[f] += residual[mesh->origin[h]] / mesh->face_degree[f];
     }
-    return true;
+    free(residual);
+    return good || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
 static bool measure_forces(tool *t) {
@@ -1961,17 +1892,7 @@ static void switch_moves(tool *t, bool on) {
     }
 }
 
-/* Where the moved vertices are at the part `part` of their way, 0 to 1. */
-static void place_handles(const tool *t, double part, double *position) {
-    int32_t i, k;
-    for (i = 0; i < t->move_count; ++i)
-        for (k = 0; k < 3; ++k) {
-            double from = t->original[3 * (size_t)t->move[i].vertex + (size_t)k];
-            position[3 * i + k] = from + part * (t->move[i].position[k] - from);
-        }
-}
-
-/* One drag and its release. */
+/* Drags the handles to their positions, and releases them. */
 static bool drag_to(tool *t, const gproj_handles *handles, const double *position) {
     gproj_error error;
     gproj_result result;
@@ -1989,8 +1910,8 @@ static bool drag_to(tool *t, const gproj_handles *handles, const double *positio
 /* Drags the moved vertices to their places, an edge at a time, with a release each. Forces have no tangent space before
    their first solve: with --equilibrium vertices are not dragged. */
 static bool drag(tool *t) {
-    gproj_handles handles;
-    int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, count;
+    int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, k, count;
+    const gproj_handles handles = {.count = t->move_count, .vertex = vertex};
     double *position = (double *)take(t, 3 * (size_t)t->move_count, sizeof *position), farthest = 0;
     bool good = vertex && position;
     for (i = 0; good && i < t->move_count; ++i) {
@@ -2000,12 +1921,15 @@ static bool drag(tool *t) {
         farthest =
             fmax(farthest, hypot(hypot(move->position[0] - p[0], move->position[1] - p[1]), move->position[2] - p[2]));
     }
-    memset(&handles, 0, sizeof handles);
-    handles.count = t->move_count, handles.vertex = vertex;
     count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / t->before.mean_edge));
+    /* Targets would pull at the vertices that the drag leads; they act again in the solve. */
     switch_moves(t, false);
     for (i = 1; good && i <= count; ++i) {
-        place_handles(t, (double)i / count, position);
+        for (k = 0; k < 3 * t->move_count; ++k) {
+            const tool_move *move = &t->move[k / 3];
+            double from = t->original[3 * (size_t)move->vertex + (size_t)(k % 3)];
+            position[k] = from + (double)i / count * (move->position[k % 3] - from);
+        }
         good = drag_to(t, &handles, position);
     }
     switch_moves(t, true);
@@ -2013,7 +1937,7 @@ static bool drag(tool *t) {
     return good;
 }
 
-/* The state in the file of --state, where there is one. */
+/* Goes on from the state in the file of --state, if there is one. */
 static bool restore(tool *t) {
     const tool_output *state = &t->output[OUTPUT_STATE];
     gproj_error error;
@@ -2026,7 +1950,7 @@ static bool restore(tool *t) {
     return t->exit_code == 0;
 }
 
-/* The solve, from a saved state or from the beginning, an iteration at a time: where it is broken off it can go on. */
+/* Solves from a saved state or from the beginning, an iteration at a time, so that a later run can go on. */
 static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
     double begin = now(NULL), limit = how->time_budget;
     gproj_solve_options options = *how;
@@ -2040,14 +1964,12 @@ static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
     return true;
 }
 
-/* What is done besides the solve for the pictures and the report. */
+/* Prepares what the report and the picture compare with. */
 static bool prepare_records(tool *t) {
     gproj_error error;
     if (t->output[OUTPUT_REPORT].path) {
-        t->record = (tool_record *)take(t, (size_t)t->iterations, sizeof *t->record);
-        if (!t->record) return false;
-        t->probe = gproj_mesh_copy(t->mesh, &t->host, &error);
-        if (!t->probe) return fail_library(t, NULL, &error);
+        t->history.probe = gproj_mesh_copy(t->mesh, &t->host, &error);
+        if (!t->history.probe) return fail_library(t, NULL, &error);
     }
     if (t->equilibrium.given && t->output[OUTPUT_PICTURE].path && !t->planar.given) {
         t->imbalance_before = (double *)take(t, (size_t)t->mesh->face_count, sizeof *t->imbalance_before);
@@ -2058,18 +1980,17 @@ static bool prepare_records(tool *t) {
 
 static bool solve(tool *t) {
     bool dragged = t->move_count > 0 && !t->equilibrium.given;
-    gproj_solve_options how;
+    bool plain = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
+    const gproj_solve_options how = {.tolerance = t->tolerance,
+                                     .epsilon = t->epsilon,
+                                     .time_budget = t->time_limit,
+                                     .skip_closeness = plain,
+                                     .smooth = !plain && !t->nearest,
+                                     .nearest = t->nearest,
+                                     .on_iteration = on_iteration,
+                                     .user = t};
     double begin = now(NULL);
     int32_t i;
-    memset(&how, 0, sizeof how);
-    how.tolerance = t->tolerance;
-    how.epsilon = t->epsilon;
-    how.time_budget = t->time_limit;
-    how.skip_closeness = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
-    how.smooth = !how.skip_closeness && !t->nearest;
-    how.nearest = t->nearest;
-    how.on_iteration = on_iteration;
-    how.user = t;
     if (!prepare_records(t) || (dragged && !drag(t))) return false;
     if (!t->output[OUTPUT_STATE].path)
         t->result = gproj_solve(t->form, t->iterations, &how);
@@ -2087,7 +2008,7 @@ static bool solve(tool *t) {
 
 /* ---- the offset ---- */
 
-/* The vertices keep the distance where only the faces' circles were asked for, else the faces do. */
+/* Tells which elements keep the distance: the vertices if only circles of faces were asked for, else the faces. */
 static bool is_vertex_offset(const tool *t) { return t->circular.weight > 0 && !(t->conical.weight > 0); }
 
 static bool make_offset(tool *t) {
@@ -2102,7 +2023,7 @@ static bool make_offset(tool *t) {
     return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
 }
 
-/* How far the distances are from the one that was asked for. */
+/* The largest difference between a distance and the one that was asked for. */
 static double offset_error(const tool *t) {
     const gproj_offset_measures *m = &t->offset_measures;
     double wanted = t->offset_distance, least = m->face_distance_min, most = m->face_distance_max;
@@ -2110,133 +2031,9 @@ static double offset_error(const tool *t) {
     return fmax(fabs(least - wanted), fabs(most - wanted));
 }
 
-/* ---- the report ---- */
+/* ---- the verdict and the report ---- */
 
-typedef struct json {
-    FILE *file;
-    int depth;
-    bool comma; /* something stands before in this object or array */
-    bool row;   /* all of it on one line */
-} json;
-
-static void json_text(json *j, const char *text) {
-    fputc('"', j->file);
-    for (; *text; ++text) {
-        unsigned char c = (unsigned char)*text;
-        if (c == '"' || c == '\\')
-            fprintf(j->file, "\\%c", c);
-        else if (c < 32 || c == 127)
-            fprintf(j->file, "\\u%04x", c);
-        else
-            fputc(c, j->file);
-    }
-    fputc('"', j->file);
-}
-
-/* Begins a member of an object, or an entry of an array where key is NULL. */
-static void json_next(json *j, const char *key) {
-    if (j->comma) fputc(',', j->file);
-    if (!j->row)
-        fprintf(j->file, "\n%*s", 2 * j->depth, "");
-    else if (j->comma)
-        fputc(' ', j->file);
-    j->comma = true;
-    if (!key) return;
-    json_text(j, key);
-    fputs(": ", j->file);
-}
-
-static void json_open(json *j, const char *key, char bracket) {
-    if (j->depth > 0) json_next(j, key);
-    fputc(bracket, j->file);
-    j->depth++;
-    j->comma = false;
-}
-
-static void json_close(json *j, char bracket) {
-    j->depth--;
-    if (!j->row && j->comma) fprintf(j->file, "\n%*s", 2 * j->depth, "");
-    fputc(bracket, j->file);
-    j->comma = true;
-}
-
-/* JSON has no infinity and no NaN: they become null. */
-static void json_number(json *j, const char *key, double value) {
-    char text[GPROJ_NUMBER_SIZE];
-    json_next(j, key);
-    if (!(fabs(value) <= 1.7976931348623157e308)) {
-        fputs("null", j->file);
-        return;
-    }
-    gproj_number_write(value, text);
-    fputs(text, j->file);
-}
-
-static void json_integer(json *j, const char *key, int64_t value) {
-    json_next(j, key);
-    fprintf(j->file, "%lld", (long long)value);
-}
-
-/* Bytes that are not UTF-8 (a path may hold any) become question marks. */
-static void json_string(json *j, const char *key, const char *text) {
-    size_t size = strlen(text), i = 0;
-    char *copy = (char *)malloc(size + 1);
-    json_next(j, key);
-    if (!copy) {
-        fputs("null", j->file);
-        return;
-    }
-    memcpy(copy, text, size + 1);
-    while (i < size) {
-        unsigned char c = (unsigned char)copy[i];
-        size_t more = c < 0x80                ? 0
-                      : c >= 0xc2 && c < 0xe0 ? 1
-                      : c >= 0xe0 && c < 0xf0 ? 2
-                      : c >= 0xf0 && c < 0xf5 ? 3
-                                              : 9,
-               k;
-        for (k = 1; k <= more && more < 9; ++k)
-            if (((unsigned char)copy[i + k] & 0xc0) != 0x80) more = 9;
-        if (more < 9)
-            i += more + 1;
-        else
-            copy[i++] = '?';
-    }
-    json_text(j, copy);
-    free(copy);
-}
-
-static const char *place_name(gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return "vertex";
-    case GPROJ_PLACE_EDGE: return "edge";
-    case GPROJ_PLACE_FACE: return "face";
-    default: return "row";
-    }
-}
-
-static const char *phase_name(int phase) {
-    switch ((gproj_phase)phase) {
-    case GPROJ_PHASE_ANALYSE: return "analysis";
-    case GPROJ_PHASE_REFRESH: return "evaluation";
-    case GPROJ_PHASE_ASSEMBLE: return "assembly";
-    case GPROJ_PHASE_FACTOR: return "factorisation";
-    default: return "solve";
-    }
-}
-
-static const char *outcome_name(gproj_outcome outcome) {
-    switch (outcome) {
-    case GPROJ_CONVERGED: return "converged";
-    case GPROJ_ITERATION_LIMIT: return "iteration limit";
-    case GPROJ_STALLED: return "stalled";
-    case GPROJ_CANCELLED: return "cancelled";
-    case GPROJ_TIME_OUT: return "time out";
-    default: return "failed";
-    }
-}
-
-/* Does what must hold do so? How near a nearest mesh came is told by the sentence and the report. */
+/* Tells whether all constraints hold; sentence and report tell how near a nearest mesh came to a minimum. */
 static bool is_exact(const tool *t) {
     return t->result.outcome == GPROJ_CONVERGED ||
            (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
@@ -2247,257 +2044,29 @@ static int verdict_code(const tool *t) {
     return is_exact(t) && sound ? EXIT_REACHED : EXIT_NOT_REACHED;
 }
 
-/* How many faces have this many sides. */
-static int32_t count_degree(const gproj_mesh *mesh, int32_t degree) {
-    int32_t i, count = 0;
-    for (i = 0; i < mesh->face_count; ++i) count += mesh->face_degree[i] == degree;
-    return count;
-}
-
-/* The smallest degree of a face above `degree`; 0 where there is none. */
-static int32_t next_degree(const gproj_mesh *mesh, int32_t degree) {
-    int32_t i, best = 0;
-    for (i = 0; i < mesh->face_count; ++i)
-        if (mesh->face_degree[i] > degree && (best == 0 || mesh->face_degree[i] < best)) best = mesh->face_degree[i];
-    return best;
-}
-
-static void report_mesh(json *j, const gproj_mesh *mesh) {
-    int32_t degree;
-    json_open(j, "mesh", '{');
-    json_integer(j, "vertices", mesh->vertex_count);
-    json_integer(j, "edges", mesh->edge_count);
-    json_integer(j, "faces", mesh->face_count);
-    json_open(j, "faces_by_degree", '{');
-    j->row = true;
-    for (degree = next_degree(mesh, 0); degree > 0; degree = next_degree(mesh, degree)) {
-        char key[16];
-        snprintf(key, sizeof key, "%ld", (long)degree);
-        json_integer(j, key, count_degree(mesh, degree));
-    }
-    json_close(j, '}');
-    j->row = false;
-    json_integer(j, "boundary_loops", mesh->loop_count);
-    json_integer(j, "components", mesh->component_count);
-    json_integer(j, "isolated_vertices", mesh->isolated_count);
-    json_integer(j, "reoriented_faces", mesh->reoriented_count);
-    json_close(j, '}');
-}
-
-static const char *kind_name(gproj_kind kind) {
-    return kind == GPROJ_CONSTRAINT ? "constraint" : kind == GPROJ_BOUND ? "bound" : "wish";
-}
-
-static void report_group(json *j, const gproj_group_info *group) {
-    json_open(j, NULL, '{');
-    j->row = true;
-    json_string(j, "name", group->name);
-    json_string(j, "kind", kind_name(group->kind));
-    json_number(j, "weight", group->schedule.weight);
-    json_number(j, "decay", group->schedule.decay > 0 ? group->schedule.decay : 1);
-    if (group->schedule.last > 0 && group->schedule.last < INT32_MAX)
-        json_integer(j, "last_iteration", group->schedule.last);
-    else
-        json_number(j, "last_iteration", INFINITY);
-    json_integer(j, "rows", group->rows);
-    json_number(j, "norm", group->rms * sqrt((double)group->rows));
-    json_number(j, "max", group->max);
-    if (group->worst_row >= 0) json_integer(j, place_name(group->place), group->worst_element);
-    json_close(j, '}');
-    j->row = false;
-}
-
-static void report_groups(json *j, tool *t) {
-    gproj_system *system = gproj_form_system(t->form);
-    int32_t count = gproj_system_group_count(system), i;
-    int64_t rows = 0;
-    for (i = 0; i < count; ++i) rows += gproj_system_group_info(system, i).rows;
-    json_integer(j, "variables", gproj_system_variable_count(system));
-    json_integer(j, "rows", rows);
-    json_open(j, "groups", '[');
-    for (i = 0; i < count; ++i) {
-        gproj_group_info group = gproj_system_group_info(system, i);
-        report_group(j, &group);
-    }
-    json_close(j, ']');
-}
-
-static void report_seconds(json *j, const double *seconds) {
-    int i;
-    for (i = 0; i < GPROJ_PHASE_COUNT; ++i) json_number(j, phase_name(i), seconds[i]);
-}
-
-static void report_iteration(json *j, tool *t, const tool_record *record) {
-    const gproj_iteration *iteration = &record->iteration;
-    int32_t i;
-    json_open(j, NULL, '{');
-    json_integer(j, "number", iteration->number);
-    json_number(j, "residual", iteration->residual);
-    json_number(j, "planarity_max", record->planarity_max);
-    json_number(j, "planarity_mean", record->planarity_mean);
-    json_number(j, "merit", iteration->merit);
-    json_number(j, "energy", iteration->energy);
-    json_number(j, "step", iteration->step);
-    if (t->nearest) json_number(j, "optimality", iteration->optimality);
-    json_number(j, "epsilon", iteration->epsilon);
-    json_integer(j, "attempts", iteration->attempts);
-    json_open(j, "groups", '[');
-    for (i = 0; i < record->group_count; ++i) {
-        const tool_group_record *group = &t->group_record[record->group_start + i];
-        json_open(j, NULL, '{');
-        j->row = true;
-        json_string(j, "name", gproj_system_group_info(gproj_form_system(t->form), i).name);
-        json_number(j, "weight", group->weight);
-        json_number(j, "norm", group->norm);
-        json_number(j, "max", group->max);
-        json_close(j, '}');
-        j->row = false;
-    }
-    json_close(j, ']');
-    json_open(j, "seconds", '{');
-    j->row = true;
-    report_seconds(j, iteration->seconds);
-    json_close(j, '}');
-    j->row = false;
-    json_close(j, '}');
-}
-
-static void report_spoiled(json *j, const gproj_spoiled *spoiled) {
-    json_open(j, "spoiled", '{');
-    json_integer(j, "total", spoiled->total);
-    json_integer(j, "turned_faces", spoiled->turned);
-    json_integer(j, "crossed_faces", spoiled->crossed);
-    json_integer(j, "folded_edges", spoiled->folded);
-    json_integer(j, "collapsed_edges", spoiled->collapsed_edges);
-    json_integer(j, "collapsed_faces", spoiled->collapsed_faces);
-    json_integer(j, "spikes", spoiled->spikes);
-    if (spoiled->total > 0) {
-        json_open(j, "first", '{');
-        json_integer(j, place_name(spoiled->place), spoiled->element);
-        json_close(j, '}');
-    }
-    json_close(j, '}');
-}
-
-static void report_result(json *j, const tool *t) {
-    const gproj_result *result = &t->result;
-    json_open(j, "result", '{');
-    json_string(j, "outcome", outcome_name(result->outcome));
-    json_integer(j, "exit_code", verdict_code(t));
-    json_string(j, "sentence", result->message);
-    json_integer(j, "iterations", result->iterations);
-    json_integer(j, "damped", result->damped);
-    json_integer(j, "attempts", result->attempts);
-    json_number(j, "residual", result->residual);
-    json_number(j, "tolerance", result->tolerance);
-    json_number(j, "last_step", result->step);
-    if (t->nearest) json_number(j, "optimality", result->optimality);
-    if (result->worst_group >= 0) {
-        gproj_group_info group = gproj_system_group_info(gproj_form_system(t->form), result->worst_group);
-        json_open(j, "worst", '{');
-        json_string(j, "group", group.name);
-        json_integer(j, place_name(group.place), result->worst_element);
-        json_close(j, '}');
-    }
-    report_spoiled(j, &result->spoiled);
-    json_close(j, '}');
-}
-
-static void report_measures(json *j, const tool *t, const char *key, const gproj_measures *m, double volume) {
-    json_open(j, key, '{');
-    json_number(j, "planarity_max", m->planarity_max);
-    json_number(j, "planarity_mean", m->planarity_mean);
-    json_integer(j, "planarity_face", m->planarity_face);
-    json_number(j, "diagonal_distance_max", m->diagonal_max);
-    json_number(j, "circularity_max", m->circularity_max);
-    json_number(j, "conicality_max", m->conicality_max);
-    json_number(j, "area_spread", m->area_spread);
-    json_number(j, "deviation_max", m->deviation_max);
-    json_number(j, "deviation_rms", m->deviation_rms);
-    json_number(j, "displacement_mean", m->displacement_mean);
-    json_integer(j, "turned_faces", m->turned_faces);
-    json_integer(j, "folded_edges", m->folded_edges);
-    json_integer(j, "bow_tie_faces", m->bow_tie_faces);
-    json_integer(j, "degenerate_faces", m->degenerate_faces);
-    json_integer(j, "collapsed_edges", m->collapsed_edges);
-    json_number(j, "gauss_variation", m->gauss_variation);
-    json_number(j, "mean_edge", m->mean_edge);
-    json_number(j, "min_edge", m->min_edge);
-    json_number(j, "max_edge", m->max_edge);
-    json_number(j, "length", m->length);
-    json_number(j, "volume", volume);
-    json_number(j, "area", m->area);
-    json_number(j, "min_face_area", m->min_face_area);
-    json_number(j, "max_face_area", m->max_face_area);
-    if (t->cost.given) json_number(j, "cost", cost_of(t, m));
-    json_close(j, '}');
-}
-
-static void report_forces(json *j, const gproj_forces *m) {
-    json_open(j, "forces", '{');
-    json_number(j, "equilibrium_residual", m->residual);
-    json_integer(j, "residual_vertex", m->residual_vertex);
-    json_number(j, "min_density", m->min_density);
-    json_number(j, "max_density", m->max_density);
-    json_number(j, "min_force", m->min_force);
-    json_number(j, "max_force", m->max_force);
-    json_number(j, "load_path", m->load_path);
-    json_number(j, "total_load", m->total_load);
-    json_number(j, "max_reaction", m->max_reaction);
-    json_close(j, '}');
-}
-
-static void report_offset(json *j, const tool *t) {
-    const gproj_offset_measures *m = &t->offset_measures;
-    if (!t->offset) return;
-    json_open(j, "offset", '{');
-    json_string(j, "kind", is_vertex_offset(t) ? "vertices" : "faces");
-    json_number(j, "distance", t->offset_distance);
-    json_number(j, "face_distance_min", m->face_distance_min);
-    json_number(j, "face_distance_max", m->face_distance_max);
-    json_number(j, "vertex_distance_min", m->vertex_distance_min);
-    json_number(j, "vertex_distance_max", m->vertex_distance_max);
-    json_number(j, "parallel_max", m->parallel_max);
-    json_number(j, "support_planarity_max", m->support_planarity_max);
-    json_integer(j, "reversed_edges", m->reversed_edges);
-    json_close(j, '}');
-}
-
 static gproj_code write_report(tool *t, FILE *file) {
-    json writer = {NULL, 0, false, false}, *j = &writer;
-    int32_t i;
-    writer.file = file;
-    json_open(j, NULL, '{');
-    json_string(j, "version", TOOL_VERSION);
-    json_string(j, "input", t->input);
-    json_string(j, "output", t->output[OUTPUT_MESH].path);
-    report_mesh(j, t->mesh);
-    report_groups(j, t);
-    json_open(j, "iterations", '[');
-    for (i = 0; i < t->record_count; ++i) report_iteration(j, t, &t->record[i]);
-    json_close(j, ']');
-    report_result(j, t);
-    report_measures(j, t, "measures_before", &t->before, t->volume_before);
-    report_measures(j, t, "measures", &t->after, gproj_volume(t->mesh));
-    if (t->equilibrium.given) report_forces(j, &t->forces);
-    report_offset(j, t);
-    json_open(j, "seconds", '{');
-    json_number(j, "reading", t->read_seconds);
-    json_number(j, "set_up", t->setup_seconds);
-    report_seconds(j, t->result.seconds);
-    json_number(j, "all_iterations", t->solve_seconds);
-    json_number(j, "total", now(NULL) - t->start);
-    json_close(j, '}');
-    json_close(j, '}');
-    fputc('\n', file);
-    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
+    const double cost[2] = {cost_of(t, &t->before), cost_of(t, &t->after)};
+    gprojx_report report;
+    memset(&report, 0, sizeof report);
+    report.version = TOOL_VERSION, report.input = t->input, report.output = t->output[OUTPUT_MESH].path;
+    report.mesh = t->mesh, report.form = t->form, report.history = &t->history;
+    report.result = &t->result, report.nearest = t->nearest, report.exit_code = verdict_code(t);
+    report.before = &t->before, report.after = &t->after;
+    report.volume_before = t->volume_before, report.volume = gproj_volume(t->mesh);
+    report.cost = t->cost.given ? cost : NULL;
+    report.forces = t->equilibrium.given ? &t->forces : NULL;
+    report.offset = t->offset ? &t->offset_measures : NULL;
+    report.offset_kind = is_vertex_offset(t) ? "vertices" : "faces", report.offset_distance = t->offset_distance;
+    report.reading = t->read_seconds, report.set_up = t->setup_seconds, report.solving = t->solve_seconds;
+    report.total = now(NULL) - t->start;
+    return gprojx_report_write(file, &report);
 }
 
 /* ---- the other outputs ---- */
 
 static const char *file_name(const char *path) { return strrchr(path, '/') ? strrchr(path, '/') + 1 : path; }
 
-/* What colours the faces: what --colour says; else imbalance, where that was found; else planarity. */
+/* Colours the faces by --colour, else by the imbalance if there are forces alone, else by planarity. */
 static void choose_colours(const tool *t, gprojx_picture_options *picture) {
     bool moved = t->result.iterations > 0;
     picture->legend = "planarity of the faces, in mean edge lengths";
@@ -2537,14 +2106,14 @@ static gproj_code write_picture(tool *t, FILE *file) {
                  t->forces.residual);
     picture.title = file_name(t->output[OUTPUT_MESH].path);
     picture.caption = caption;
-    picture.view = t->view_given ? &t->view : NULL;
+    picture.view = is_given(t, PLACE(view)) ? &t->view : NULL;
     picture.original = t->original;
     if (t->equilibrium.given) picture.edge_value = t->force_in_edge;
     choose_colours(t, &picture);
     return gprojx_picture(file, t->mesh, &picture);
 }
 
-/* Numbers that read back to the same bits, whatever the locale. */
+/* Writes a number that reads back to the same bits, whatever the locale. */
 static void write_number(FILE *file, double value, char after) {
     char text[GPROJ_NUMBER_SIZE];
     gproj_number_write(value, text);
@@ -2807,8 +2376,9 @@ static void print_mesh(const tool *t) {
     print_plain(stdout, file_name(t->input));
     printf(": %ld vertices, %ld edges, %ld faces (", (long)mesh->vertex_count, (long)mesh->edge_count,
            (long)mesh->face_count);
-    for (degree = next_degree(mesh, 0); degree > 0 && shown < 6; degree = next_degree(mesh, degree), ++shown)
-        printf("%s%ld of %ld sides", shown ? ", " : "", (long)count_degree(mesh, degree), (long)degree);
+    for (degree = gprojx_next_degree(mesh, 0); degree > 0 && shown < 6;
+         degree = gprojx_next_degree(mesh, degree), ++shown)
+        printf("%s%ld of %ld sides", shown ? ", " : "", (long)gprojx_count_degree(mesh, degree), (long)degree);
     printf("%s), %ld boundary loop%s\n", degree > 0 ? ", ..." : "", (long)mesh->loop_count,
            mesh->loop_count == 1 ? "" : "s");
     if (mesh->reoriented_count > 0)
@@ -2817,9 +2387,8 @@ static void print_mesh(const tool *t) {
         printf("note: %ld boundary vertices were merged with others at the same place; vertices are numbered anew\n",
                (long)t->welded);
     if (t->seams > 0)
-        printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their sides "
-               "may "
-               "come apart; --weld closes them\n",
+        printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their "
+               "sides may come apart; --weld closes them\n",
                (long)t->seams);
     if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
 }
@@ -2835,7 +2404,7 @@ static void print_offset(const tool *t) {
                (long)m->reversed_edges);
 }
 
-/* How far the supports went. */
+/* The largest distance that a support moved. */
 static double support_movement(const tool *t) {
     double most = 0;
     int32_t v, k;
@@ -2850,7 +2419,7 @@ static double support_movement(const tool *t) {
     return sqrt(most);
 }
 
-/* The measures that some options ask for. */
+/* Prints measures that belong to single options. */
 static void print_asked(const tool *t) {
     const gproj_measures *b = &t->before, *a = &t->after;
     double moved = t->equilibrium.given ? support_movement(t) : 0;
@@ -2927,13 +2496,13 @@ static void clean_up(tool *t) {
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
-    gproj_mesh_destroy(t->probe), gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
+    gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
-    free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade), free(t->record),
-        free(t->group_record);
+    free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade);
+    gprojx_history_free(&t->history);
 }
 
 int main(int argc, char **argv) {
