@@ -13334,7 +13334,7 @@ GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
         line = reader->line;
         if (gproji_word_is(reader, "v")) {
             /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
-            double number, x[3] = {0, 0, 0};
+            double number = 0, x[3] = {0, 0, 0};
             while (!code && gproji_next_word(reader)) {
                 code = gproji_word_number(reader, &number);
                 if (count < 3) x[count] = number;

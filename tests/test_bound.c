@@ -401,7 +401,11 @@ GPROJT_TEST(merits_with_hinges_are_minimised) {
             hinge[k].w2 = gprojt_uniform(&seed), hinge[k].phi = 2 * gprojt_uniform(&seed) - 1;
             hinge[k].h = 4 * gprojt_uniform(&seed) - 2, hinge[k].q = 2 * gprojt_uniform(&seed) - 1;
         }
-        gproji_add_quartic(&hinge[0], m.c);
+        m.c[0] = hinge[0].w2 * hinge[0].phi * hinge[0].phi; /* w^2 (phi + t h + t^2 q)^2, whatever its sign */
+        m.c[1] = hinge[0].w2 * 2 * hinge[0].phi * hinge[0].h;
+        m.c[2] = hinge[0].w2 * (hinge[0].h * hinge[0].h + 2 * hinge[0].phi * hinge[0].q);
+        m.c[3] = hinge[0].w2 * 2 * hinge[0].h * hinge[0].q;
+        m.c[4] = hinge[0].w2 * hinge[0].q * hinge[0].q;
         m.hinge = hinge + 1, m.count = 5;
         t = gproji_minimise_merit(&m, 0.05, high);
         for (k = 0; k <= 4000; ++k) least = fmin(least, gproji_merit_at(&m, 0.05 + k * (high - 0.05) / 4000));

@@ -140,7 +140,7 @@ static double gprojt_step_error(gproj_form *form, double epsilon) {
     double *metric = gprojt_metric(form, epsilon), worst = 0, largest = 0;
     gprojt_dense d;
     int32_t v, f;
-    GPROJT_CHECK(gproji_find_schur_step(&form->solve.loop, epsilon));
+    GPROJT_CHECK(gproji_find_step(&form->solve.loop, epsilon));
     for (v = 0; v < form->mesh->vertex_count; ++v) GPROJT_NEAR(s->schur.metric[s->node[3 * v]] / metric[v], 1, 1e-9);
     d = gprojt_dense_step(form, epsilon, metric);
     for (v = 0; v < d.n; ++v) {
@@ -890,7 +890,7 @@ GPROJT_TEST(bad_faces) {
             if (fixed) gproj_add_volume(form, 1, 1);
             gprojt_begin(form, false);
             for (k = 0; k < 4; ++k) {
-                GPROJT_CHECK(gproji_find_schur_step(&form->solve.loop, epsilon[k]) && gprojt_is_on(form));
+                GPROJT_CHECK(gprojt_is_on(form) && gproji_find_step(&form->solve.loop, epsilon[k]));
                 GPROJT_CHECK(gprojt_all_finite(form->system->step, form->system->variable_count));
             }
             if (bad >= GPROJT_EQUAL && bad != GPROJT_POINT) GPROJT_CHECK(gprojt_step_error(form, 1e-3) <= 1e-9);
