@@ -2087,7 +2087,8 @@ GPROJI_INTERNAL size_t gproji_number_write_digits(double value, int32_t digits, 
 }
 
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) {
-    return gproji_number_write_digits(value, 0, text);
+    char own[GPROJ_NUMBER_SIZE]; /* NULL asks for the length alone */
+    return gproji_number_write_digits(value, 0, text ? text : own);
 }
 
 /* ============================================================================================================
@@ -19020,11 +19021,9 @@ GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
 GPROJ_API gproj_system *gproj_form_system(gproj_form *form) { return form ? form->system : NULL; }
 
 GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double *scale) {
-    gproji_set3(0, 0, 0, centre);
-    *scale = 1;
-    if (!form) return;
-    gproji_copy3(form->centre, centre);
-    *scale = form->scale;
+    static const double origin[3] = {0, 0, 0};
+    if (centre) gproji_copy3(form ? form->centre : origin, centre);
+    if (scale) *scale = form ? form->scale : 1;
 }
 
 /* -- what the builders share -- */

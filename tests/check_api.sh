@@ -53,6 +53,55 @@ else
 fi
 clean 'macros that list names' "$(grep -nE '#define GPROJ_[A-Z]+\(X\)' "$header")"
 
+# ---- nothing given: every function with NULL pointers, zeros and structs of zeros ----
+
+cat >"$work/nothing.py" <<'END'
+import re, sys
+text = open(sys.argv[1], encoding="utf-8").read().split("#ifdef GUIDEDPROJ_IMPLEMENTATION")[0]
+text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+calls = []
+for name, inside in re.findall(r"GPROJ_API\s+[\w \*]+?\b(gproj_\w+)\(([^;]*?)\);", text, re.S):
+    values, declared, part, depth = [], [], "", 0
+    for c in " ".join(inside.split()) + ",":
+        depth += (c == "(") - (c == ")")
+        if c != "," or depth > 0:
+            part += c
+            continue
+        part = part.strip()
+        if part == "void": continue
+        if any(mark in part for mark in "*[("):
+            values.append("NULL")
+        else:
+            declared.append(f"static {re.sub(r'[a-z_]+$', '', part).replace('const ', '')} v{len(values)};")
+            values.append(f"v{len(values)}")
+        part = ""
+    calls.append((name, " ".join(declared), ", ".join(values)))
+print('#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n#include <stdio.h>\n#include <sys/wait.h>')
+for name, declared, values in calls: print(f"static void call_{name}(void) {{ {declared} (void){name}({values}); }}")
+print("static const struct { const char *name; void (*call)(void); } all[] = {")
+for name, _, _ in calls: print(f'{{"{name}", call_{name}}},')
+print("""};
+int main(void) {
+    unsigned i, count = sizeof all / sizeof *all;
+    for (i = 0; i < count; ++i) {
+        int status = 0;
+        if (fork() == 0) {
+            all[i].call();
+            _exit(0);
+        }
+        wait(&status);
+        if (status) printf("%s crashes\\n", all[i].name);
+    }
+    if (count < 140) printf("only %u functions were found\\n", count);
+}""")
+END
+if have python3 && have gcc && python3 "$work/nothing.py" "$header" >"$work/nothing.c" &&
+    gcc -w -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$root" "$work/nothing.c" -o "$work/nothing" -lm; then
+    clean 'functions that crash where nothing is given' "$("$work/nothing" 2>/dev/null)"
+else
+    skip 'nothing given: no python3, or no gcc with sanitizers'
+fi
+
 # ---- options begin as zeros ----
 
 options=$(sed '/^#ifdef GUIDEDPROJ_IMPLEMENTATION/,$d' "$header" | grep -oE '^\} gproj_([a-z_]*_options|host|loads|supports)' | tr -d '} ')
