@@ -7843,7 +7843,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 }
 
 /* ============================================================================================================
-   >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
+   >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
    error, parallel, vector, dense, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. A row
@@ -7856,11 +7856,11 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    terms name these by number, so that rows on different variables can share one list of terms. Before a solve all rows
    are compiled:
    1. Variables are joined to nodes: a block is one node if some row has several of its variables, else each is its own.
-   2. The cheaper of two matrices is chosen: that of all variables, or that of the multipliers (>>schur).
-   3. The graph of nodes that share a row is analysed for the factorisation.
-   4. Each row goes to the front of its node eliminated first, and its locals are sorted by their padded rows there.
+   2. The cheaper matrix is chosen: for all variables, or for the multipliers (>>schur).
+   3. The adjacency graph, whose edges join nodes in a common row, is analysed for the factorisation.
+   4. Each row goes to the front that eliminates one of its nodes first; its locals are sorted by padded rows there.
    5. Arrays for iterations are taken.
-   An iteration then evaluates rows into local gradients, and each front adds the outer products of its rows when the
+   An iteration then evaluates rows into local gradients, and each front adds its rows' outer products when the
    factorisation comes to it, without a search and without an allocation.
 
    Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
@@ -7868,41 +7868,41 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
 enum {
     GPROJI_BLOCK_MAX = 8,        /* variables in a block */
-    GPROJI_WIDE_ROW = 512,       /* rows with more variables are dense: kept out of the sparse matrix */
+    GPROJI_WIDE_ROW = 512,       /* rows with more variables are dense: not in the sparse matrix */
     GPROJI_ROWS_PER_TASK = 2048, /* in the evaluation */
     GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
     GPROJI_COPY_LOCALS = 16,     /* rows with more locals do not share copies */
     GPROJI_COPY_BITS = 6         /* log2: copies that are remembered */
 };
 
-/* A row has the terms term[term .. term + terms - 1] of its group, maybe shared with other rows, and the locals from
-   `local` up to those of the next row: the array has one more entry than there are rows. */
+/* A row has the terms term[term .. term + terms - 1], maybe shared with other rows in the group, and the locals from
+   `local` up to the next row's: the array has one more entry than there are rows. */
 typedef struct gproji_row {
     uint32_t term, terms;
     uint32_t source; /* `term` before compilation, which copies shared terms if locals move */
-    uint32_t local;  /* first local; compiled: and first number of the gradient */
+    uint32_t local;  /* first local; compiled: and first number in the gradient */
     double constant;
     double weight; /* times the group's; 0: the row counts nowhere */
     double phi;    /* value at the last evaluation */
     int32_t element;
-    bool wide;   /* dense: kept out of the sparse matrix */
+    bool wide;   /* dense: not in the sparse matrix */
     bool run;    /* contiguous linear row: global, with linear terms in consecutive variables */
     bool active; /* acts on the next step: has a weight, and is no bound that the step keeps anyway */
     bool waits;  /* dormant: a guard's row that has not come near to acting, and has no multiplier */
 } gproji_row;
 
-/* Factors of a row's weight, in a group whose elements have weights. */
+/* Factors in a row's weight, for a group whose elements have weights. */
 typedef struct gproji_share {
     double own;    /* set for the row itself */
-    double factor; /* weight of its element */
+    double factor; /* the element's weight */
 } gproji_share;
 
-/* Nearest: y of a hard row, and its increment in a step. */
+/* Nearest: multiplier y for a hard row, and the increment in a step. */
 typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
-/* Partial merit and largest residual of one chunk of a group's rows, at the last evaluation. */
+/* Partial merit and largest residual in one chunk, a part of a group's rows, at the last evaluation. */
 typedef struct gproji_tally {
     double sum;     /* w^2 phi^2 */
     double largest; /* |phi| */
@@ -7918,11 +7918,11 @@ typedef struct gproji_group {
     gproj_refresh refresh;
     void *refresh_user;
     double weight;   /* in the present iteration */
-    bool idle;       /* at each compilation so far, its schedule was without weight */
-    int32_t closing; /* zero-sum rows come first, so many: the gradients of those with the same local unknowns add up to
-                        nothing at the other nodes, as n'(v_i - v_j) does around a face */
+    bool idle;       /* without weight at each compilation so far */
+    int32_t closing; /* zero-sum rows come first, so many: gradients with the same local unknowns add up to nothing
+                        at the other nodes, as n'(v_i - v_j) does around a face */
     bool has_wide;   /* some rows are dense */
-    bool guard;      /* a bound on steps only: no part of merit, residual and verdict */
+    bool guard;      /* a bound on steps only: not in merit, residual and verdict */
     double slack;    /* guard: steps may violate its rows by so much */
     bool lazy;       /* a bound for whose sake a good step is not found again, however near steps lead */
     int32_t wakings; /* guard: how often dormant rows were activated */
@@ -7932,19 +7932,18 @@ typedef struct gproji_group {
 
     int32_t row_count;
     gproji_row *row;
-    gproj_term *term;  /* i and j are not variables but numbers of locals in their row */
+    gproj_term *term;  /* i and j are not variables but local numbers in the row */
     bool common;       /* rows share terms, which are not to be written then (gproji_own_terms) */
     size_t term_count; /* all terms; compiled, with the copies behind the first `sources` */
     size_t sources;
-    gproji_share *share; /* rows; NULL: all factors are 1 */
-    int32_t
-        *local_variable; /* of every row, each once, in the order in which its terms name them; compiled, those of */
-    bool sorted;         /* narrow rows may have the order of `local_at` instead */
+    gproji_share *share;     /* rows; NULL: all factors are 1 */
+    int32_t *local_variable; /* row after row, each once, in the order in which terms name them; compiled, narrow */
+    bool sorted;             /* rows may have the ascending order of `local_at` instead */
     struct {
         size_t row, term, share, local;
     } capacity; /* entries that `row`, `term`, `share`, `local_variable` have room for */
 
-    int32_t *local_at;             /* padded rows of a narrow row's locals in its front, ascending; see also >>schur */
+    int32_t *local_at;             /* padded rows in the front for a narrow row's locals, ascending; see also >>schur */
     double *local_gradient;        /* at the last evaluation */
     gproji_tally *tally;           /* tasks in the evaluation */
     double tallied;                /* the weight for which `tally` was made */
@@ -7956,7 +7955,7 @@ typedef struct gproji_row_name {
     int32_t group, row;
 } gproji_row_name;
 
-/* Callbacks by which the owner of a system takes part in its steps; any of them may be NULL. */
+/* Callbacks by which a system's owner takes part in steps; any may be NULL. */
 typedef struct gproji_hooks {
     void (*settle)(void *user, gproj_system *system);       /* gives local unknowns (normals) their best values at x */
     bool (*inspect)(void *user, gproj_system *system);      /* does the step to x violate a safeguard without a row? */
@@ -7973,20 +7972,20 @@ typedef struct gproji_hinge {
     double w2, phi, h, q;
 } gproji_hinge;
 
-/* A node that couples multipliers, on its way into the front that eliminates the first of them. */
+/* A node that couples multipliers, on its way into the front that eliminates the first one. */
 typedef struct gproji_coupling {
-    int64_t value; /* in W, the first number of the node's rows */
+    int64_t value; /* in W, the first number in the node's rows */
     int32_t count; /* multipliers */
     int32_t size;  /* variables */
 } gproji_coupling;
 
 /* W of >>schur, node by node; and the order in which fronts read it. */
 typedef struct gproji_schur_matrix {
-    int64_t *entry_start; /* nodes + 1: the multipliers at each node, in the order of their elimination, are */
+    int64_t *entry_start; /* nodes + 1: the multipliers at each node, in elimination order, are */
     int32_t *entry;       /* entry[entry_start[v]..] */
-    int64_t *value_start; /* nodes + 1: the first number of the node's rows, which are entries x its size */
+    int64_t *value_start; /* nodes + 1: the first number in the node's rows, which are entries x size */
     double *value;
-    int64_t *front_start; /* fronts + 1: the nodes of front f are coupling[front_start[f]..] */
+    int64_t *front_start; /* fronts + 1: the nodes in front f are coupling[front_start[f]..] */
     gproji_coupling *coupling;
     int64_t *front_entry; /* fronts: the multipliers at these nodes, one after the other, have the padded rows */
     int32_t *entry_at;    /* entry_at[front_entry[f]..] */
@@ -7996,42 +7995,42 @@ typedef struct gproji_schur_matrix {
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
-    bool stale; /* `on` is to be decided anew, or is off only because the matrix of all variables was asked for */
+    bool stale; /* `on` is to be decided anew, or is off only because the matrix for all variables was asked for */
     int32_t elements;
     gproji_row_name *row; /* rows by elements, then those with a single node by nodes */
     int64_t *row_start;   /* elements + 1: rows in `row` */
     int64_t *own_start;   /* nodes + 1: rows in `row` */
-    int32_t *auxiliary;   /* elements: the node of local unknowns; -1: none */
-    uint8_t *zero_sum;    /* elements: gradients of its rows add up to nothing at its nodes */
+    int32_t *auxiliary;   /* elements: the node with local unknowns; -1: none */
+    uint8_t *zero_sum;    /* elements: row gradients add up to nothing at the nodes joined */
     int32_t *first;       /* elements + 1: the first multiplier */
     int64_t *link_start;  /* elements + 1: the nodes that each joins are link_node[link_start[e]..] */
     int32_t *link_node;
-    int64_t *link_value; /* in w.value, the first number of the element's block for that node: multipliers x its size */
+    int64_t *link_value; /* in w.value, the first number in the element's block for that node: multipliers x size */
     gproji_schur_matrix w;
-    int64_t *root_start; /* nodes: in `root`, the first number of L^-1: size x size */
+    int64_t *root_start; /* nodes: in `root`, the first number in L^-1: size x size */
     double *root;        /* L^-1, D = L L' */
     double *side;        /* 1 + wide_count columns: r + W b, and W U; then z and Y */
     double *share;       /* multipliers: their addition to eps^2 at the element's nodes, over eps^2 */
-    double *metric;      /* nodes: 1 and the sum of these */
+    double *metric;      /* nodes: 1 + sum over these */
     uint8_t *turns;      /* nodes: is it in a row with local unknowns? */
-    double *triangle;    /* elements x triangle_size: R, with the inverses of its diagonal */
+    double *triangle;    /* elements x triangle_size: R, with a reciprocal diagonal */
     double *work;        /* chunks x most */
     int32_t chunks, wide, triangle_size;
     int32_t kept; /* variables from this one on are local unknowns (those before may be) */
-    int64_t most; /* doubles of `work` for one chunk */
+    int64_t most; /* doubles in `work` for one chunk */
 } gproji_schur;
 
 /* Narrow rows by the fronts that load them. */
 typedef struct gproji_front_rows {
-    int64_t *start;       /* the rows of front f are row[start[f] .. start[f + 1] - 1] */
+    int64_t *start;       /* the rows for front f are row[start[f] .. start[f + 1] - 1] */
     gproji_row_name *row; /* all narrow rows */
     size_t count;         /* fronts */
     size_t row_count, row_room;
 } gproji_front_rows;
 
-/* Work of steps with dense rows. */
+/* Work arrays for steps with dense rows. */
 typedef struct gproji_wide {
-    double *matrix;             /* wide_count x wide_count: I + Y'Y and its Cholesky factor */
+    double *matrix;             /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
     double *vector;             /* wide_count */
     double *residual, *balance; /* in refinement; NULL without dense rows */
     size_t taken;               /* wide_count when these and `sides` were taken */
@@ -8044,19 +8043,19 @@ struct gproj_system {
     gproj_cholesky *cholesky;
 
     int32_t variable_count;
-    int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
-    int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
-    bool sliding;         /* nearest: away from the start, where faces may become small */
+    int32_t default_last; /* in this solve: the last iteration for wishes whose schedule names none; 0: for ever */
+    int32_t late; /* iterations since the wishes have faded, or since half the iterations; refreshes may settle then */
+    bool sliding; /* nearest: away from the start, where faces may become small */
     gproji_hooks hooks;
-    double stiffness;               /* of steps: the factor on the weights of metric groups; 0: they rest */
+    double stiffness;               /* in steps: factor on the weights of metric groups; 0: they rest */
     gproji_refuse_step refuse_step; /* NULL: none is refused */
     void *refuse_user;
-    double rounding; /* tolerated rounding in the value of a row; 0: as little as can be */
+    double rounding; /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
-    int32_t *block;     /* of each variable, the first variable of its block */
-    int32_t *place;     /* of the first `places` variables, their local in a row being added; else -1 */
-    uint8_t *coupled;   /* first variable of each block: has a narrow row more than one of its variables? */
-    uint8_t *auxiliary; /* variables: local unknowns, eliminated within their element and not regularised */
+    int32_t *block;     /* variables: the first one in the block */
+    int32_t *place;     /* the first `places` variables: local number in a row being added; else -1 */
+    uint8_t *coupled;   /* first variable in each block: has a narrow row several variables in it? */
+    uint8_t *auxiliary; /* variables: local unknown, eliminated within an element and not regularised? */
     int32_t places;
     gproji_group *group;
     int32_t group_count;
@@ -8068,19 +8067,19 @@ struct gproj_system {
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     bool evaluated;             /* compiled, and the rows have had values and gradients since */
-    int32_t compiled_variables; /* the size of the arrays below */
+    int32_t compiled_variables; /* when the arrays below were taken */
     int32_t node_count, wide_count;
-    int32_t *node;       /* of each variable */
-    int32_t *node_first; /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
+    int32_t *node;       /* variables */
+    int32_t *node_first; /* node_count + 1 (taken: variables + 1): first variable in each node, and the end */
     gproji_front_rows fronts;
     double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
     double *step;     /* dx: the first column of `sides` */
     double *saved;    /* x before the step */
-    double *sum;      /* nearest: steps of a slide, added up; NULL before */
-    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U of a step, then it and Y */
+    double *sum;      /* nearest: steps in a slide, added up; NULL before */
+    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
     gproji_wide wide;
     gproji_hinge *hinge; /* bounds' rows that a step may violate */
-    size_t hinge_taken;  /* rows of all bounds */
+    size_t hinge_taken;  /* rows in all bounds */
     gproji_schur schur;
 };
 
@@ -8100,14 +8099,14 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
-/* Tasks in the evaluation of a group. */
+/* Counts tasks in a group's evaluation. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
 
-/* Locals of all rows. */
+/* Counts the locals in all rows. */
 GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
 
-/* Lets i or j of a term name a local by the order in which the terms name them. number: of each local; -1: not named
-   yet. Returns the number of locals named so far. */
+/* Lets i or j of a term name a local by the order in which the terms name them. number: new
+   numbers of locals; -1: not named yet. Returns the count named so far. */
 GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
                                         int32_t *local) {
     if (number[*i] < 0) {
@@ -8118,7 +8117,7 @@ GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int
     return named;
 }
 
-/* Undoes the sorting of locals, so that a new compilation does not depend on earlier ones. */
+/* Restores the locals' order as given, so that a new compilation does not depend on earlier ones. */
 GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
     for (r = 0; r < g->row_count; ++r) {
@@ -8205,7 +8204,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_destroy_object(s, sizeof *s);
 }
 
-/* The error of an object that could not be created. */
+/* Error for an object that could not be created. */
 GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
     static const gproj_error error = {GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                       "there is no object: creating it failed"};
@@ -8330,7 +8329,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     s->group = (gproji_group *)groups;
     g = enough ? &s->group[s->group_count] : NULL;
     if (g) memset(g, 0, sizeof *g);
-    /* An empty group has one entry: the end of all rows' locals. */
+    /* An empty group has one entry, at which locals end. */
     if (!g || !gproji_reserve(&s->own, &rows, &g->capacity.row, 1, sizeof *g->row)) {
         gproji_fail_memory(&s->error);
         return -1;
@@ -8353,7 +8352,7 @@ GPROJI_INLINE bool gproji_system_has_group(const gproj_system *s, int32_t group)
     return s && group >= 0 && group < s->group_count;
 }
 
-/* The part of phi that counts: of a bound the violation, else all. NaN stays NaN. */
+/* Returns phi, or for a bound the violation only. NaN stays NaN. */
 GPROJI_INLINE double gproji_counted(const gproji_group *g, double phi) {
     return g->kind == GPROJ_BOUND && phi >= 0 ? 0 : phi;
 }
@@ -8396,7 +8395,7 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
-/* Counts of everything added to a system, but for rows of safeguards, which come on demand. Nothing is ever taken away,
+/* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
    so equal counts mean equal structure. */
 typedef struct gproji_structure {
     int32_t variables, groups;
@@ -8415,7 +8414,7 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
     return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
-/* Reports the first term that is no term of this system. */
+/* Reports the first term that does not fit this system. */
 GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
                                          const gproj_term *terms) {
     int32_t t;
@@ -8521,7 +8520,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     g = &s->group[group];
-    /* 1. Checks all terms without a branch: a j of -1 becomes 0 here, and other negative numbers become large. */
+    /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
     if (!valid) {
@@ -8550,7 +8549,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     for (run = g->global && count > 0, t = 0; run && t < count; ++t)
         run = terms[t].j < 0 && terms[t].i == terms[0].i + t;
     row->run = run;
-    /* 4. Couples blocks of which the row has more than one variable. */
+    /* 4. Couples blocks that have several variables in the row. */
     for (i = 0; !row->wide && i < named; ++i) {
         int32_t block = s->block[local[i]];
         if (s->coupled[block]) continue;
@@ -8561,10 +8560,10 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     return r;
 }
 
-/* gproj_system_add_row without checks, for builders: adds `rows` rows with the same terms to a group that is not global.
-   Terms name locals by number, and the builder writes the variables where this returns, row after row, unless it is NULL:
-   different ones, in the order in which terms name them; a block with several of them must be coupled already. (Copied
-   from an array they would have to be read again right after they were written.) like: a row of the group whose terms
+/* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not global.
+   Terms name locals by number. The builder writes the variables to the address returned unless that is NULL, row after
+   row: different ones, in the order in which terms name them; a block with several in one row must be coupled already.
+   (Copied from an array they would be read again right after they were written.) like: a row in the group whose terms
    are shared if they are equal; -1: none. */
 GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
                                                 int32_t count, const gproj_term *terms, int32_t locals, double constant,
@@ -8614,10 +8613,11 @@ GPROJI_INLINE bool gproji_system_has_row(const gproj_system *s, int32_t group, i
     return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
 }
 
-/* Sets the t-th coefficient of a row. */
+/* Sets a row's t-th coefficient. */
 GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
     g->term[row->term + t].a = a;
-    if (row->run && g->local_gradient) g->local_gradient[row->local + t] = a; /* its gradient is its coefficients */
+    if (row->run && g->local_gradient)
+        g->local_gradient[row->local + t] = a; /* the gradient: a contiguous linear row's coefficients */
 }
 
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
@@ -8664,7 +8664,7 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
     return GPROJ_OK;
 }
 
-/* The weight of a row, without that of its element. */
+/* Returns a row's weight, without the element's. */
 GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
     return g->share ? g->share[row].own : g->row[row].weight;
 }
@@ -8680,7 +8680,7 @@ GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
     return true;
 }
 
-/* The variable named by i or j of a row's term; -1 for a j that is -1. */
+/* Returns the variable that a term's i or j names; -1 for a j that is -1. */
 GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
     return i >= 0 ? (g->local_variable + row->local)[i] : i;
 }
@@ -8732,7 +8732,7 @@ GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capaci
     return true;
 }
 
-/* Step 1: joins the variables of coupled blocks to nodes. */
+/* Step 1: joins the variables in coupled blocks to nodes. */
 GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
     int32_t i, v;
@@ -8763,16 +8763,15 @@ GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     return true;
 }
 
-/* A bipartite graph: the nodes of each row, and the rows of each node. Two nodes are adjacent if they share a row. It has
-   fewer than 2^32 edges. */
+/* Bipartite graph that joins rows and nodes, with fewer than 2^32 edges. Two nodes are adjacent if they share a row. */
 typedef struct gproji_incidence {
     int32_t node_count;
     uint32_t row_count;
     size_t row_room, entry_room, node_entry_room;
     uint32_t *row_start;  /* row_count + 1 */
-    int32_t *row_node;    /* nodes of each row */
+    int32_t *row_node;    /* by rows */
     uint32_t *node_start; /* node_count + 1 */
-    uint32_t *node_row;   /* rows of each node */
+    uint32_t *node_row;   /* by nodes */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
@@ -8784,9 +8783,9 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
 }
 
 /* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
-   first nodes of the row after them. mark: node_count entries. False: no memory. */
+   first nodes that the next row has. mark: node_count entries. False: no memory. */
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
-    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: where the nodes of the last row begin */
+    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: at which the last row's nodes begin */
     int32_t i, r, v;
     in->node_count = s->node_count;
     in->row_room = 1;
@@ -8799,7 +8798,7 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
     if (!in->row_start || !in->row_node || !in->node_start) return false;
-    /* 1. Lists the nodes of each row behind those of the last one, and counts the rows of each node. */
+    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
     memset(mark, 0, (size_t)s->node_count * sizeof *mark);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -8815,7 +8814,7 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
                 node[count++] = own;
             }
             if (count < 2) continue;
-            /* A row that begins with all nodes of the last one takes its place. */
+            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
             while (known < end - before && known < count && node[known] == in->row_node[before + known]) ++known;
             if (end == before || known < end - before) {
                 known = 0;
@@ -8839,59 +8838,52 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     return true;
 }
 
-/* Lists the nodes adjacent to each one, itself included: start[v] .. start[v + 1] - 1 in `adjacent`, which grows and has
-   room for *room. mark: node_count entries. False: no memory. */
-GPROJI_INTERNAL bool gproji_find_adjacent(gproji_heap *heap, const gproji_incidence *in, uint32_t *mark, int64_t *start,
-                                          int32_t **adjacent, size_t *room) {
+/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back. Node v has
+   first[v + 1] - first[v] unknowns. mark: work, node_count entries. */
+GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first,
+                                                uint32_t *mark) {
     const uint32_t *row_start = in->row_start;
-    size_t filled = 0;
-    int32_t v;
-    memset(mark, 0, (size_t)in->node_count * sizeof *mark);
-    for (v = 0; v < in->node_count; ++v) {
-        const uint32_t own = (uint32_t)v + 1, *row = in->node_row + in->node_start[v], *rows = row;
+    const int32_t nodes = in->node_count;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    size_t room = 0, filled = 0;
+    int64_t *start = (int64_t *)gproji_take(&s->own, (size_t)nodes + 1, sizeof *start);
+    int32_t *size = (int32_t *)gproji_take(&s->own, (size_t)nodes, sizeof *size), *adjacent = NULL, v;
+    bool done = start && size;
+    memset(mark, 0, (size_t)nodes * sizeof *mark);
+    for (v = 0; done && v < nodes; ++v) {
+        const uint32_t own = (uint32_t)v + 1, *rows = in->node_row + in->node_start[v], *row;
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
-        size_t most = filled + 1; /* with all of the node's rows, as if they had nothing in common; never none */
-        for (; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
-        if (most > *room) {
-            void *block = *adjacent;
-            bool enough = gproji_reserve(heap, &block, room, most, sizeof **adjacent);
-            *adjacent = (int32_t *)block;
-            if (!enough) return false;
+        size_t most = filled + 1; /* as if the node's rows had nothing in common; never none */
+        for (row = rows; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
+        if (most > room) {
+            void *block = adjacent;
+            done = gproji_reserve(&s->own, &block, &room, most, sizeof *adjacent);
+            adjacent = (int32_t *)block;
+            if (!done) break;
         }
+        /* Lists the nodes in all rows at v, each once; v itself is not. */
         start[v] = (int64_t)filled;
+        size[v] = first[v + 1] - first[v];
         mark[v] = own;
         for (row = rows; row < rows_end; ++row) {
             const int32_t *node = in->row_node + row_start[*row], *end = in->row_node + row_start[*row + 1];
             for (; node < end; ++node) {
                 if (mark[*node] == own) continue;
                 mark[*node] = own;
-                (*adjacent)[filled++] = *node;
+                adjacent[filled++] = *node;
             }
         }
     }
-    start[in->node_count] = (int64_t)filled;
-    return true;
-}
-
-/* Step 3: analyses the graph of an incidence for the factorisation, and gives the incidence back. first[v + 1] - first[v]:
-   unknowns of node v; mark: node_count entries. */
-GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first,
-                                                uint32_t *mark) {
-    size_t nodes = (size_t)in->node_count, room = 0;
-    int64_t *start = (int64_t *)gproji_take(&s->own, nodes + 1, sizeof *start);
-    int32_t *size = (int32_t *)gproji_take(&s->own, nodes, sizeof *size), *adjacent = NULL, v;
-    bool found = start && size && gproji_find_adjacent(&s->own, in, mark, start, &adjacent, &room);
-    gproj_code code = GPROJ_ERROR_MEMORY;
     gproji_incidence_give(&s->own, in); /* before the analysis, which needs much memory itself */
-    for (v = 0; found && v < (int32_t)nodes; ++v) size[v] = first[v + 1] - first[v];
-    if (found) code = gproji_cholesky_analyse_blocks(s->cholesky, (int32_t)nodes, size, start, adjacent, NULL);
-    gproji_give(&s->own, start, nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, nodes, sizeof *size);
+    if (done) start[nodes] = (int64_t)filled;
+    if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
+    gproji_give(&s->own, start, (size_t)nodes + 1, sizeof *start);
+    gproji_give(&s->own, size, (size_t)nodes, sizeof *size);
     gproji_give(&s->own, adjacent, room, sizeof *adjacent);
     return code;
 }
 
-/* Prefetches rows that follow the k-th, with or without their gradients: a front's rows come from all over the memory. */
+/* Prefetches rows that follow the k-th, with or without gradients: a front's rows come from all over the memory. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gradient) {
     if (k + GPROJI_ROWS_AHEAD < (int64_t)s->fronts.row_count) {
         gproji_row_name far_one = s->fronts.row[k + GPROJI_ROWS_AHEAD];
@@ -8912,11 +8904,11 @@ typedef struct gproji_sorting {
     uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
 } gproji_sorting;
 
-/* Permutations met last, one for each number of locals and each order of three among them. Most rows are sorted as
-   the last one was, since few have more than three nodes. */
+/* Permutations met last, by the number of locals and by the order of three among them. Most rows are sorted like the
+   last one, since few have more than three nodes. */
 typedef struct gproji_sortings {
     gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
-    gproji_sorting many; /* of the row at hand if it has more */
+    gproji_sorting many; /* for the row at hand if it has more */
     uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
     uint16_t many_from[GPROJI_WIDE_ROW];
 } gproji_sortings;
@@ -8929,7 +8921,7 @@ GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *fro
     sorting->order = 0;
 }
 
-/* Sorts the locals of a row by their columns, which `at` becomes. Returns the permutation. */
+/* Sorts a row's locals by columns, which are written to `at`. Returns the permutation. */
 GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, const int32_t *GPROJI_RESTRICT column,
                                                        int32_t count, int32_t *GPROJI_RESTRICT local,
                                                        int32_t *GPROJI_RESTRICT at) {
@@ -8954,7 +8946,7 @@ GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, con
         last = at[i];
     }
     if (ascending) return sorting;
-    /* 3. Corrects it by insertion: rows are short, and their terms name the variables of a node in order. */
+    /* 3. Corrects it by insertion: rows are short, and their terms name a node's variables in order. */
     for (i = 1; i < count; ++i) {
         int32_t own_at = at[i], own = local[i];
         uint16_t own_from = from[i];
@@ -8969,7 +8961,7 @@ GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, con
     return sorting;
 }
 
-/* Cache entry for the copy of shared terms made for a permutation of locals. */
+/* Cache entry: a copy made from shared terms for a permutation. */
 typedef struct gproji_copy {
     uint64_t order; /* see gproji_sorting */
     uint32_t source, term;
@@ -8988,8 +8980,7 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t
     }
 }
 
-/* Gives the row a copy of its terms for the permuted locals: one made for another row if `cache` has it, else a new one.
-   False: no memory. */
+/* Gives the row a copy with terms for the permuted locals: from `cache` if another row has made it. False: no memory. */
 GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
                                        const gproji_sorting *sorting, gproji_copy *cache) {
     const uint64_t order = sorting->order;
@@ -9012,9 +9003,8 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
     return true;
 }
 
-/* Sorts the locals of each narrow row of a group; local_at becomes their columns. host: the front of each column; front:
-   of each row, that of the variable eliminated first; -1: none. Counts the rows of each front in fronts.start. False: no
-   memory. */
+/* Sorts the locals in each narrow row by columns, which are written to local_at; finds the row's front, which eliminates
+   a local first; -1: none; and counts rows by fronts in fronts.start. host: fronts by columns. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
                                         int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
@@ -9057,14 +9047,14 @@ GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     return true;
 }
 
-/* Step 4, for the matrix of all variables: finds the front of each row, and the padded rows of its locals there. */
+/* Step 4, for the matrix with all variables: finds each row's front, and the locals' padded rows there. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     gproji_front_rows *rows = &s->fronts;
     size_t n = (size_t)s->variable_count, all = 0, row;
-    int32_t *column = (int32_t *)gproji_take(&s->own, n, sizeof *column); /* of each variable in L */
-    int32_t *at = (int32_t *)gproji_take(&s->own, n, sizeof *at); /* of each column, its front; then padded row */
-    int32_t *front, i, r, f;                                      /* of each row, group by group; -1: none */
+    int32_t *column = (int32_t *)gproji_take(&s->own, n, sizeof *column); /* variables */
+    int32_t *at = (int32_t *)gproji_take(&s->own, n, sizeof *at);         /* columns: front; then padded row */
+    int32_t *front, i, r, f;                                              /* rows, group by group; -1: none */
     int64_t k;
     bool done;
     for (i = 0; i < s->group_count; ++i) all += (size_t)s->group[i].row_count;
@@ -9074,7 +9064,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     rows->start = (int64_t *)gproji_take_zeroed(&s->own, rows->count + 2, sizeof *rows->start);
     rows->row = (gproji_row_name *)gproji_take(&s->own, all, sizeof *rows->row);
     done = column && at && front && rows->start && rows->row && gproji_take_local_places(s);
-    /* 1. Sorts the locals of each row by columns; the first one names the front. */
+    /* 1. Sorts each row's locals by columns; the first one names the front. */
     if (done) gproji_invert(s->variable_count, s->cholesky->permutation, column);
     for (f = 0; done && f < sy->fronts; ++f)
         for (i = 0; i < sy->front[f].width; ++i) at[sy->front[f].first + i] = f;
@@ -9082,7 +9072,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
         done = gproji_place_group(s, &s->group[i], column, at, front + row);
         row += (size_t)s->group[i].row_count;
     }
-    /* 2. Sorts the rows by fronts: start[f + 2] counts those of front f, and start[f + 1] moves on to their end. */
+    /* 2. Sorts the rows by fronts: start[f + 2] counts those for front f, and start[f + 1] moves on to their end. */
     for (f = 0; done && f < sy->fronts; ++f) rows->start[f + 2] += rows->start[f + 1];
     for (i = 0, row = 0; done && i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r, ++row) {
@@ -9109,7 +9099,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     return done;
 }
 
-/* Steps 3 and 4, for the matrix of all variables. */
+/* Steps 3 and 4, for the matrix with all variables. */
 GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     gproji_incidence in;
     size_t nodes = (size_t)s->node_count;
@@ -9133,7 +9123,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
         g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
         if (!g->local_gradient || !g->tally) return false;
         if (g->kind == GPROJ_BOUND) s->hinge_taken += (size_t)g->row_count;
-        /* Gradients of contiguous linear rows are written once; gproji_set_coefficient keeps them up to date. */
+        /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
         for (r = 0; g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             for (t = 0; row->run && t < row->terms; ++t) g->local_gradient[row->local + t] = g->term[row->term + t].a;
@@ -9156,7 +9146,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 
 /* -- evaluation -- */
 
-/* Sums phi up with twice the digits. Only the first two factors of a product are multiplied so exactly, which is enough
+/* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
    for large terms that cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
     const int32_t *variable = g->local_variable + row->local;
@@ -9177,13 +9167,13 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
     return gproji_sum_value(&sum);
 }
 
-/* Evaluates phi and grad phi of a row. Rows without weight get zeros, but a contiguous linear row keeps its gradient. */
+/* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     const int32_t *variable = g->local_variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
     const double *x = s->x;
     double *gradient = g->local_gradient + row->local;
-    double phi = row->constant, size = fabs(row->constant); /* size: sum of the absolute values of all terms */
+    double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
     if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
     row->phi = 0;
     if (!(row->weight > 0)) row->active = false;
@@ -9213,7 +9203,7 @@ GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard && !g->safeguard);
 }
 
-/* Partial merit and largest residual of one chunk, for the weight `tallied`. */
+/* Partial merit and largest residual in one chunk, for the weight `tallied`. */
 GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     gproji_group *g = (gproji_group *)data;
     gproji_tally tally = {0, 0, -1};
@@ -9232,7 +9222,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally[task] = tally;
 }
 
-/* Evaluates one chunk of a group's rows. */
+/* Evaluates one chunk, a part of a group's rows. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
@@ -9270,12 +9260,12 @@ GPROJI_INTERNAL void gproji_refresh_groups(gproj_system *s) {
         if (s->group[i].refresh && s->group[i].weight > 0) s->group[i].refresh(s->group[i].refresh_user, s, i);
 }
 
-/* Squared weight of a row in this iteration. */
+/* Squared weight in this iteration. */
 GPROJI_INLINE double gproji_weight2(const gproji_group *g, const gproji_row *row) {
     return g->weight * g->weight * row->weight * row->weight;
 }
 
-/* gradient' v over the locals of a row. */
+/* gradient' v over a row's locals. */
 GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row *row, const double *v) {
     double sum = 0;
     int64_t l;
@@ -9298,7 +9288,7 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
-/* gradient = sum w^2 phi grad phi over narrow rows that act: half the gradient of their part of the merit. */
+/* gradient = sum w^2 phi grad phi over narrow rows that act: half their merit's gradient. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
     memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
@@ -9314,7 +9304,7 @@ GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
 /* -- the matrix -- */
 
 /* Arguments for loading fronts: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature
-   w^2 y (Hessian of phi) with the multipliers y of hard rows, and y = phi for soft ones. */
+   w^2 y (Hessian of phi) with the multipliers y for hard rows, and y = phi for soft ones. */
 typedef struct gproji_loading {
     const gproj_system *system;
     double epsilon;
@@ -9323,26 +9313,12 @@ typedef struct gproji_loading {
     double light;
 } gproji_loading;
 
-/* Adds w^2 y (Hessian of phi), in columns that belong to the padded rows [from, to). */
-GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel,
-                                           int32_t from, int32_t to) {
-    const int32_t *at = g->local_at + row->local;
-    double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    for (; term < end; ++term) {
-        int32_t i = term->i, j = term->j, column;
-        if (j < 0) continue;
-        column = at[gproji_min(i, j)];
-        if (column < from || column >= to) continue;
-        gproji_panel_column(panel, column)[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
-    }
-}
-
 /* Loads A into one front: see gproji_load. */
 GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to) {
     const gproji_loading *loading = (const gproji_loading *)user;
     const gproj_system *s = loading->system;
     const int32_t *variable = s->cholesky->permutation + s->cholesky->symbolic.front[front].first, *at;
+    const gproj_term *term, *last;
     const double *gradient;
     int32_t count, first, end, p, q, j;
     double w2;
@@ -9363,7 +9339,15 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
             double *column = gproji_panel_column(panel, at[q]), scale = w2 * gradient[q];
             for (p = q; p < count; ++p) column[at[p]] += scale * gradient[p];
         }
-        if (loading->curved) gproji_load_curvature(g, row, panel, from, to);
+        if (!loading->curved) continue;
+        /* w^2 y (Hessian of phi), there, too. */
+        w2 *= g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y;
+        for (term = g->term + row->term, last = term + row->terms; term < last; ++term) {
+            if (term->j < 0) continue;
+            q = at[gproji_min(term->i, term->j)], p = at[gproji_max(term->i, term->j)];
+            if (q < from || q >= to) continue;
+            gproji_panel_column(panel, q)[p] += (term->i == term->j ? 2 : 1) * w2 * term->a;
+        }
     }
     if (from >= panel->shape.end) return;
     for (j = 0; j < panel->w; ++j) {
@@ -9390,7 +9374,7 @@ GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool 
        dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
    so that U costs half a solution. */
 
-/* Parts of a step that may cancel to it without a check: see gproji_refine_step. */
+/* Largest `parts` that need no check: see gproji_refine_step. */
 static const double gproji_parts_most = 1e3;
 
 /* Next dense row that acts, in a fixed order; NULL: no further one. at: {0, -1} before the first. */
@@ -9404,12 +9388,12 @@ GPROJI_INTERNAL const gproji_row *gproji_next_wide_row(const gproj_system *s, gp
     return NULL;
 }
 
-/* Column `index` of U, or of Y. */
+/* Column `index` in U, or in Y. */
 GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
     return s->sides + (int64_t)s->variable_count * (index + 1);
 }
 
-/* Writes the columns of U; only their first n numbers count. Returns the number of dense rows that act. */
+/* Writes the columns of U; only their first n numbers count. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     gproji_row_name at = {0, -1};
     const gproji_row *row;
@@ -9463,7 +9447,7 @@ GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double
     return parts / gproji_fmax(sqrt(gproji_dot(z, z, n)), DBL_MIN);
 }
 
-/* Writes the right-hand sides of a step: -gradient, and U. Returns the number of dense rows. */
+/* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     int32_t v;
     for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
@@ -9471,7 +9455,7 @@ GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
 }
 
 /* Solves for the step from its right-hand sides; taken: the factorisation has made z and Y from them already. Returns
-   the size of the parts of L'dx, over that of L'dx. */
+   `parts` for gproji_refine_step. */
 GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
     gproj_cholesky *c = s->cholesky;
     size_t n = (size_t)s->variable_count;
@@ -9504,7 +9488,7 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
 /* Solves for the step with the factor of A. */
 GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
+/* residual = -gradient - A dx. Does U m balance it, as it should? epsilon: in A. */
 GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
     double *residual = s->wide.residual, *balance = s->wide.balance, left = 0, size = 0;
     gproji_row_name at = {0, -1};
@@ -9526,7 +9510,7 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
         const gproji_group *g = &s->group[at.group];
         gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), balance);
     }
-    /* 3. Their difference, against the size of the right-hand side. */
+    /* 3. Their difference, against the right-hand side. */
     for (v = 0; v < s->variable_count; ++v) {
         residual[v] = -s->gradient[v] - residual[v];
         left = gproji_fmax(left, fabs(residual[v] - balance[v]));
@@ -9536,12 +9520,12 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
 }
 
 /* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
-   product with all rows, and is left out if the answer is known. `parts`: size of z and the Y_k m_k, over that of their
-   sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
-   as many of |L||Y_k|, and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
-   misses its equations by `parts` times the error of a step without dense rows, some roundings of |L||L'dx|, which is
-   not checked either; besides by roundings of |U U'||dx|, as U'dx has them, however exact dx is. Only large parts that
-   cancel need a check: dense rows that repeat narrow ones, or each other. */
+   product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
+   the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
+   like that in |L||Y_k|, and m, computed from this Y, like that in |Y||Y m|. So the step's residual is `parts` times that
+   without dense rows, the rounding in |L||L'dx|, which is not checked either; besides there is rounding in |U U'||dx|,
+   as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat narrow ones, or
+   each other. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     double *residual = s->wide.residual;
     int32_t v;
@@ -9563,9 +9547,9 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    space method: Benzi, Golub, Liesen, Numerical solution of saddle point problems, 2005). Rows are gathered into elements:
    rows with common local unknowns (a face's normal) together with other rows on that face; rows at a vertex that join
    nodes (equilibrium); any other row that joins nodes by itself. eps does not act on local unknowns n, so each element
-   eliminates its own: from rows w (phi + G dv + N dn) an orthonormal basis Q orthogonal to the columns of w N leaves
+   eliminates its own: from rows w (phi + G dv + N dn) an orthonormal basis Q for the complement to the range of w N leaves
        r + C dv,   r = Q'w phi,   C = Q'w G.
-   A planar quad has five rows and a normal with three components, and the rows of its edges sum to zero: one is left.
+   A planar quad has five rows and a normal with three components, and its edges' rows sum to zero: one is left.
    Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step minimises
        |r + C dv|^2 + dv'D dv + 2 dv'sum w^2 phi g.
    With D = L L', u = L'dv, W = C L'^-1, b = -L^-1 sum w^2 phi g that is
@@ -9576,31 +9560,31 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    they border the matrix in (1), and the Schur complement that is left for m is at least I.
 
    E is not the identity: without eps on their normals, faces that become small would turn freely. |R^-1|, with weights 1,
-   is how fast they turn; its square, times a factor, is added to E at the vertices that turn them. So E is 1.1 to 1.5 if
+   is how fast they turn; the square, times a factor, is added to E at the vertices that turn them. So E is 1.1 to 1.5 if
    edges have length 1, and large at faces that are small or nearly straight. If |R^-1| reaches 1/eps there is next to no
    area, and the rows determine next to nothing about the normal: it gets 1e-3 eps^2 after all, added to R'R.
 
-   These steps differ from those with the matrix of all variables, though both lead to feasible points. The choice between
-   them depends on a form's groups alone, not on its history: on those that have ever had a weight (gproji_wake_groups).
-   Solves for the nearest point and drags always take the matrix of all variables. Dormant rows of the guard have no
+   These steps differ from those with the matrix for all variables, though all lead to feasible points. The choice between
+   them depends on a form's groups alone, not on history: on those that have ever had a weight (gproji_wake_groups).
+   Solves for the nearest point and drags always take the matrix for all variables. A guard's dormant rows have no
    multipliers until one acts; then those near to acting get them: few ever do.
 
-   Invariant: with schur.on the factorisation's unknowns are the multipliers, and gproji_group.local_at is the position of
-   a local among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th local unknown,
-   (l + 1) GPROJI_BLOCK_MAX + k for the k-th variable of the element's l-th node; in a row with a single node, k. */
+   Invariant: with schur.on the factorisation's unknowns are the multipliers, and gproji_group.local_at is a local's
+   position among the variables in its row's element: k < GPROJI_BLOCK_MAX for the k-th local unknown,
+   (l + 1) GPROJI_BLOCK_MAX + k for the k-th variable at the element's l-th node; in a row with a single node, k. */
 
 static const double gproji_schur_most = 0.85;      /* multipliers per variable that elements share, at most */
 static const double gproji_schur_share = 0.1;      /* factor on |R^-1|^2 */
-static const double gproji_schur_calm = 1e-3;      /* times eps^2, on normals of faces that have next to no area */
+static const double gproji_schur_calm = 1e-3;      /* times eps^2, on the normals if faces have next to no area */
 static const double gproji_schur_rounding = 1e-12; /* times trace(R'R), added if R has no inverse */
 enum {
     GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
     GPROJI_SCHUR_AHEAD = 8,         /* nodes whose values are on their way into the cache */
-    GPROJI_SCHUR_TABLE = 256,       /* fronts with no more padded rows have a table of their columns */
+    GPROJI_SCHUR_TABLE = 256,       /* fronts with no more padded rows have a table with columns */
     GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
     GPROJI_LANES = 8,               /* elements that are worked on together */
-    GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
+    GPROJI_SCHUR_TOGETHER = 4       /* an element's multipliers for which rows are read together */
 };
 
 /* -- compilation -- */
@@ -9609,8 +9593,8 @@ enum {
     GPROJI_NOWHERE = INT32_MIN
 };
 
-/* Entry in of_place for the element of a row at such a place, a face or a vertex; NULL: the row is at another kind of
-   place, or its number is not below that of the nodes. */
+/* Entry in `of_place` for the element with a row at this kind of place, a face or a vertex; NULL: the row is at another
+   kind, or the place's number is too large for a table with as many entries as nodes. */
 GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
                                             gproj_place place, int32_t *of_place) {
     return g->place == place && row->element >= 0 && row->element < s->node_count ? of_place + row->element : NULL;
@@ -9622,7 +9606,7 @@ typedef struct gproji_elements {
     int32_t *of_face, *of_vertex;
 } gproji_elements;
 
-/* Finds the element of a row, or -1 - node if it has a single node, or GPROJI_NOWHERE. False: it joins local unknowns of
+/* Finds a row's element, or -1 - node if it has a single node, or GPROJI_NOWHERE. False: it joins local unknowns from
    several elements, which cannot be eliminated one by one then. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           const gproji_elements *elements, int32_t *belongs) {
@@ -9635,7 +9619,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         int32_t node = s->node[g->local_variable[l]];
         int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
         if (*seen >= 0 && *seen != node) {
-            if (seen == &auxiliary) return false;
+            if (seen == &auxiliary) return false; /* two normals in one row */
             many = true;
         }
         *seen = node;
@@ -9645,6 +9629,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         if (kept >= 0) *belongs = -1 - kept;
         return true;
     }
+    /* Local unknowns decide; other rows join a face's element if there is one, or that of a vertex. */
     face = gproji_place_element(s, g, row, GPROJ_PLACE_FACE, elements->of_face);
     own = auxiliary >= 0 ? &elements->of_node[auxiliary] : face;
     if (!own) own = gproji_place_element(s, g, row, GPROJ_PLACE_VERTEX, elements->of_vertex);
@@ -9663,7 +9648,7 @@ GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
 
 /* Are there certainly more multipliers than `limit`? A bound from below, which costs less than to classify all rows. */
 GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
-    int32_t i, r, count = 0, highest = -1;      /* highest: the last node of local unknowns that was met */
+    int32_t i, r, count = 0, highest = -1;      /* highest: the last node with local unknowns so far */
     for (i = s->group_count - 1; i >= 0; --i) { /* wishes, which have many, are often the last */
         const gproji_group *g = &s->group[i];
         for (r = 0; !g->idle && r < g->row_count; ++r) {
@@ -9671,7 +9656,7 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
             int32_t first = local < end ? s->node[*local] : -1;
             bool counts = false;
             if (g->row[r].waits || g->row[r].wide) continue;
-            /* A row that joins nodes has a multiplier, unless it may go to the element of a face. */
+            /* A row that joins nodes has a multiplier, unless it may go to a face's element. */
             for (; local < end && !s->auxiliary[*local]; ++local) counts = counts || s->node[*local] != first;
             counts = counts && g->place != GPROJ_PLACE_FACE;
             if (local < end) {
@@ -9686,20 +9671,20 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
     return false;
 }
 
-/* Columns that the rows of an element are projected off: those of N, and that of the zero sum. */
+/* Counts the columns that an element's rows are projected off: N, and one more for a zero sum. */
 GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
     int32_t node = s->schur.auxiliary[element];
     return s->schur.zero_sum[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
 }
 
-/* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
-   to pay. met: work, of each node. */
+/* Numbers the multipliers: an element has as many as its rows leave. False: one has none, or there are too many for
+   this to pay. met: work, by nodes. */
 GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     gproji_schur *d = &s->schur;
     int32_t e, v, shared = 0, most = 0;
     double limit;
     int64_t k, l;
-    /* 1. Counts variables in several elements. With the matrix of all variables the others are eliminated cheaply, and
+    /* 1. Counts variables in several elements. With the matrix for all variables the others are eliminated cheaply, and
        count as little as local unknowns. */
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     for (l = 0; l < d->link_start[d->elements]; ++l) met[d->link_node[l]]++;
@@ -9725,8 +9710,8 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     return most <= GPROJI_SCHUR_MEETINGS;
 }
 
-/* Sorts rows by elements, finds the nodes that each joins, and numbers the multipliers. mark: work, of each node. False:
-   no memory, or d->on is false and it does not pay. */
+/* Sorts rows by elements, finds the nodes that each joins, and numbers the multipliers. mark: work, by nodes. False: no
+   memory, or d->on is false and it does not pay. */
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
     const int32_t *to = belongs;
@@ -9761,7 +9746,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
             if (*to >= 0) d->row[d->row_start[*to + 1]++] = name;
             if (*to < 0 && *to != GPROJI_NOWHERE) d->row[d->own_start[-*to]++] = name;
         }
-    /* 2. Lists the nodes that each element joins, in the order of its rows; and finds the one of its local unknowns. */
+    /* 2. Lists the nodes that each element joins, in the order in which rows name them; and finds that with local unknowns. */
     for (i = 0; i < s->node_count; ++i) mark[i] = -1;
     for (e = 0; e < d->elements; ++e) {
         d->link_start[e] = count;
@@ -9785,12 +9770,12 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     return true;
 }
 
-/* Step 2 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
+/* Step 2: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
     size_t nodes = (size_t)s->node_count, rows = 0, v;
     gproji_elements elements;
-    int32_t *mark, *belongs, *to, i, r; /* belongs: of all rows, group by group */
+    int32_t *mark, *belongs, *to, i, r; /* belongs: by rows, group by group */
     bool enough, pays;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
     for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
@@ -9829,6 +9814,7 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
     in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
     if (!in->row_start || !in->row_node || !in->node_row || !in->node_start) return false;
+    /* Links are the elements' lists; sorted by nodes they are the nodes'. */
     for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
     for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
@@ -9841,8 +9827,8 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
 }
 
 /* Consecutive elements with local unknowns that are alike: `left` multipliers, m rows and `count` columns, the first
-   `zero_sum` of which are no local unknowns. They are worked on in lanes, number k in lane l at [k GPROJI_LANES + l]:
-   one element alone is a chain of square roots and quotients, each of which waits for the one before. Lanes without an
+   `zero_sum` among them for the zero sum. They are worked on in lanes, number k in lane l at [k GPROJI_LANES + l]:
+   one element alone is a chain of square roots and quotients, each waiting for the one before. Lanes without an
    element have zeros. */
 typedef struct gproji_alike {
     int32_t first, lanes, m, count, zero_sum, left;
@@ -9851,7 +9837,7 @@ typedef struct gproji_alike {
     double *diagonal; /* count */
     double *triangle; /* (count - zero_sum)^2 */
     double *q;        /* m x GPROJI_SCHUR_TOGETHER */
-    double *c;        /* of one element: GPROJI_BLOCK_MAX a node */
+    double *c;        /* one element's: GPROJI_BLOCK_MAX a node */
     double heaviest[GPROJI_LANES];
     double share[GPROJI_LANES];
 } gproji_alike;
@@ -9864,7 +9850,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     int64_t links = d->link_start[d->elements], nodes = s->node_count, multipliers = d->first[d->elements];
     int64_t fronts = s->cholesky->symbolic.fronts, entries = 0, values = 0, roots = 0, l;
     int32_t e, v;
-    /* 1. Measures the elements: work for a batch of the largest ones (see gproji_alike), entries and values of W. */
+    /* 1. Measures the elements: work for the largest batch (see gproji_alike), entries and values in W. */
     d->most = d->triangle_size = 0;
     for (e = 0; e < d->elements; ++e) {
         int64_t m = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
@@ -9878,7 +9864,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
     }
-    /* 2. Local unknowns at the end are left out of dense columns; rounded up so that gproji_dot sums alike with them. */
+    /* 2. Local unknowns at the end are not in dense columns; rounded up so that gproji_dot sums alike with them. */
     for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
     d->kept = gproji_min(gproji_round_up(d->kept, 4), s->variable_count);
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
@@ -9909,8 +9895,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
            d->turns && d->triangle && d->work;
 }
 
-/* Places W: node by node, at each the multipliers in the order of their elimination. Work: sequence, of each node; at, of
-   each node and of each multiplier. */
+/* Places W: node by node, at each the multipliers in elimination order. Work: sequence, by nodes; at, by nodes and by
+   multipliers. */
 GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequence, int32_t *at) {
     gproji_schur *d = &s->schur;
     const gproji_symbolic *sy = &s->cholesky->symbolic;
@@ -9926,7 +9912,7 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
             d->w.value_start[v] + d->w.entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
         d->w.entry_start[v + 1] += d->w.entry_start[v];
     }
-    /* 2. Places the elements' blocks, front by front; a node goes to the front of its multiplier eliminated first. */
+    /* 2. Places the elements' blocks, front by front; a node goes to the front that eliminates one of its multipliers first. */
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     for (f = 0; f < sy->fronts; ++f) {
         d->w.front_start[f] = count;
@@ -9941,7 +9927,7 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
         }
     }
     d->w.front_start[sy->fronts] = count;
-    /* 3. Finds the padded rows of each node's multipliers in its front. */
+    /* 3. Finds the padded rows for each node's multipliers in that front. */
     for (f = 0; f < sy->fronts; ++f) {
         d->w.front_entry[f] = entry;
         if (d->w.front_start[f] < d->w.front_start[f + 1])
@@ -9956,8 +9942,8 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
     }
 }
 
-/* Places the locals of a row: `at` of their nodes, which in an element's row is 0 for local unknowns only, plus the
-   variable's number there. Returns whether there are nodes at 0. */
+/* Places a row's locals: at[node], which in an element's row is 0 for local unknowns only, plus the variable's number
+   there. Returns whether there are nodes at 0. */
 GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
     gproji_group *g = &s->group[name.group];
     const gproji_row *row = &g->row[name.row];
@@ -9971,8 +9957,8 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     return auxiliary;
 }
 
-/* Places the locals of all rows (see the section's invariant), and notes nodes that turn local unknowns. at: work, of
-   each node. */
+/* Places the locals in all rows (see the section's invariant), and notes nodes that turn local unknowns. at: work, by
+   nodes. */
 GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     const gproji_schur *d = &s->schur;
     int64_t k, l;
@@ -10020,6 +10006,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
+        /* Metric groups count from the first iteration in which steps are stiff enough for them. */
         if (s->group[i].metric && s->stiffness <= (s->group[i].brake ? 1 : 0)) continue;
         s->group[i].idle = false;
         woken = true;
@@ -10027,8 +10014,8 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix of all variables, which is not
-   there while steps are found by multipliers. */
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which does
+   not exist while steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
@@ -10054,7 +10041,7 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
 
 /* -- steps -- */
 
-/* x = K x for a node of `size` variables; K: a lower triangle, by rows. */
+/* x = K x for a node with `size` variables; K: a lower triangle, by rows. */
 GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
     int32_t i, k;
     for (i = size - 1; i >= 0; --i) {
@@ -10087,14 +10074,14 @@ GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
     }
 }
 
-/* Weight of a row in this step; 0 if it does not act. */
+/* Weight in this step; 0 if the row does not act. */
 GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_row *row) {
     return g->weight > 0 && row->active ? g->weight * row->weight : 0;
 }
 
-/* Writes the columns that the multipliers of the element in a lane are orthogonal to; they are zeros on entry. Zero-sum
-   rows add up to nothing with the coefficients 1 / w, the first column; if one of them is without weight, that row is left
-   out instead. Then come the columns of w N. Returns the largest weight of a row of N. */
+/* Writes the columns that multipliers are orthogonal to, for the element in a lane; they are zeros on entry. Zero-sum
+   rows add up to nothing with the coefficients 1 / w, the first column; if one is without weight, that row is left out
+   instead. Then comes w N. Returns the largest weight in N. */
 GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gproji_alike *a, int32_t lane) {
     const gproji_schur *d = &s->schur;
     const gproji_row_name *name = d->row + d->row_start[a->first + lane];
@@ -10114,6 +10101,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
+        /* Zero-sum rows join nodes; any other row at the face is free. */
         if (!a->zero_sum || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
         column[i * GPROJI_LANES] = w > 0 ? 1 / w : 0;
@@ -10122,7 +10110,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
     return heaviest;
 }
 
-/* In lanes: part = sum of v[i] x[i] for i >= k, times `scale`. */
+/* In lanes: part = scale * sum over i >= k: v[i] x[i]. */
 GPROJI_INLINED void gproji_lanes_dot(int32_t m, int32_t k, const double *v, const double *x, const double *scale,
                                      double *part) {
     int32_t i, l;
@@ -10139,8 +10127,8 @@ GPROJI_INLINED void gproji_lanes_take_off(int32_t m, int32_t k, const double *v,
         for (l = 0; l < GPROJI_LANES; ++l) x[i * GPROJI_LANES + l] -= part[l] * v[i * GPROJI_LANES + l];
 }
 
-/* Triangularises `count` columns with m numbers by Householder's reflections I - scale[k] v v': v takes the place of the
-   k-th column from its k-th number on, and diagonal[k] is that number after the reflection. In lanes. */
+/* Triangularises `count` columns with m numbers by Householder's reflections I - scale[k] v v': v replaces the k-th
+   column from the k-th number on, and diagonal[k] is that number after the reflection. In lanes. */
 GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
     double part[GPROJI_LANES], one[GPROJI_LANES];
     int32_t k, j, l;
@@ -10175,11 +10163,12 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
     }
 }
 
-/* Turns R, by rows and with the inverses of its diagonal (0: none), into the factor of R'R + shift I; the shift is not
+/* Turns R, by rows and with a reciprocal diagonal (0: no reciprocal), into the factor of R'R + shift I; the shift is not
    below rounding. */
 GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
     double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
     int32_t i, j, k;
+    /* R'R, from R with a true diagonal. */
     for (k = 0; k < size; ++k)
         if (triangle[k * size + k] != 0) triangle[k * size + k] = 1 / triangle[k * size + k];
     for (i = 0; i < size; ++i) {
@@ -10195,12 +10184,13 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
         for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
 }
 
-/* Takes R of w N = Q R, by rows and with the inverses of its diagonal; 0 if a column depends on those before it.
-   a->share: sum of the squares in R^-1, infinite if there are such columns. In lanes. */
+/* Takes R in w N = Q R, by rows and with a reciprocal diagonal; 0 if a column depends on those before it. a->share:
+   squared Frobenius norm |R^-1|^2, infinite if there are such columns. In lanes. */
 GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
     const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
     double unit[(int32_t)GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
     int32_t i, j, k, l;
+    /* 1. R; a column is dependent if next to nothing is left on the diagonal. */
     for (j = 0; j < size; ++j) {
         const double *own = diagonal + j * GPROJI_LANES;
         double *corner = triangle + (j * size + j) * GPROJI_LANES;
@@ -10218,8 +10208,9 @@ GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t clo
             corner[l] = own[l] * own[l] > 8 * DBL_EPSILON * all[l] ? inverse : 0;
         }
     }
+    /* 2. Columns of R^-1, by back substitution, and their squares. */
     for (l = 0; l < GPROJI_LANES; ++l) a->share[l] = 0;
-    for (j = 0; j < size; ++j) /* the columns of R^-1 */
+    for (j = 0; j < size; ++j)
         for (i = j; i >= 0; --i) {
             double *x = unit + i * GPROJI_LANES;
             const double *corner = triangle + (i * size + i) * GPROJI_LANES;
@@ -10236,22 +10227,25 @@ GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t clo
             if (triangle[(j * size + j) * GPROJI_LANES + l] == 0) a->share[l] = HUGE_VAL;
 }
 
-/* Computes the rows of C for some q of the element in a lane, GPROJI_BLOCK_MAX numbers a node; `right`: their parts of
-   r. */
-GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t together,
-                                         double *right) {
+/* Projects the rows of the element in a lane to `together` columns q, from its multiplier `first` on: these rows in C,
+   which go to their block in W, and numbers in r. */
+GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t first,
+                                         int32_t together) {
     const gproji_schur *d = &s->schur;
-    int32_t e = a->first + lane, i, j;
-    int32_t numbers = (int32_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX;
+    const int32_t e = a->first + lane;
+    const int64_t link = d->link_start[e], link_end = d->link_start[e + 1];
+    const int32_t numbers = (int32_t)(link_end - link) * GPROJI_BLOCK_MAX;
     const gproji_row_name *name = d->row + d->row_start[e];
-    double *c = a->c, scale[GPROJI_SCHUR_TOGETHER];
+    double *c = a->c, *right = d->side + d->first[e] + first, scale[GPROJI_SCHUR_TOGETHER];
+    int32_t i, j, p;
+    int64_t l;
+    /* 1. Each row, read once: C has GPROJI_BLOCK_MAX numbers a node at first, so that local_at is an index. */
     memset(c, 0, (size_t)(numbers * together) * sizeof *c);
     for (j = 0; j < together; ++j) right[j] = 0;
     for (i = 0; i < a->m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
         double w = gproji_acting_weight(g, row);
-        int64_t l;
         if (w == 0) continue;
         for (j = 0; j < together; ++j) {
             scale[j] = w * a->q[(j * a->m + i) * GPROJI_LANES + lane];
@@ -10262,6 +10256,13 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
             for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local_gradient[l];
         }
     }
+    /* 2. Packed into W. */
+    for (j = first; j < first + together; ++j)
+        for (l = link; l < link_end; ++l, c += GPROJI_BLOCK_MAX) {
+            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            double *to = d->w.value + d->link_value[l] + (int64_t)j * size;
+            for (p = 0; p < size; ++p) to[p] = c[p];
+        }
 }
 
 typedef struct gproji_assembly {
@@ -10269,37 +10270,12 @@ typedef struct gproji_assembly {
     double epsilon2;
 } gproji_assembly;
 
-/* gproji_reflect_back with the sizes for a quad, alone or with another row, as constants: nearly all elements have these. */
-GPROJI_INTERNAL void gproji_reflect_alike_back(const gproji_alike *a, int32_t j, double *q) {
-    if (a->m == 5 && a->count == 4)
-        gproji_reflect_back(5, 4, a->column, a->scale, j, q);
-    else if (a->m == 6 && a->count == 4)
-        gproji_reflect_back(6, 4, a->column, a->scale, j, q);
-    else
-        gproji_reflect_back(a->m, a->count, a->column, a->scale, j, q);
-}
-
-/* Copies the rows of C from the j-th multiplier of the element in a lane on, `together` of them, to their block of W. */
-GPROJI_INTERNAL void gproji_schur_place(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t j,
-                                        int32_t together) {
-    const gproji_schur *d = &s->schur;
-    int32_t e = a->first + lane, k, p;
-    int64_t first = d->link_start[e], end = d->link_start[e + 1], l;
-    const double *c = a->c;
-    for (k = j; k < j + together; ++k)
-        for (l = first; l < end; ++l, c += GPROJI_BLOCK_MAX) {
-            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            double *to = d->w.value + d->link_value[l] + (int64_t)k * size;
-            for (p = 0; p < size; ++p) to[p] = c[p];
-        }
-}
-
-/* Computes C, r and R of elements that are alike, and their additions to E at their nodes. */
+/* Computes C, r and R for a batch, and additions to E at the nodes. */
 GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
     const gproji_schur *d = &s->schur;
     const int32_t size = a->count - a->zero_sum;
     int32_t j, k, lane, together;
-    /* 1. Reflections that make the columns triangular; with constants as in gproji_reflect_alike_back. */
+    /* 1. Reflections, compiled for a quad, alone or with another row: nearly all elements have these sizes. */
     memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
     for (lane = 0; lane < a->lanes; ++lane) a->heaviest[lane] = gproji_schur_columns_of(s, a, lane);
     if (a->m == 5 && a->count == 4)
@@ -10308,7 +10284,7 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
         gproji_reflect(6, 4, a->column, a->scale, a->diagonal);
     else
         gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
-    /* 2. R, and the share of E that keeps the normal from turning too fast. */
+    /* 2. R, and the share in E that keeps normals from turning too fast. */
     if (size == 3)
         gproji_take_triangle(a, a->m, a->zero_sum, 3);
     else
@@ -10320,23 +10296,30 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
         if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
         a->share[lane] = share * gproji_schur_share;
     }
-    /* 3. Multipliers: the columns of Q behind those of the reflections. */
+    /* 3. Multipliers: columns of Q behind the first `count`, which span N. */
     for (j = 0; j < a->left; j += together) {
         together = gproji_min(GPROJI_SCHUR_TOGETHER, a->left - j);
-        for (k = 0; k < together; ++k) gproji_reflect_alike_back(a, a->count + j + k, a->q + k * a->m * GPROJI_LANES);
+        for (k = 0; k < together; ++k) {
+            double *q = a->q + k * a->m * GPROJI_LANES;
+            if (a->m == 5 && a->count == 4)
+                gproji_reflect_back(5, 4, a->column, a->scale, a->count + j + k, q);
+            else if (a->m == 6 && a->count == 4)
+                gproji_reflect_back(6, 4, a->column, a->scale, a->count + j + k, q);
+            else
+                gproji_reflect_back(a->m, a->count, a->column, a->scale, a->count + j + k, q);
+        }
         for (lane = 0; lane < a->lanes; ++lane) {
             int32_t at = d->first[a->first + lane] + j;
             if (together == 1)
-                gproji_schur_project(s, a, lane, 1, d->side + at);
+                gproji_schur_project(s, a, lane, j, 1);
             else
-                gproji_schur_project(s, a, lane, together, d->side + at);
+                gproji_schur_project(s, a, lane, j, together);
             for (k = 0; k < together; ++k) d->share[at + k] = a->share[lane] / a->left;
-            gproji_schur_place(s, a, lane, j, together);
         }
     }
 }
 
-/* Computes C and r of an element without local unknowns: each row has a multiplier. */
+/* Computes C and r for an element without local unknowns: each row has a multiplier. */
 GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     const gproji_schur *d = &s->schur;
     int32_t first = d->first[e], left = d->first[e + 1] - first, i;
@@ -10360,7 +10343,7 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     }
 }
 
-/* Computes C, r and R of one chunk of elements, batch by batch. */
+/* Computes C, r and R for one chunk, batch by batch. */
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproj_system *s = assembly->system;
@@ -10410,7 +10393,7 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     }
 }
 
-/* Computes K, b, W and U of a node. Without rows of its own D is a multiple of I, and b = 0. */
+/* Computes K, b, W and U at a node. Without own rows D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
     double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->w.value + d->w.value_start[v];
@@ -10424,12 +10407,14 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
     memset(b, 0, (size_t)size * sizeof *b);
     if (plain) {
+        /* K is a multiple of I, too. */
         int64_t numbers = (d->w.entry_start[v + 1] - d->w.entry_start[v]) * size;
         for (k = 0; k < numbers; ++k) w[k] *= corner;
         for (j = 0; j < d->wide; ++j)
             for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
         return;
     }
+    /* D = L L', K = L^-1; then b, the rows in W and U are multiplied by it. */
     gproji_schur_own(s, v, size, root, b);
     gproji_small_factor(root, size, size, DBL_MIN);
     gproji_invert_triangle(root, size);
@@ -10454,12 +10439,12 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     }
 }
 
-/* Have nodes rows of their own? If not, b = 0. */
+/* Have nodes own rows? If not, b = 0. */
 GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
 
-/* w'x at a node of any size; apart, so that it takes no registers from nodes with three variables. */
+/* w'x at a node with any size; apart, so that it takes no registers from nodes with three variables. */
 GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, int32_t size) {
     double sum = 0;
     int32_t k;
@@ -10467,7 +10452,7 @@ GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, in
     return sum;
 }
 
-/* side = a + W x at the multipliers of elements e .. end - 1. */
+/* side = a + W x at the multipliers in elements e .. end - 1. */
 GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
                                         double *side) {
     const gproji_schur *d = &s->schur;
@@ -10489,7 +10474,7 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
     }
 }
 
-/* Completes the right-hand sides of one chunk of elements: r + W b, and W U. */
+/* Completes right-hand sides in one chunk: r + W b, and W U. */
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
@@ -10500,37 +10485,33 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
         gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
 
-/* Column of the front that belongs to padded row `at`; column: all of them, or NULL. */
+/* Front's column for the padded row `at`; column: all columns, or NULL. */
 GPROJI_INLINE double *gproji_schur_column(const gproji_panel *panel, double *const *column, int32_t at) {
     return column ? column[at] : gproji_panel_column(panel, at);
 }
 
-/* Adds W W' at a vertex of four quads, the most frequent node: without loops, and all is read before anything is stored. */
-GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, double *const *column) {
-    const double ax = w[0], ay = w[1], az = w[2], bx = w[3], by = w[4], bz = w[5];
-    const double cx = w[6], cy = w[7], cz = w[8], dx = w[9], dy = w[10], dz = w[11];
-    const int32_t a = at[0], b = at[1], c = at[2], d = at[3];
-    double *to_a = column[a], *to_b = column[b], *to_c = column[c], *to_d = column[d];
-    to_a[a] += ax * ax + ay * ay + az * az;
-    to_a[b] += ax * bx + ay * by + az * bz;
-    to_a[c] += ax * cx + ay * cy + az * cz;
-    to_a[d] += ax * dx + ay * dy + az * dz;
-    to_b[b] += bx * bx + by * by + bz * bz;
-    to_b[c] += bx * cx + by * cy + bz * cz;
-    to_b[d] += bx * dx + by * dy + bz * dz;
-    to_c[c] += cx * cx + cy * cy + cz * cz;
-    to_c[d] += cx * dx + cy * dy + cz * dz;
-    to_d[d] += dx * dx + dy * dy + dz * dz;
-}
-
-/* Adds W W' at a node, in the columns that belong to the padded rows [from, to). at: padded rows of all multipliers. */
+/* Adds W W' at a node, in columns for the padded rows [from, to). at: padded rows, one a multiplier. */
 GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
                                            const gproji_panel *panel, double *const *column, int32_t from, int32_t to) {
     int32_t first = 0, end = count, i, p;
     while (first < end && at[first] < from) ++first;
     while (first < end && at[end - 1] >= to) --end;
     if (column && size == 3 && count == 4 && end - first == 4) {
-        gproji_schur_load_four(w, at, column);
+        /* Four quads, the most frequent node: no loops, and all is read before anything is stored. */
+        const double ax = w[0], ay = w[1], az = w[2], bx = w[3], by = w[4], bz = w[5];
+        const double cx = w[6], cy = w[7], cz = w[8], dx = w[9], dy = w[10], dz = w[11];
+        const int32_t a = at[0], b = at[1], c = at[2], d = at[3];
+        double *to_a = column[a], *to_b = column[b], *to_c = column[c], *to_d = column[d];
+        to_a[a] += ax * ax + ay * ay + az * az;
+        to_a[b] += ax * bx + ay * by + az * bz;
+        to_a[c] += ax * cx + ay * cy + az * cz;
+        to_a[d] += ax * dx + ay * dy + az * dz;
+        to_b[b] += bx * bx + by * by + bz * bz;
+        to_b[c] += bx * cx + by * cy + bz * cz;
+        to_b[d] += bx * dx + by * dy + bz * dz;
+        to_c[c] += cx * cx + cy * cy + cz * cz;
+        to_c[d] += cx * dx + cy * dy + cz * dz;
+        to_d[d] += dx * dx + dy * dy + dz * dz;
         return;
     }
     for (; first < end; ++first) {
@@ -10571,6 +10552,7 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
     size_t n = (size_t)d->kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
+    /* I + U'U - Y'Y, and w phi + U'b - Y'z: the part of y is eliminated. */
     gproji_wide_values(s, false);
     for (i = 0; i < d->wide; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
@@ -10617,7 +10599,7 @@ GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     }
 }
 
-/* Finds the local unknowns in one chunk of elements: R'R dn = - N'w^2 (phi + G dv). */
+/* Finds the local unknowns in one chunk: R'R dn = - N'w^2 (phi + G dv). */
 GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
@@ -10657,12 +10639,13 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
     }
 }
 
-/* Assembles matrix and right-hand sides of a step. */
+/* Assembles matrix and right-hand sides for a step. */
 GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    d->wide = gproji_wide_columns(s, (size_t)d->kept); /* w g without local unknowns; gproji_schur_node makes U of it */
+    d->wide =
+        gproji_wide_columns(s, (size_t)d->kept); /* w g without local unknowns; gproji_schur_node turns them into U */
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
     if (d->wide > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
