@@ -7846,9 +7846,9 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
    error, parallel, vector, dense, symbolic, cholesky.
 
-   Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. A row
+   Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. Rows
        phi(x) = sum a x_i x_j + sum a x_i + constant
-   with weight w and gradient g contributes w^2 phi^2 to the merit. An iteration linearises all rows and minimises
+   with weight w and gradient g contribute w^2 phi^2 to the merit. An iteration linearises all rows and minimises
    sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2, which is Gauss and Newton's step with Levenberg's damping:
        A dx = -sum w^2 phi g,   A = sum w^2 g g' + eps^2 I.
 
@@ -8011,12 +8011,11 @@ typedef struct gproji_schur {
     double *root;        /* L^-1, D = L L' */
     double *side;        /* 1 + wide_count columns: r + W b, and W U; then z and Y */
     double *share;       /* multipliers: their addition to eps^2 at the element's nodes, over eps^2 */
-    double *metric;      /* nodes: 1 + sum over these */
+    double *metric;      /* nodes: E, 1 + the sum over these */
     uint8_t *turns;      /* nodes: is it in a row with local unknowns? */
     double *triangle;    /* elements x triangle_size: R, with a reciprocal diagonal */
     double *work;        /* chunks x most */
-    int32_t chunks, wide, triangle_size;
-    int32_t kept; /* variables from this one on are local unknowns (those before may be) */
+    int32_t chunks, triangle_size;
     int64_t most; /* doubles in `work` for one chunk */
 } gproji_schur;
 
@@ -8034,6 +8033,7 @@ typedef struct gproji_wide {
     double *vector;             /* wide_count */
     double *residual, *balance; /* in refinement; NULL without dense rows */
     size_t taken;               /* wide_count when these and `sides` were taken */
+    int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
 } gproji_wide;
 
 struct gproj_system {
@@ -8052,7 +8052,7 @@ struct gproj_system {
     void *refuse_user;
     double rounding; /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
-    int32_t *block;     /* variables: the first one in the block */
+    int32_t *block;     /* variables: the first variable in the same block */
     int32_t *place;     /* the first `places` variables: local number in a row being added; else -1 */
     uint8_t *coupled;   /* first variable in each block: has a narrow row several variables in it? */
     uint8_t *auxiliary; /* variables: local unknown, eliminated within an element and not regularised? */
@@ -8067,9 +8067,9 @@ struct gproj_system {
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     bool evaluated;             /* compiled, and the rows have had values and gradients since */
-    int32_t compiled_variables; /* when the arrays below were taken */
+    int32_t compiled_variables; /* variable_count when the arrays below were taken */
     int32_t node_count, wide_count;
-    int32_t *node;       /* variables */
+    int32_t *node;       /* variables: node */
     int32_t *node_first; /* node_count + 1 (taken: variables + 1): first variable in each node, and the end */
     gproji_front_rows fronts;
     double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
@@ -8105,8 +8105,8 @@ GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_
 /* Counts the locals in all rows. */
 GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
 
-/* Lets i or j of a term name a local by the order in which the terms name them. number: new
-   numbers of locals; -1: not named yet. Returns the count named so far. */
+/* Lets i or j of a term name a local by the order in which the terms name them. number: new numbers of locals; -1: not
+   named yet. Returns the count named so far. */
 GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
                                         int32_t *local) {
     if (number[*i] < 0) {
@@ -8769,9 +8769,9 @@ typedef struct gproji_incidence {
     uint32_t row_count;
     size_t row_room, entry_room, node_entry_room;
     uint32_t *row_start;  /* row_count + 1 */
-    int32_t *row_node;    /* by rows */
+    int32_t *row_node;    /* nodes of each row */
     uint32_t *node_start; /* node_count + 1 */
-    uint32_t *node_row;   /* by nodes */
+    uint32_t *node_row;   /* rows of each node */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
@@ -8785,7 +8785,7 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
 /* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
    first nodes that the next row has. mark: node_count entries. False: no memory. */
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
-    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: at which the last row's nodes begin */
+    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
     int32_t i, r, v;
     in->node_count = s->node_count;
     in->row_room = 1;
@@ -8980,12 +8980,12 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t
     }
 }
 
-/* Gives the row a copy with terms for the permuted locals: from `cache` if another row has made it. False: no memory. */
+/* Gives the row a copy with terms for the permuted locals: another row's if `cache` has it. False: no memory. */
 GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
                                        const gproji_sorting *sorting, gproji_copy *cache) {
     const uint64_t order = sorting->order;
     gproji_copy *known = cache + (order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS));
-    bool enough, cached = locals <= GPROJI_COPY_LOCALS; /* `order` is a number for all others */
+    bool enough, cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
     size_t wanted = g->term_count + row->terms;
     void *term = g->term;
     if (cached && known->order == order && known->source == row->source && known->locals == locals) {
@@ -9003,8 +9003,8 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
     return true;
 }
 
-/* Sorts the locals in each narrow row by columns, which are written to local_at; finds the row's front, which eliminates
-   a local first; -1: none; and counts rows by fronts in fronts.start. host: fronts by columns. False: no memory. */
+/* Sorts the locals in each narrow row by columns, which are written to local_at. The first one names the row's front,
+   -1: none; fronts.start counts the rows of each. host: fronts by columns. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
                                         int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
@@ -9522,10 +9522,10 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
 /* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
    product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
    the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
-   like that in |L||Y_k|, and m, computed from this Y, like that in |Y||Y m|. So the step's residual is `parts` times that
-   without dense rows, the rounding in |L||L'dx|, which is not checked either; besides there is rounding in |U U'||dx|,
-   as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat narrow ones, or
-   each other. */
+   like that in |L||Y_k|, and m, computed from this Y, like that in |Y||Y m|. So the step's residual is `parts` times
+   that without dense rows, the rounding in |L||L'dx|, which is not checked either; besides there is rounding in
+   |U U'||dx|, as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat
+   narrow ones, or each other. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
     double *residual = s->wide.residual;
     int32_t v;
@@ -9544,10 +9544,10 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    parallel, vector, kernels, dense, symbolic, cholesky, system.
 
    If only constraints act there are fewer of them than variables, and solving for their multipliers is cheaper (range
-   space method: Benzi, Golub, Liesen, Numerical solution of saddle point problems, 2005). Rows are gathered into elements:
+   space method: Benzi, Golub, Liesen, Numerical solution of saddle point problems, 2005). Rows are joined to elements:
    rows with common local unknowns (a face's normal) together with other rows on that face; rows at a vertex that join
    nodes (equilibrium); any other row that joins nodes by itself. eps does not act on local unknowns n, so each element
-   eliminates its own: from rows w (phi + G dv + N dn) an orthonormal basis Q for the complement to the range of w N leaves
+   eliminates its own: for rows w (phi + G dv + N dn) an orthonormal basis Q of the complement to w N's range leaves
        r + C dv,   r = Q'w phi,   C = Q'w G.
    A planar quad has five rows and a normal with three components, and its edges' rows sum to zero: one is left.
    Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step minimises
@@ -9559,12 +9559,12 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
        u = b - W'y - U m,   m = w phi + U'u;
    they border the matrix in (1), and the Schur complement that is left for m is at least I.
 
-   E is not the identity: without eps on their normals, faces that become small would turn freely. |R^-1|, with weights 1,
-   is how fast they turn; the square, times a factor, is added to E at the vertices that turn them. So E is 1.1 to 1.5 if
-   edges have length 1, and large at faces that are small or nearly straight. If |R^-1| reaches 1/eps there is next to no
-   area, and the rows determine next to nothing about the normal: it gets 1e-3 eps^2 after all, added to R'R.
+   E is not the identity: without eps on their normals, faces that become small would turn freely. |R^-1|, with weights
+   1, is how fast they turn; the square, times a factor, is added to E at the vertices that turn them. So E is 1.1 to
+   1.5 if edges have length 1, and large at faces that are small or nearly straight. If |R^-1| reaches 1/eps there is
+   next to no area, and rows determine next to nothing about the normal: it gets 1e-3 eps^2 after all, added to R'R.
 
-   These steps differ from those with the matrix for all variables, though all lead to feasible points. The choice between
+   These steps differ from those with the matrix for all variables, though all lead to feasible points. The choice among
    them depends on a form's groups alone, not on history: on those that have ever had a weight (gproji_wake_groups).
    Solves for the nearest point and drags always take the matrix for all variables. A guard's dormant rows have no
    multipliers until one acts; then those near to acting get them: few ever do.
@@ -9584,14 +9584,11 @@ enum {
     GPROJI_SCHUR_TABLE = 256,       /* fronts with no more padded rows have a table with columns */
     GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
     GPROJI_LANES = 8,               /* elements that are worked on together */
-    GPROJI_SCHUR_TOGETHER = 4       /* an element's multipliers for which rows are read together */
+    GPROJI_SCHUR_TOGETHER = 4,      /* an element's multipliers for which rows are read together */
+    GPROJI_NOWHERE = INT32_MIN      /* see gproji_schur_belongs */
 };
 
 /* -- compilation -- */
-
-enum {
-    GPROJI_NOWHERE = INT32_MIN
-};
 
 /* Entry in `of_place` for the element with a row at this kind of place, a face or a vertex; NULL: the row is at another
    kind, or the place's number is too large for a table with as many entries as nodes. */
@@ -9746,7 +9743,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
             if (*to >= 0) d->row[d->row_start[*to + 1]++] = name;
             if (*to < 0 && *to != GPROJI_NOWHERE) d->row[d->own_start[-*to]++] = name;
         }
-    /* 2. Lists the nodes that each element joins, in the order in which rows name them; and finds that with local unknowns. */
+    /* 2. Lists the nodes that each element joins, as rows name them; and finds the one with local unknowns. */
     for (i = 0; i < s->node_count; ++i) mark[i] = -1;
     for (e = 0; e < d->elements; ++e) {
         d->link_start[e] = count;
@@ -9865,8 +9862,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
             values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
     }
     /* 2. Local unknowns at the end are not in dense columns; rounded up so that gproji_dot sums alike with them. */
-    for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
-    d->kept = gproji_min(gproji_round_up(d->kept, 4), s->variable_count);
+    for (s->wide.kept = s->variable_count; s->wide.kept > 0 && s->auxiliary[s->wide.kept - 1];) s->wide.kept--;
+    s->wide.kept = gproji_min(gproji_round_up(s->wide.kept, 4), s->variable_count);
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
     for (v = 0; d->root_start && v < s->node_count; ++v) {
@@ -9912,7 +9909,7 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
             d->w.value_start[v] + d->w.entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
         d->w.entry_start[v + 1] += d->w.entry_start[v];
     }
-    /* 2. Places the elements' blocks, front by front; a node goes to the front that eliminates one of its multipliers first. */
+    /* 2. Places the elements' blocks, front by front; a node goes to the front that eliminates its first multiplier. */
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     for (f = 0; f < sy->fronts; ++f) {
         d->w.front_start[f] = count;
@@ -10014,8 +10011,8 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which does
-   not exist while steps are found by multipliers. */
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
+   does not exist while steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
@@ -10163,8 +10160,8 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
     }
 }
 
-/* Turns R, by rows and with a reciprocal diagonal (0: no reciprocal), into the factor of R'R + shift I; the shift is not
-   below rounding. */
+/* Turns R, by rows and with a reciprocal diagonal (0: none), into the factor of R'R + shift I; the shift is not below
+   rounding. */
 GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
     double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
     int32_t i, j, k;
@@ -10343,7 +10340,7 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     }
 }
 
-/* Computes C, r and R for one chunk, batch by batch. */
+/* Computes C, r and R for one chunk of elements, batch by batch. */
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproj_system *s = assembly->system;
@@ -10358,12 +10355,13 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
         }
         /* Gathers consecutive elements with equal sizes, one a lane. */
         memset(&a, 0, sizeof a);
-        a.first = e;
+        a.first = e, a.lanes = 1;
         a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
         a.count = gproji_schur_columns(s, e), a.zero_sum = d->zero_sum[e], a.left = d->first[e + 1] - d->first[e];
-        do a.lanes++, e++;
-        while (e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
-               gproji_schur_columns(s, e) == a.count && d->zero_sum[e] == a.zero_sum);
+        for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
+                  gproji_schur_columns(s, e) == a.count && d->zero_sum[e] == a.zero_sum;
+             ++e)
+            a.lanes++;
         a.column = d->work + chunk * d->most;
         a.scale = a.column + a.m * a.count * GPROJI_LANES;
         a.diagonal = a.scale + a.count * GPROJI_LANES;
@@ -10393,7 +10391,7 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     }
 }
 
-/* Computes K, b, W and U at a node. Without own rows D is a multiple of I, and b = 0. */
+/* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
     double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->w.value + d->w.value_start[v];
@@ -10410,7 +10408,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
         /* K is a multiple of I, too. */
         int64_t numbers = (d->w.entry_start[v + 1] - d->w.entry_start[v]) * size;
         for (k = 0; k < numbers; ++k) w[k] *= corner;
-        for (j = 0; j < d->wide; ++j)
+        for (j = 0; j < s->wide.acting; ++j)
             for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
         return;
     }
@@ -10420,7 +10418,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     gproji_invert_triangle(root, size);
     gproji_whiten(size, root, b);
     for (k = d->w.entry_start[v]; k < d->w.entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
-    for (j = 0; j < d->wide; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
+    for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
 }
 
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
@@ -10439,7 +10437,7 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     }
 }
 
-/* Have nodes own rows? If not, b = 0. */
+/* Have nodes rows of their own? If not, b = 0. */
 GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
@@ -10474,14 +10472,14 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
     }
 }
 
-/* Completes right-hand sides in one chunk: r + W b, and W U. */
+/* Completes the right-hand sides in one chunk of elements: r + W b, and W U. */
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     if (gproji_schur_has_own(s)) gproji_schur_times(s, e, end, d->side, s->step, d->side);
-    for (i = 0; i < d->wide; ++i)
+    for (i = 0; i < s->wide.acting; ++i)
         gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
 
@@ -10550,11 +10548,11 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
 /* Borders (1) with the dense rows. From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
 GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
-    size_t n = (size_t)d->kept, multipliers = (size_t)d->first[d->elements], j;
+    size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     /* I + U'U - Y'Y, and w phi + U'b - Y'z: the part of y is eliminated. */
     gproji_wide_values(s, false);
-    for (i = 0; i < d->wide; ++i) {
+    for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
             s->wide.matrix[(int64_t)i * s->wide_count + k] =
@@ -10563,9 +10561,9 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
         if (gproji_schur_has_own(s)) s->wide.vector[i] += gproji_dot(u, s->step, n);
         s->wide.vector[i] -= gproji_dot(y, z, multipliers);
     }
-    gproji_small_factor(s->wide.matrix, d->wide, s->wide_count, 1);
-    gproji_small_solve(s->wide.matrix, d->wide, s->wide_count, s->wide.vector);
-    for (k = 0; k < d->wide; ++k) {
+    gproji_small_factor(s->wide.matrix, s->wide.acting, s->wide_count, 1);
+    gproji_small_solve(s->wide.matrix, s->wide.acting, s->wide_count, s->wide.vector);
+    for (k = 0; k < s->wide.acting; ++k) {
         const double *y = z + (size_t)(k + 1) * multipliers;
         for (j = 0; j < multipliers; ++j) z[j] -= s->wide.vector[k] * y[j];
     }
@@ -10580,7 +10578,7 @@ GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t s
     int32_t k, p;
     for (i = d->w.entry_start[v]; i < d->w.entry_start[v + 1]; ++i, w += size)
         for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->w.entry[i]];
-    for (k = 0; k < d->wide; ++k)
+    for (k = 0; k < s->wide.acting; ++k)
         for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->node_first[v] + p];
     gproji_unwhiten(size, d->root + d->root_start[v], u);
 }
@@ -10599,7 +10597,7 @@ GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     }
 }
 
-/* Finds the local unknowns in one chunk: R'R dn = - N'w^2 (phi + G dv). */
+/* Finds the local unknowns in one chunk of elements: R'R dn = - N'w^2 (phi + G dv). */
 GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
@@ -10644,16 +10642,16 @@ GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    d->wide =
-        gproji_wide_columns(s, (size_t)d->kept); /* w g without local unknowns; gproji_schur_node turns them into U */
+    s->wide.acting = gproji_wide_columns(
+        s, (size_t)s->wide.kept); /* w g without local unknowns; gproji_schur_node turns them into U */
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
-    if (d->wide > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
+    if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
 /* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
 GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
-    int32_t sides = s->schur.wide < s->cholesky->batch ? s->schur.wide + 1 : 0;
+    int32_t sides = s->wide.acting < s->cholesky->batch ? s->wide.acting + 1 : 0;
     return gproji_cholesky_factor_with(s->cholesky, gproji_schur_load_front, s, sides, s->schur.side) == GPROJ_FACTORED;
 }
 
@@ -10661,12 +10659,12 @@ GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
 GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproj_cholesky *c = s->cholesky;
-    if (d->wide < c->batch) {
-        if (d->wide > 0) gproji_schur_border(s, c->solution);
+    if (s->wide.acting < c->batch) {
+        if (s->wide.acting > 0) gproji_schur_border(s, c->solution);
         c->sides = 1;
         gproji_cholesky_finish(c, d->side);
     } else {
-        gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
+        gproji_cholesky_forward(c, s->wide.acting + 1, d->side, d->side);
         gproji_schur_border(s, d->side);
         gproji_cholesky_backward(c, d->side, d->side);
     }
