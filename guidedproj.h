@@ -8772,6 +8772,7 @@ typedef struct gproji_incidence {
     int32_t *row_node;    /* nodes of each row */
     uint32_t *node_start; /* node_count + 1 */
     uint32_t *node_row;   /* rows of each node */
+    uint32_t *mark;       /* node_count: work */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
@@ -8779,12 +8780,13 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->row_node, in->entry_room, sizeof *in->row_node);
     gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
+    gproji_give(heap, in->mark, (size_t)in->node_count, sizeof *in->mark);
     memset(in, 0, sizeof *in);
 }
 
 /* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
-   first nodes that the next row has. mark: node_count entries. False: no memory. */
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
+   first nodes that the next row has. False: no memory. */
+GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
     uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
     int32_t i, r, v;
     in->node_count = s->node_count;
@@ -8797,9 +8799,9 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
-    if (!in->row_start || !in->row_node || !in->node_start) return false;
+    in->mark = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count, sizeof *in->mark);
+    if (!in->row_start || !in->row_node || !in->node_start || !in->mark) return false;
     /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
-    memset(mark, 0, (size_t)s->node_count * sizeof *mark);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
@@ -8809,8 +8811,8 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
             if (g->row[r].wide) continue;
             for (++stamp; local < last; ++local) {
                 int32_t own = s->node[*local];
-                if (mark[own] == stamp) continue;
-                mark[own] = stamp;
+                if (in->mark[own] == stamp) continue;
+                in->mark[own] = stamp;
                 node[count++] = own;
             }
             if (count < 2) continue;
@@ -8839,10 +8841,10 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
 }
 
 /* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back. Node v has
-   first[v + 1] - first[v] unknowns. mark: work, node_count entries. */
-GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first,
-                                                uint32_t *mark) {
+   first[v + 1] - first[v] unknowns. */
+GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first) {
     const uint32_t *row_start = in->row_start;
+    uint32_t *mark = in->mark;
     const int32_t nodes = in->node_count;
     gproj_code code = GPROJ_ERROR_MEMORY;
     size_t room = 0, filled = 0;
@@ -9102,13 +9104,10 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
 /* Steps 3 and 4, for the matrix with all variables. */
 GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     gproji_incidence in;
-    size_t nodes = (size_t)s->node_count;
-    uint32_t *mark = (uint32_t *)gproji_take(&s->own, nodes, sizeof *mark);
     gproj_code code = GPROJ_ERROR_MEMORY;
     memset(&in, 0, sizeof in);
-    if (mark && gproji_incidence_take(s, &in, mark)) code = gproji_analyse_graph(s, &in, s->node_first, mark);
+    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->node_first);
     gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, mark, nodes, sizeof *mark);
     return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
@@ -9810,7 +9809,8 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
     in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
-    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start) return false;
+    in->mark = (uint32_t *)gproji_take(&s->own, (size_t)d->elements, sizeof *in->mark);
+    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start || !in->mark) return false;
     /* Links are the elements' lists; sorted by nodes they are the nodes'. */
     for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
     for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
@@ -9979,19 +9979,17 @@ GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     gproji_incidence in;
     size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
-    uint32_t *mark = (uint32_t *)gproji_take(&s->own, most, sizeof *mark);
     int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
     int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *sequence);
     memset(&in, 0, sizeof in);
-    if (mark && at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
-        code = gproji_analyse_graph(s, &in, s->schur.first, mark);
+    if (at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
+        code = gproji_analyse_graph(s, &in, s->schur.first);
     if (code == GPROJ_OK && !gproji_schur_take(s)) code = GPROJ_ERROR_MEMORY;
     if (code == GPROJ_OK) {
         gproji_schur_place_matrix(s, sequence, at);
         gproji_schur_place_locals(s, at);
     }
     gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, mark, most, sizeof *mark);
     gproji_give(&s->own, at, most, sizeof *at);
     gproji_give(&s->own, sequence, (size_t)s->node_count, sizeof *sequence);
     return code;
@@ -10421,6 +10419,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
 }
 
+/* Computes these at one chunk of nodes; local unknowns rest at 0. */
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproj_system *s = assembly->system;
@@ -10527,8 +10526,8 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
                                              int32_t to) {
     const gproj_system *s = (const gproj_system *)user;
     const gproji_schur *d = &s->schur;
-    const gproji_coupling *node = d->w.coupling + d->w.front_start[front],
-                          *end = d->w.coupling + d->w.front_start[front + 1];
+    const gproji_coupling *node = d->w.coupling + d->w.front_start[front];
+    const gproji_coupling *end = d->w.coupling + d->w.front_start[front + 1];
     const int32_t *at = d->w.entry_at + d->w.front_entry[front];
     double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
     int32_t j;
@@ -10550,7 +10549,7 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
     size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
-    /* I + U'U - Y'Y, and w phi + U'b - Y'z: the part of y is eliminated. */
+    /* I + U'U - Y'Y, and w phi + U'b - Y'z: y is eliminated. */
     gproji_wide_values(s, false);
     for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
@@ -10583,6 +10582,7 @@ GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t s
     gproji_unwhiten(size, d->root + d->root_start[v], u);
 }
 
+/* Moves one chunk of nodes. */
 GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
@@ -10642,8 +10642,8 @@ GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    s->wide.acting = gproji_wide_columns(
-        s, (size_t)s->wide.kept); /* w g without local unknowns; gproji_schur_node turns them into U */
+    /* w g, without local unknowns; gproji_schur_node turns them into U. */
+    s->wide.acting = gproji_wide_columns(s, (size_t)s->wide.kept);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
     if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
