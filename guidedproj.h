@@ -7300,62 +7300,68 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 }
 
 /* ============================================================================================================
-   >>system   Variables, groups of quadratic rows, and the matrix of their normal equations. Uses platform, memory,
+   >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
    error, parallel, vector, dense, symbolic, cholesky.
 
-   Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3.
+   Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. Rows
+       phi(x) = sum a x_i x_j + sum a x_i + constant
+   with weight w and gradient g contribute w^2 phi^2 to the merit. An iteration linearises all rows and minimises
+   sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2, which is Gauss and Newton's step with Levenberg's damping:
+       A dx = -sum w^2 phi g,   A = sum w^2 g g' + eps^2 I.
 
-   Rows come in any order and are kept as they were given, group by group; each knows its variables ("locals"), and its
-   terms name places among these. So rows that differ in nothing else can have their terms in common. Before a solve they
-   are compiled once:
-   - variables are joined to nodes: a block whose variables meet in some row is one node, else each is its own;
-   - every row belongs to the front of the node that is eliminated first, and knows the storage rows of its locals in that
-     front; they are in ascending order of these;
-   so that an iteration evaluates rows into local gradients, and each front takes the outer products of its rows when the
+   Rows stay in the order in which they were given, group by group. A row lists its variables once ("locals"), and its
+   terms name these by number, so that rows on different variables can share one list of terms. Before a solve all rows
+   are compiled:
+   1. Variables are joined to nodes: a block is one node if some row has several of its variables, else each is its own.
+   2. The cheaper matrix is chosen: for all variables, or for the multipliers (>>schur).
+   3. The adjacency graph, whose edges join nodes in a common row, is analysed for the factorisation.
+   4. Each row goes to the front that eliminates one of its nodes first; its locals are sorted by padded rows there.
+   5. Arrays for iterations are taken.
+   An iteration then evaluates rows into local gradients, and each front adds its rows' outer products when the
    factorisation comes to it, without a search and without an allocation.
 
    Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
    a row ends it. Coefficients, constants and weights may change freely. */
 
 enum {
-    GPROJI_BLOCK_MAX = 8,        /* variables of a block */
-    GPROJI_WIDE_ROW = 512,       /* a row with more variables than this is treated as a global one */
-    GPROJI_ROWS_PER_TASK = 2048, /* of the evaluation */
+    GPROJI_BLOCK_MAX = 8,        /* variables in a block */
+    GPROJI_WIDE_ROW = 512,       /* rows with more variables are dense: not in the sparse matrix */
+    GPROJI_ROWS_PER_TASK = 2048, /* in the evaluation */
     GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
-    GPROJI_COPY_LOCALS = 16,     /* rows with more locals have no copies in common */
-    GPROJI_COPY_BITS = 6         /* of the number of copies that are remembered */
+    GPROJI_COPY_LOCALS = 16,     /* rows with more locals do not share copies */
+    GPROJI_COPY_BITS = 6         /* log2: copies that are remembered */
 };
 
-/* A row has the terms term[term .. term + terms - 1] of its group, maybe in common with other rows, and the locals from
-   `local` on, up to those of the next row: the array has one more entry than there are rows. */
+/* A row has the terms term[term .. term + terms - 1], maybe shared with other rows in the group, and the locals from
+   `local` up to the next row's: the array has one more entry than there are rows. */
 typedef struct gproji_row {
     uint32_t term, terms;
-    uint32_t source; /* `term` before compilation: terms that rows have in common are copied then where locals move */
-    uint32_t local;  /* its variables; compiled: and its gradient */
+    uint32_t source; /* `term` before compilation, which copies shared terms if locals move */
+    uint32_t local;  /* first local; compiled: and first number in the gradient */
     double constant;
-    double weight; /* times the group's; 0: the row is left out of everything */
-    double phi;    /* the value at the last evaluation */
+    double weight; /* times the group's; 0: the row counts nowhere */
+    double phi;    /* value at the last evaluation */
     int32_t element;
-    bool wide;   /* kept out of the matrix */
-    bool run;    /* a global row whose terms are linear, and their variables follow each other */
-    bool active; /* acts on the next step: it has a weight, and is no bound that the step keeps anyway */
-    bool waits;  /* a guard's that has not come near to acting: it has no multiplier */
+    bool wide;   /* dense: not in the sparse matrix */
+    bool run;    /* contiguous linear row: global, with linear terms in consecutive variables */
+    bool active; /* acts on the next step: has a weight, and is no bound that the step keeps anyway */
+    bool waits;  /* dormant: a guard's row that has not come near to acting, and has no multiplier */
 } gproji_row;
 
-/* What a row's weight is the product of, in a group whose elements have weights. */
+/* Factors in a row's weight, for a group whose elements have weights. */
 typedef struct gproji_share {
-    double own;    /* what the row itself asks for */
-    double factor; /* the weight of its element */
+    double own;    /* set for the row itself */
+    double factor; /* the element's weight */
 } gproji_share;
 
-/* Nearest: y of a row that must hold, and what a step adds to it. */
+/* Nearest: multiplier y for a hard row, and the increment in a step. */
 typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
-/* Where some rows of a group stand since the last evaluation. */
+/* Partial merit and largest residual in one chunk, a part of a group's rows, at the last evaluation. */
 typedef struct gproji_tally {
-    double sum;     /* of w^2 phi^2 */
+    double sum;     /* w^2 phi^2 */
     double largest; /* |phi| */
     int32_t row;    /* the first that has it; -1: there are no rows */
 } gproji_tally;
@@ -7369,42 +7375,44 @@ typedef struct gproji_group {
     gproj_refresh refresh;
     void *refresh_user;
     double weight;   /* in the present iteration */
-    bool idle;       /* whenever the rows were compiled, its schedule was without weight */
-    int32_t closing; /* the first so many rows close: those of an auxiliary node add up to nothing at the nodes that
-                        they join, as n'(v_i - v_j) does around a face */
-    bool has_wide;   /* some rows are kept out of the matrix */
-    bool guard;      /* a bound that acts on the steps only: no part of merit, residual and verdict */
-    double slack;    /* of the guard: a step may violate its rows by so much */
-    bool lazy;       /* a bound for whose sake a good step is not found again: how near steps lead is no matter here */
-    int32_t wakings; /* of the guard: how often rows ceased to wait */
-    bool safeguard;  /* a bound as the guard is, whose rows are added as they are needed, and are no structure */
-    bool metric;     /* measures steps: its rows count with their gradients only, see >>loop */
-    bool brake;      /* a metric that acts where steps fail, at a stiffness above 1 */
+    bool idle;       /* without weight at each compilation so far */
+    int32_t closing; /* zero-sum rows come first, so many: gradients with the same local unknowns add up to nothing
+                        at the other nodes, as n'(v_i - v_j) does around a face */
+    bool has_wide;   /* some rows are dense */
+    bool guard;      /* a bound on steps only: not in merit, residual and verdict */
+    double slack;    /* guard: steps may violate its rows by so much */
+    bool lazy;       /* a bound for whose sake a good step is not found again, however near steps lead */
+    int32_t wakings; /* guard: how often dormant rows were activated */
+    bool safeguard;  /* a bound like the guard, with rows that are added on demand and are no structure */
+    bool metric;     /* measures steps: only gradients count, see >>loop */
+    bool brake;      /* a metric that acts after steps have failed, at a stiffness above 1 */
 
     int32_t row_count;
     gproji_row *row;
-    gproj_term *term;  /* i and j are not variables but places among the locals of their row */
-    bool common;       /* several rows have the same terms: they are not to be written (gproji_own_terms) */
-    size_t term_count; /* of all terms; compiled, with the copies that follow the first `sources` */
+    gproj_term *term;  /* i and j are not variables but local numbers in the row */
+    bool common;       /* rows share terms, which are not to be written then (gproji_own_terms) */
+    size_t term_count; /* all terms; compiled, with the copies behind the first `sources` */
     size_t sources;
-    gproji_share *share;     /* of each row; NULL: all factors are 1 */
-    int32_t *local_variable; /* of every row, each once: in the order in which its terms name them, */
-    bool sorted;             /* but compiled those of narrow rows may have the order of `local_at` */
-    size_t row_capacity, term_capacity, share_capacity, local_capacity;
+    gproji_share *share;     /* rows; NULL: all factors are 1 */
+    int32_t *local_variable; /* row after row, each once, in the order in which terms name them; compiled, narrow */
+    bool sorted;             /* rows may have the ascending order of `local_at` instead */
+    struct {
+        size_t row, term, share, local;
+    } capacity; /* entries that `row`, `term`, `share`, `local_variable` have room for */
 
-    int32_t *local_at;             /* the storage rows of a narrow row's locals in its front, ascending */
+    int32_t *local_at;             /* padded rows in the front for a narrow row's locals, ascending; see also >>schur */
     double *local_gradient;        /* at the last evaluation */
-    gproji_tally *tally;           /* of each task of the evaluation */
-    double tallied;                /* the weight for which that was made */
-    int32_t first_task;            /* of the evaluation that is under way */
-    gproji_multiplier *multiplier; /* of each row; NULL before a solve for the nearest point */
+    gproji_tally *tally;           /* tasks in the evaluation */
+    double tallied;                /* the weight for which `tally` was made */
+    int32_t first_task;            /* in the evaluation under way */
+    gproji_multiplier *multiplier; /* rows; NULL before a solve for the nearest point */
 } gproji_group;
 
 typedef struct gproji_row_name {
     int32_t group, row;
 } gproji_row_name;
 
-/* What the owner of a system adds to its steps; any of them may be NULL. */
+/* Callbacks by which a system's owner takes part in steps; any may be NULL. */
 typedef struct gproji_hooks {
     void (*settle)(void *user, gproj_system *system);       /* gives local unknowns (normals) their best values at x */
     bool (*inspect)(void *user, gproj_system *system);      /* does the step to x violate a safeguard without a row? */
@@ -7416,53 +7424,74 @@ typedef struct gproji_hooks {
 /* Nearest: is x no good, seen from s->saved? */
 typedef bool (*gproji_refuse_step)(void *user, const gproj_system *system);
 
-/* A bound's row along a step: w^2 min(0, phi + t h + t^2 q)^2 is its part of the merit. */
+/* A bound's row along a step adds w^2 min(0, phi + t h + t^2 q)^2 to the merit. */
 typedef struct gproji_hinge {
     double w2, phi, h, q;
 } gproji_hinge;
 
-/* A node where multipliers meet, on its way into the front that eliminates the first of them. */
-typedef struct gproji_crossing {
-    int64_t value; /* where in W its rows begin */
+/* A node that couples multipliers, on its way into the front that eliminates the first one. */
+typedef struct gproji_coupling {
+    int64_t value; /* in W, the first number in the node's rows */
     int32_t count; /* multipliers */
     int32_t size;  /* variables */
-} gproji_crossing;
+} gproji_coupling;
+
+/* W of >>schur, node by node; and the order in which fronts read it. */
+typedef struct gproji_schur_matrix {
+    int64_t *entry_start; /* nodes + 1: the multipliers at each node, in elimination order, are */
+    int32_t *entry;       /* entry[entry_start[v]..] */
+    int64_t *value_start; /* nodes + 1: the first number in the node's rows, which are entries x size */
+    double *value;
+    int64_t *front_start; /* fronts + 1: the nodes in front f are coupling[front_start[f]..] */
+    gproji_coupling *coupling;
+    int64_t *front_entry; /* fronts: the multipliers at these nodes, one after the other, have the padded rows */
+    int32_t *entry_at;    /* entry_at[front_entry[f]..] */
+} gproji_schur_matrix;
 
 /* Steps by multipliers: see >>schur. `nodes` are the system's. */
 typedef struct gproji_schur {
     gproji_pool pool;
     bool on;
-    bool stale; /* `on` is to be decided anew, or is off only because the matrix of all variables was asked for */
+    bool stale; /* `on` is to be decided anew, or is off only because the matrix for all variables was asked for */
     int32_t elements;
-    gproji_row_name *row; /* rows by elements, then those of single nodes by nodes */
-    int64_t *row_start;   /* elements + 1: the rows of each element in `row` */
-    int64_t *own_start;   /* nodes + 1: the rows of each node in `row` */
-    int32_t *auxiliary;   /* elements: the node of its auxiliary variables; -1: none */
-    uint8_t *closes;      /* elements: the gradients of its rows add up to nothing at its nodes */
-    int32_t *first;       /* elements + 1: the first multiplier of each */
+    gproji_row_name *row; /* rows by elements, then those with a single node by nodes */
+    int64_t *row_start;   /* elements + 1: rows in `row` */
+    int64_t *own_start;   /* nodes + 1: rows in `row` */
+    int32_t *auxiliary;   /* elements: the node with local unknowns; -1: none */
+    uint8_t *zero_sum;    /* elements: row gradients add up to nothing at the nodes joined */
+    int32_t *first;       /* elements + 1: the first multiplier */
     int64_t *link_start;  /* elements + 1: the nodes that each joins are link_node[link_start[e]..] */
     int32_t *link_node;
-    int64_t *link_value;  /* where in `value` the element's block of W for that node begins: multipliers x its size */
-    int64_t *entry_start; /* nodes + 1: the multipliers that meet at each node, in the order of their elimination */
-    int32_t *entry;
-    int64_t *value_start; /* nodes + 1: where in `value` the node's rows of W begin: entries x its size */
-    int64_t *root_start;  /* nodes: where in `root` its L^-1 begins: size x size */
-    int64_t *front_start; /* fronts + 1: the nodes of front f are crossing[front_start[f]..] */
-    gproji_crossing *crossing;
-    int64_t *front_entry; /* fronts: the multipliers at these nodes, one after the other, have the storage rows */
-    int32_t *entry_at;    /* entry_at[front_entry[f]..] */
-    double *value;        /* W */
-    double *root;         /* L^-1, D = L L' */
-    double *side;         /* 1 + wide_count columns: r + W b, and W U; then z and Y */
-    double *share;        /* multipliers: what each adds to eps^2 at the element's nodes, over eps^2 */
-    double *metric;       /* nodes: 1 and the sum of these */
-    uint8_t *turns;       /* nodes: is it in a row with auxiliary variables? */
-    double *triangle;     /* elements x triangle_size: R, with the inverses of its diagonal */
-    double *work;         /* chunks x most */
-    int32_t chunks, wide, triangle_size;
-    int32_t kept; /* variables from this one on are auxiliary (those before may be) */
-    int64_t most; /* what one element needs of `work` */
+    int64_t *link_value; /* in w.value, the first number in the element's block for that node: multipliers x size */
+    gproji_schur_matrix w;
+    int64_t *root_start; /* nodes: in `root`, the first number in L^-1: size x size */
+    double *root;        /* L^-1, D = L L' */
+    double *side;        /* 1 + wide_count columns: r + W b, and W U; then z and Y */
+    double *share;       /* multipliers: their addition to eps^2 at the element's nodes, over eps^2 */
+    double *metric;      /* nodes: E, 1 + the sum over these */
+    uint8_t *turns;      /* nodes: is it in a row with local unknowns? */
+    double *triangle;    /* elements x triangle_size: R, with a reciprocal diagonal */
+    double *work;        /* chunks x most */
+    int32_t chunks, triangle_size;
+    int64_t most; /* doubles in `work` for one chunk */
 } gproji_schur;
+
+/* Narrow rows by the fronts that load them. */
+typedef struct gproji_front_rows {
+    int64_t *start;       /* the rows for front f are row[start[f] .. start[f + 1] - 1] */
+    gproji_row_name *row; /* all narrow rows */
+    size_t count;         /* fronts */
+    size_t row_count, row_room;
+} gproji_front_rows;
+
+/* Work arrays for steps with dense rows. */
+typedef struct gproji_wide {
+    double *matrix;             /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
+    double *vector;             /* wide_count */
+    double *residual, *balance; /* in refinement; NULL without dense rows */
+    size_t taken;               /* wide_count when these and `sides` were taken */
+    int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
+} gproji_wide;
 
 struct gproj_system {
     gproji_heap own;
@@ -7471,49 +7500,43 @@ struct gproj_system {
     gproj_cholesky *cholesky;
 
     int32_t variable_count;
-    int32_t default_last; /* in this solve: the last iteration of wishes whose schedule names none; 0: for ever */
-    int32_t late;         /* iterations since the wishes have faded, or since half of all; refreshes may settle then */
-    bool sliding;         /* nearest: away from the start, where faces may become small */
+    int32_t default_last; /* in this solve: the last iteration for wishes whose schedule names none; 0: for ever */
+    int32_t late; /* iterations since the wishes have faded, or since half the iterations; refreshes may settle then */
+    bool sliding; /* nearest: away from the start, where faces may become small */
     gproji_hooks hooks;
-    double stiffness;               /* of steps: the factor on the weights of metric groups; 0: they rest */
+    double stiffness;               /* in steps: factor on the weights of metric groups; 0: they rest */
     gproji_refuse_step refuse_step; /* NULL: none is refused */
     void *refuse_user;
-    double rounding; /* what rounding in the value of a row may be; 0: as little as can be */
+    double rounding; /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
-    int32_t *block;   /* of each variable, the first variable of its block */
-    int32_t *place;   /* of the first `places` variables, their places among the locals of a row being added; else -1 */
-    uint8_t *coupled; /* of the first variable of each block: has a narrow row more than one of its variables? */
-    uint8_t *auxiliary; /* of each variable: is it what the others make of it, and may move as far as suits them? */
+    int32_t *block;     /* variables: the first variable in the same block */
+    int32_t *place;     /* the first `places` variables: local number in a row being added; else -1 */
+    uint8_t *coupled;   /* first variable in each block: has a narrow row several variables in it? */
+    uint8_t *auxiliary; /* variables: local unknown, eliminated within an element and not regularised? */
     int32_t places;
-    size_t x_capacity, block_capacity, place_capacity, coupled_capacity, auxiliary_capacity;
-
     gproji_group *group;
     int32_t group_count;
-    size_t group_capacity;
+    struct {
+        size_t x, block, place, coupled, auxiliary, group;
+    } capacity; /* entries that these arrays have room for */
 
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
     bool evaluated;             /* compiled, and the rows have had values and gradients since */
-    int32_t compiled_variables; /* the size of the arrays below */
+    int32_t compiled_variables; /* variable_count when the arrays below were taken */
     int32_t node_count, wide_count;
-    int32_t *node;              /* of each variable */
-    int32_t *node_first;        /* first variable of each node, and the end: node_count + 1 (taken: variables + 1) */
-    int64_t *front_start;       /* the rows of front f are front_row[front_start[f] .. front_start[f + 1] - 1] */
-    gproji_row_name *front_row; /* all narrow rows */
-    size_t front_count, front_row_count, front_row_room;
-    double *gradient;    /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;        /* dx: the first column of `sides` */
-    double *saved;       /* x before the step */
-    double *sum;         /* nearest: of the steps of a slide; NULL before */
-    double *residual;    /* with wide rows: work of refinement */
-    double *balance;     /* the same */
-    double *sides;       /* 1 + wide_count columns: the right-hand sides -gradient and U of a step, then it and Y */
-    double *wide_matrix; /* wide_count x wide_count: I + Y'Y and its Cholesky factor */
-    double *wide_vector; /* wide_count */
-    size_t wide_taken;   /* wide_count when the three were taken */
-    gproji_hinge *hinge; /* the bounds' rows that a step may violate */
-    size_t hinge_taken;  /* as many as all bounds have rows */
+    int32_t *node;       /* variables: node */
+    int32_t *node_first; /* node_count + 1 (taken: variables + 1): first variable in each node, and the end */
+    gproji_front_rows fronts;
+    double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;     /* dx: the first column of `sides` */
+    double *saved;    /* x before the step */
+    double *sum;      /* nearest: steps in a slide, added up; NULL before */
+    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    gproji_wide wide;
+    gproji_hinge *hinge; /* bounds' rows that a step may violate */
+    size_t hinge_taken;  /* rows in all bounds */
     gproji_schur schur;
 };
 
@@ -7533,14 +7556,14 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     return s;
 }
 
-/* Into how many tasks the evaluation of a group is cut. */
+/* Counts tasks in a group's evaluation. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
 
-/* How many locals all rows of a group have. */
+/* Counts the locals in all rows. */
 GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
 
-/* Lets i or j of a term name a local by the order in which the terms name them. number: of each local; -1: not named
-   yet. Returns how many have been. */
+/* Lets i or j of a term name a local by the order in which the terms name them. number: new numbers of locals; -1: not
+   named yet. Returns the count named so far. */
 GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
                                         int32_t *local) {
     if (number[*i] < 0) {
@@ -7551,7 +7574,7 @@ GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int
     return named;
 }
 
-/* The order of the locals before compilation, which thus does not depend on earlier ones. */
+/* Restores the locals' order as given, so that a new compilation does not depend on earlier ones. */
 GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
     for (r = 0; r < g->row_count; ++r) {
@@ -7573,49 +7596,46 @@ GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     g->sorted = false;
 }
 
-/* Gives back what compilation made of a group. */
-GPROJI_INTERNAL void gproji_group_forget(gproji_heap *heap, gproji_group *g) {
-    if (g->sorted) gproji_unsort_locals(g);
-    gproji_give(heap, g->local_gradient, gproji_local_count(g), sizeof *g->local_gradient);
-    gproji_give(heap, g->local_at, gproji_local_count(g), sizeof *g->local_at);
-    gproji_give(heap, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
-    gproji_give(heap, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
-    g->local_gradient = NULL;
-    g->local_at = NULL;
-    g->tally = NULL;
-    g->multiplier = NULL;
-}
-
 GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
     gproji_pool_give_all(&s->schur.pool);
     s->schur.on = false;
 }
 
-/* Ends the compiled state and gives its memory back. */
+/* Ends the compiled state and gives back all memory that compilation took. */
 GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     size_t n = (size_t)s->compiled_variables;
     int32_t i;
-    for (i = 0; i < s->group_count; ++i) gproji_group_forget(&s->own, &s->group[i]);
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        if (g->sorted) gproji_unsort_locals(g);
+        gproji_give(&s->own, g->local_gradient, gproji_local_count(g), sizeof *g->local_gradient);
+        gproji_give(&s->own, g->local_at, gproji_local_count(g), sizeof *g->local_at);
+        gproji_give(&s->own, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
+        gproji_give(&s->own, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
+        g->local_gradient = NULL;
+        g->local_at = NULL;
+        g->tally = NULL;
+        g->multiplier = NULL;
+    }
     gproji_give(&s->own, s->node, n, sizeof *s->node);
     gproji_give(&s->own, s->node_first, n + 1, sizeof *s->node_first);
-    gproji_give(&s->own, s->front_start, s->front_count + 2, sizeof *s->front_start);
-    gproji_give(&s->own, s->front_row, s->front_row_room, sizeof *s->front_row);
+    gproji_give(&s->own, s->fronts.start, s->fronts.count + 2, sizeof *s->fronts.start);
+    gproji_give(&s->own, s->fronts.row, s->fronts.row_room, sizeof *s->fronts.row);
     gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
     gproji_give(&s->own, s->saved, n, sizeof *s->saved);
     gproji_give(&s->own, s->sum, n, sizeof *s->sum);
-    gproji_give(&s->own, s->residual, n, sizeof *s->residual);
-    gproji_give(&s->own, s->balance, n, sizeof *s->balance);
-    gproji_give(&s->own, s->sides, (s->wide_taken + 1) * n, sizeof *s->sides);
-    gproji_give(&s->own, s->wide_matrix, s->wide_taken * s->wide_taken, sizeof *s->wide_matrix);
-    gproji_give(&s->own, s->wide_vector, s->wide_taken, sizeof *s->wide_vector);
+    gproji_give(&s->own, s->sides, (s->wide.taken + 1) * n, sizeof *s->sides);
+    gproji_give(&s->own, s->wide.matrix, s->wide.taken * s->wide.taken, sizeof *s->wide.matrix);
+    gproji_give(&s->own, s->wide.vector, s->wide.taken, sizeof *s->wide.vector);
+    gproji_give(&s->own, s->wide.residual, n, sizeof *s->wide.residual);
+    gproji_give(&s->own, s->wide.balance, n, sizeof *s->wide.balance);
     gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
     s->node = s->node_first = NULL;
-    s->front_start = NULL;
-    s->front_row = NULL;
-    s->gradient = s->step = s->saved = s->sum = s->residual = s->balance = NULL;
-    s->sides = s->wide_matrix = s->wide_vector = NULL;
+    memset(&s->fronts, 0, sizeof s->fronts);
+    memset(&s->wide, 0, sizeof s->wide);
+    s->gradient = s->step = s->saved = s->sum = s->sides = NULL;
     s->hinge = NULL;
-    s->wide_taken = s->hinge_taken = 0;
+    s->hinge_taken = 0;
     gproji_schur_forget(s);
     s->compiled = s->evaluated = false;
 }
@@ -7626,22 +7646,22 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) s->group[i].sorted = false; /* nobody adds rows any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
-        gproji_give(&s->own, s->group[i].row, s->group[i].row_capacity, sizeof *s->group[i].row);
-        gproji_give(&s->own, s->group[i].share, s->group[i].share_capacity, sizeof *s->group[i].share);
-        gproji_give(&s->own, s->group[i].term, s->group[i].term_capacity, sizeof *s->group[i].term);
-        gproji_give(&s->own, s->group[i].local_variable, s->group[i].local_capacity, sizeof(int32_t));
+        gproji_give(&s->own, s->group[i].row, s->group[i].capacity.row, sizeof *s->group[i].row);
+        gproji_give(&s->own, s->group[i].share, s->group[i].capacity.share, sizeof *s->group[i].share);
+        gproji_give(&s->own, s->group[i].term, s->group[i].capacity.term, sizeof *s->group[i].term);
+        gproji_give(&s->own, s->group[i].local_variable, s->group[i].capacity.local, sizeof(int32_t));
     }
-    gproji_give(&s->own, s->group, s->group_capacity, sizeof *s->group);
-    gproji_give(&s->own, s->x, s->x_capacity, sizeof *s->x);
-    gproji_give(&s->own, s->block, s->block_capacity, sizeof *s->block);
-    gproji_give(&s->own, s->place, s->place_capacity, sizeof *s->place);
-    gproji_give(&s->own, s->coupled, s->coupled_capacity, sizeof *s->coupled);
-    gproji_give(&s->own, s->auxiliary, s->auxiliary_capacity, sizeof *s->auxiliary);
+    gproji_give(&s->own, s->group, s->capacity.group, sizeof *s->group);
+    gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
+    gproji_give(&s->own, s->block, s->capacity.block, sizeof *s->block);
+    gproji_give(&s->own, s->place, s->capacity.place, sizeof *s->place);
+    gproji_give(&s->own, s->coupled, s->capacity.coupled, sizeof *s->coupled);
+    gproji_give(&s->own, s->auxiliary, s->capacity.auxiliary, sizeof *s->auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
 }
 
-/* The error that stands for an object which could not be made. */
+/* Error for an object that could not be created. */
 GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
     static const gproj_error error = {GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                       "there is no object: creating it failed"};
@@ -7650,11 +7670,9 @@ GPROJI_INTERNAL const gproj_error *gproji_no_object(void) {
 
 GPROJ_API const gproj_error *gproj_system_error(const gproj_system *s) { return s ? &s->error : gproji_no_object(); }
 
-GPROJI_INLINE bool gproji_system_ready(const gproj_system *s) { return s && s->error.code == GPROJ_OK; }
-
 /* May the caller add something, or start a solve? */
 GPROJI_INTERNAL bool gproji_system_is_open(gproj_system *s) {
-    if (!gproji_system_ready(s)) return false;
+    if (!s || s->error.code != GPROJ_OK) return false;
     if (!s->solving) return true;
     gproji_fail(&s->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                 "during a solve nothing can be added or started: add groups before it, with weight 0");
@@ -7670,19 +7688,19 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     return sum;
 }
 
-/* Makes room for so many more variables. */
+/* Makes room for `count` further variables. */
 GPROJI_NOINLINE bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
     void *x = s->x, *block = s->block, *place = s->place, *coupled = s->coupled, *auxiliary = s->auxiliary;
-    bool enough = gproji_reserve(&s->own, &x, &s->x_capacity, wanted, sizeof *s->x);
+    bool enough = gproji_reserve(&s->own, &x, &s->capacity.x, wanted, sizeof *s->x);
     s->x = (double *)x;
-    enough = enough && gproji_reserve(&s->own, &block, &s->block_capacity, wanted, sizeof *s->block);
+    enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->block);
     s->block = (int32_t *)block;
-    enough = enough && gproji_reserve(&s->own, &place, &s->place_capacity, wanted, sizeof *s->place);
+    enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->place);
     s->place = (int32_t *)place;
-    enough = enough && gproji_reserve(&s->own, &coupled, &s->coupled_capacity, wanted, sizeof *s->coupled);
+    enough = enough && gproji_reserve(&s->own, &coupled, &s->capacity.coupled, wanted, sizeof *s->coupled);
     s->coupled = (uint8_t *)coupled;
-    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->auxiliary_capacity, wanted, sizeof *s->auxiliary);
+    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->auxiliary);
     s->auxiliary = (uint8_t *)auxiliary;
     return enough;
 }
@@ -7707,7 +7725,7 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    if ((size_t)first + (size_t)count > s->auxiliary_capacity && !gproji_reserve_variables(s, (size_t)count)) {
+    if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
@@ -7721,7 +7739,7 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     return first;
 }
 
-/* Says that these variables are auxiliary. */
+/* Declares variables as local unknowns: eliminated within their element, and not regularised. */
 GPROJI_INTERNAL void gproji_set_auxiliary(gproj_system *s, int32_t first, int32_t count) {
     memset(s->auxiliary + first, 1, (size_t)count);
 }
@@ -7742,7 +7760,7 @@ GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *nam
                        name, schedule.weight, schedule.decay, schedule.last);
 }
 
-/* What does not fit is cut. */
+/* Cuts names that are too long. */
 GPROJI_INTERNAL void gproji_set_group_name(gproji_group *g, const char *name) {
     size_t length = strlen(name);
     if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
@@ -7752,7 +7770,7 @@ GPROJI_INTERNAL void gproji_set_group_name(gproji_group *g, const char *name) {
 
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
     gproji_group *g;
-    void *groups;
+    void *groups, *rows = NULL;
     bool enough;
     if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
@@ -7764,23 +7782,17 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         return -1;
     }
     groups = s->group;
-    enough = gproji_reserve(&s->own, &groups, &s->group_capacity, (size_t)s->group_count + 1, sizeof *s->group);
+    enough = gproji_reserve(&s->own, &groups, &s->capacity.group, (size_t)s->group_count + 1, sizeof *s->group);
     s->group = (gproji_group *)groups;
-    if (!enough) {
+    g = enough ? &s->group[s->group_count] : NULL;
+    if (g) memset(g, 0, sizeof *g);
+    /* An empty group has one entry, at which locals end. */
+    if (!g || !gproji_reserve(&s->own, &rows, &g->capacity.row, 1, sizeof *g->row)) {
         gproji_fail_memory(&s->error);
         return -1;
     }
-    g = &s->group[s->group_count];
-    memset(g, 0, sizeof *g);
-    {
-        void *rows = NULL;
-        if (!gproji_reserve(&s->own, &rows, &g->row_capacity, 1, sizeof *g->row)) {
-            gproji_fail_memory(&s->error);
-            return -1;
-        }
-        g->row = (gproji_row *)rows;
-        memset(&g->row[0], 0, sizeof g->row[0]);
-    }
+    g->row = (gproji_row *)rows;
+    memset(&g->row[0], 0, sizeof g->row[0]);
     gproji_set_group_name(g, group->name);
     g->kind = group->kind;
     g->place = group->place;
@@ -7797,7 +7809,7 @@ GPROJI_INLINE bool gproji_system_has_group(const gproj_system *s, int32_t group)
     return s && group >= 0 && group < s->group_count;
 }
 
-/* What counts of phi: of a bound its violation, else all. What is no number stays none. */
+/* Returns phi, or for a bound the violation only. NaN stays NaN. */
 GPROJI_INLINE double gproji_counted(const gproji_group *g, double phi) {
     return g->kind == GPROJ_BOUND && phi >= 0 ? 0 : phi;
 }
@@ -7840,8 +7852,8 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
-/* How much has been added to a system, but for rows of safeguards, which come as they are needed. Nothing is ever taken
-   away, so the same counts are the same structure. */
+/* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
+   so equal counts mean equal structure. */
 typedef struct gproji_structure {
     int32_t variables, groups;
     int64_t rows;
@@ -7859,7 +7871,7 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
     return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
-/* Says what is wrong with terms that are no terms of this system. */
+/* Reports the first term that does not fit this system. */
 GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
                                          const gproj_term *terms) {
     int32_t t;
@@ -7875,34 +7887,23 @@ GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g,
                 "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
 }
 
-/* Are these terms of this system? A j of -1 becomes 0 here, and other negative numbers become large. */
-GPROJI_INLINE bool gproji_terms_are_valid(const gproj_system *s, int32_t count, const gproj_term *terms,
-                                          double constant) {
-    const uint32_t end = (uint32_t)s->variable_count;
-    bool valid = gproji_is_finite(constant);
-    int32_t t;
-    for (t = 0; t < count; ++t)
-        valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
-    return valid;
-}
-
-/* Makes room for so many more rows, terms and locals. */
+/* Makes room for further rows, terms and locals. */
 GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
     void *row = g->row, *term = g->term, *share = g->share, *local = g->local_variable;
-    bool enough = gproji_reserve(&s->own, &row, &g->row_capacity, wanted, sizeof *g->row);
+    bool enough = gproji_reserve(&s->own, &row, &g->capacity.row, wanted, sizeof *g->row);
     g->row = (gproji_row *)row;
-    enough = enough && gproji_reserve(&s->own, &term, &g->term_capacity, g->term_count + terms, sizeof *g->term);
+    enough = enough && gproji_reserve(&s->own, &term, &g->capacity.term, g->term_count + terms, sizeof *g->term);
     g->term = (gproj_term *)term;
-    enough = enough && gproji_reserve(&s->own, &local, &g->local_capacity, gproji_local_count(g) + locals,
+    enough = enough && gproji_reserve(&s->own, &local, &g->capacity.local, gproji_local_count(g) + locals,
                                       sizeof *g->local_variable);
     g->local_variable = (int32_t *)local;
-    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->share_capacity, wanted, sizeof *g->share));
+    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->capacity.share, wanted, sizeof *g->share));
     g->share = (gproji_share *)share;
     return enough;
 }
 
-/* How many variables the terms name. */
+/* Counts the variables that the terms name. */
 GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
     int32_t t, named = 0;
     for (t = 0; t < count; ++t) {
@@ -7916,16 +7917,16 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
     return named;
 }
 
-/* Has the group room for so many more rows, terms and locals? */
+/* Has the group room for so many further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
-    return g->term && g->local_variable && wanted <= INT32_MAX && wanted <= g->row_capacity &&
-           (!g->share || wanted <= g->share_capacity) && g->term_count + terms <= g->term_capacity &&
-           g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->local_capacity &&
+    return g->term && g->local_variable && wanted <= INT32_MAX && wanted <= g->capacity.row &&
+           (!g->share || wanted <= g->capacity.share) && g->term_count + terms <= g->capacity.term &&
+           g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
            gproji_local_count(g) + locals < UINT32_MAX;
 }
 
-/* Makes this room. */
+/* Makes this room, or fails. */
 GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     if (rows > (size_t)(INT32_MAX - 1 - g->row_count) || terms >= UINT32_MAX - g->term_count ||
         locals >= UINT32_MAX - gproji_local_count(g))
@@ -7936,7 +7937,7 @@ GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t r
     return s->error.code == GPROJ_OK;
 }
 
-/* A new row whose terms will be those from `term` on, and for which there is room. */
+/* Starts a row with the terms from `term` on; there is room for it. */
 GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32_t terms, double constant,
                                            int32_t element) {
     gproji_row *row = &g->row[g->row_count];
@@ -7951,7 +7952,7 @@ GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32
     return row;
 }
 
-/* The row has got its terms and locals. Returns its number. */
+/* Ends a row whose terms and locals are written. Returns its number. */
 GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals) {
     row->wide = g->global || locals > GPROJI_WIDE_ROW;
     g->has_wide = g->has_wide || row->wide;
@@ -7961,45 +7962,14 @@ GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_ro
     return g->row_count++;
 }
 
-/* The variables that terms name, in this order, become the locals, and the terms `to` name places among them. Returns
-   how many they are. s->place has the places then. */
-GPROJI_INLINE int32_t gproji_name_locals(gproj_system *s, int32_t count, const gproj_term *terms, gproj_term *to,
-                                         int32_t *local) {
-    int32_t *place = s->place, t, named = 0;
-    for (t = 0; t < count; ++t) {
-        int32_t i = terms[t].i, j = terms[t].j;
-        if (place[i] < 0) local[named] = i, place[i] = named++;
-        if (j >= 0 && place[j] < 0) local[named] = j, place[j] = named++;
-        to[t].i = place[i];
-        to[t].j = j < 0 ? -1 : place[j];
-        to[t].a = terms[t].a;
-    }
-    return named;
-}
-
-/* Notes the blocks of which a row has more than one variable. */
-GPROJI_INLINE void gproji_couple_blocks(gproj_system *s, int32_t count, const int32_t *local) {
-    int32_t i, v;
-    for (i = 0; i < count; ++i) {
-        int32_t block = s->block[local[i]];
-        if (s->coupled[block]) continue;
-        for (v = block; v < s->variable_count && s->block[v] == block; ++v)
-            if (v != local[i] && s->place[v] >= 0) s->coupled[block] = 1;
-    }
-}
-
-/* Are these terms linear, and do their variables follow each other? */
-GPROJI_INTERNAL bool gproji_is_run(int32_t count, const gproj_term *terms) {
-    int32_t t;
-    for (t = 0; t < count && terms[t].j < 0 && terms[t].i == terms[0].i + t;) ++t;
-    return t == count && count > 0;
-}
-
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
+    const uint32_t end = s ? (uint32_t)s->variable_count : 0;
     gproji_group *g;
     gproji_row *row;
-    int32_t *local, named, i, r;
+    gproj_term *to;
+    int32_t *local, *place, named = 0, i, t, v, r;
+    bool valid = gproji_is_finite(constant), run;
     if (!gproji_system_is_open(s)) return -1;
     if (!gproji_system_has_group(s, group) || count < 0) {
         gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -8007,36 +7977,51 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     g = &s->group[group];
-    if (!gproji_terms_are_valid(s, count, terms, constant)) {
+    /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
+    for (t = 0; t < count; ++t)
+        valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
+    if (!valid) {
         gproji_refuse_terms(s, g, count, terms);
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
     for (; s->places < s->variable_count; ++s->places) s->place[s->places] = -1;
+    /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
     if (!gproji_has_room(g, 1, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, 1, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
     row = gproji_start_row(g, (uint32_t)g->term_count, count, constant, element);
+    /* 3. Numbers the locals in the order in which terms name them. */
     local = g->local_variable + row->local;
-    named = gproji_name_locals(s, count, terms, g->term + row->term, local);
+    to = g->term + row->term;
+    for (place = s->place, t = 0; t < count; ++t) {
+        int32_t p = terms[t].i, q = terms[t].j;
+        if (place[p] < 0) local[named] = p, place[p] = named++;
+        if (q >= 0 && place[q] < 0) local[named] = q, place[q] = named++;
+        to[t].i = place[p];
+        to[t].j = q < 0 ? -1 : place[q];
+        to[t].a = terms[t].a;
+    }
     r = gproji_end_row(s, g, row, named);
-    row->run = g->global && gproji_is_run(count, terms);
-    if (!row->wide) gproji_couple_blocks(s, named, local);
-    for (i = 0; i < named; ++i) s->place[local[i]] = -1;
+    for (run = g->global && count > 0, t = 0; run && t < count; ++t)
+        run = terms[t].j < 0 && terms[t].i == terms[0].i + t;
+    row->run = run;
+    /* 4. Couples blocks that have several variables in the row. */
+    for (i = 0; !row->wide && i < named; ++i) {
+        int32_t block = s->block[local[i]];
+        if (s->coupled[block]) continue;
+        for (v = block; v < s->variable_count && s->block[v] == block; ++v)
+            if (v != local[i] && place[v] >= 0) s->coupled[block] = 1;
+    }
+    for (i = 0; i < named; ++i) place[local[i]] = -1;
     return r;
 }
 
-/* Is there this row, with these terms and coefficients? */
-GPROJI_INLINE bool gproji_has_terms(const gproji_group *g, int32_t row, int32_t count, const gproj_term *terms) {
-    return row >= 0 && row < g->row_count && g->row[row].terms == (uint32_t)count &&
-           memcmp(g->term + g->row[row].term, terms, (size_t)count * sizeof *terms) == 0;
-}
-
-/* gproj_system_add_row for builders that know what is right: some rows with the same terms. These name places among the
-   locals, which the builder writes where this returns, row after row, unless it is NULL: different variables of this
-   system, in the order in which the terms name them; if some of them have a block in common it is coupled already.
-   (Copied from an array they would have to be read again right after they were written.) The group is not global. like:
-   a row of the group whose terms they share if there is one and they are the same. */
+/* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not global.
+   Terms name locals by number. The builder writes the variables to the address returned unless that is NULL, row after
+   row: different ones, in the order in which terms name them; a block with several in one row must be coupled already.
+   (Copied from an array they would be read again right after they were written.) like: a row in the group whose terms
+   are shared if they are equal; -1: none. */
 GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
                                                 int32_t count, const gproj_term *terms, int32_t locals, double constant,
                                                 int32_t element) {
@@ -8048,7 +8033,8 @@ GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, 
     if (!gproji_system_is_open(s)) return NULL;
     g = &s->group[group];
     if (s->compiled) gproji_system_forget(s);
-    common = like >= 0 && gproji_has_terms(g, like, count, terms);
+    common = like >= 0 && like < g->row_count && g->row[like].terms == (uint32_t)count &&
+             memcmp(g->term + g->row[like].term, terms, (size_t)count * sizeof *terms) == 0;
     own = common ? 0 : (size_t)count;
     if (!gproji_has_room(g, (size_t)rows, own, all) && !gproji_make_room(s, g, (size_t)rows, own, all)) return NULL;
     term = common ? g->row[like].term : (uint32_t)g->term_count;
@@ -8073,9 +8059,9 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
         row->term = row->source = (uint32_t)count;
         count += row->terms;
     }
-    gproji_give(&s->own, g->term, g->term_capacity, sizeof *g->term);
+    gproji_give(&s->own, g->term, g->capacity.term, sizeof *g->term);
     g->term = own;
-    g->term_count = g->sources = g->term_capacity = count;
+    g->term_count = g->sources = g->capacity.term = count;
     g->common = false;
     return true;
 }
@@ -8084,16 +8070,11 @@ GPROJI_INLINE bool gproji_system_has_row(const gproj_system *s, int32_t group, i
     return gproji_system_has_group(s, group) && row >= 0 && row < s->group[group].row_count;
 }
 
-/* The group's rows do not close any more. */
-GPROJI_INTERNAL void gproji_open_rows(gproj_system *s, gproji_group *g) {
-    g->closing = 0;
-    s->schur.stale = true;
-}
-
-/* Sets the t-th coefficient of a row; those of a run are its gradient, too. */
+/* Sets a row's t-th coefficient. */
 GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
     g->term[row->term + t].a = a;
-    if (row->run && g->local_gradient) g->local_gradient[row->local + t] = a;
+    if (row->run && g->local_gradient)
+        g->local_gradient[row->local + t] = a; /* the gradient: a contiguous linear row's coefficients */
 }
 
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
@@ -8111,7 +8092,11 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
-    if (coefficients && row < g->closing) gproji_open_rows(s, g);
+    if (coefficients && row < g->closing) {
+        /* With other coefficients gradients need not add up to nothing any more. */
+        g->closing = 0;
+        s->schur.stale = true;
+    }
     for (t = 0; coefficients && t < count; ++t) gproji_set_coefficient(g, &g->row[row], t, coefficients[t]);
     g->row[row].constant = constant;
     s->changed = true;
@@ -8136,23 +8121,23 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
     return GPROJ_OK;
 }
 
-/* The weight of a row, without that of its element. */
+/* Returns a row's weight, without the element's. */
 GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
     return g->share ? g->share[row].own : g->row[row].weight;
 }
 
-/* Lets the group's elements have weights: all 1. */
+/* Gives the group's elements weights: all 1. */
 GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
     int32_t r;
     if (g->share) return true;
-    g->share = (gproji_share *)gproji_take(&s->own, g->row_capacity, sizeof *g->share);
+    g->share = (gproji_share *)gproji_take(&s->own, g->capacity.row, sizeof *g->share);
     if (!g->share) return false;
-    g->share_capacity = g->row_capacity;
+    g->capacity.share = g->capacity.row;
     for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
     return true;
 }
 
-/* The variable that i or j of a row's term stands for; -1 for a j that is -1. */
+/* Returns the variable that a term's i or j names; -1 for a j that is -1. */
 GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
     return i >= 0 ? (g->local_variable + row->local)[i] : i;
 }
@@ -8193,19 +8178,49 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* Step 1: joins the variables of coupled blocks to nodes. */
-GPROJI_INTERNAL void gproji_compile_nodes(gproj_system *s) {
+/* Gives back spare room in a growing array. */
+GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capacity, size_t count, size_t size) {
+    void *moved;
+    if (*capacity == count || !*block) return true;
+    moved = gproji_retake(heap, *block, *capacity, count, size);
+    if (!moved) return false;
+    *block = moved;
+    *capacity = count;
+    return true;
+}
+
+/* Step 1: joins the variables in coupled blocks to nodes. */
+GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
+    size_t n = (size_t)s->variable_count;
     int32_t i, v;
+    bool done;
+    s->compiled_variables = s->variable_count;
+    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
+    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
+    done = s->node && s->node_first;
+    /* Spare room is given back now, before the analysis needs much memory. */
+    for (i = 0; done && i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
+        void *row = g->row, *term = g->term, *local = g->local_variable;
+        done = gproji_trim(&s->own, &row, &g->capacity.row, rows, sizeof *g->row);
+        g->row = (gproji_row *)row;
+        done = done && gproji_trim(&s->own, &term, &g->capacity.term, terms, sizeof *g->term);
+        g->term = (gproj_term *)term;
+        done = done && gproji_trim(&s->own, &local, &g->capacity.local, locals, sizeof *g->local_variable);
+        g->local_variable = (int32_t *)local;
+    }
+    if (!done) return false;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
         if (v == s->block[v] || !s->coupled[s->block[v]]) s->node_first[s->node_count++] = v;
     s->node_first[s->node_count] = s->variable_count;
     for (i = 0; i < s->node_count; ++i)
         for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
+    return true;
 }
 
-/* The nodes that meet in narrow rows, and the rows of each node: the incidence that gives the graph. It has fewer than
-   2^32 entries. */
+/* Bipartite graph that joins rows and nodes, with fewer than 2^32 edges. Two nodes are adjacent if they share a row. */
 typedef struct gproji_incidence {
     int32_t node_count;
     uint32_t row_count;
@@ -8214,6 +8229,7 @@ typedef struct gproji_incidence {
     int32_t *row_node;    /* nodes of each row */
     uint32_t *node_start; /* node_count + 1 */
     uint32_t *node_row;   /* rows of each node */
+    uint32_t *mark;       /* node_count: work */
 } gproji_incidence;
 
 GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
@@ -8221,62 +8237,15 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
     gproji_give(heap, in->row_node, in->entry_room, sizeof *in->row_node);
     gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
     gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
+    gproji_give(heap, in->mark, (size_t)in->node_count, sizeof *in->mark);
+    memset(in, 0, sizeof *in);
 }
 
-/* The different nodes of a row's locals. mark: of each node; `stamp` is not among the marks. Returns how many they are. */
-GPROJI_INLINE uint32_t gproji_row_nodes(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                        uint32_t *mark, uint32_t stamp, int32_t *node) {
-    const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
-    uint32_t count = 0;
-    for (; local < end; ++local) {
-        int32_t own = s->node[*local];
-        if (mark[own] == stamp) continue;
-        mark[own] = stamp;
-        node[count++] = own;
-    }
-    return count;
-}
-
-/* Are the nodes of a row, in their order, the first of the next one's? */
-GPROJI_INLINE bool gproji_begins_like(uint32_t count, const int32_t *node, uint32_t next_count, const int32_t *next) {
-    uint32_t k;
-    for (k = 0; k < count && next_count >= count && next[k] == node[k];) ++k;
-    return k == count;
-}
-
-/* The nodes of each row, without rows that join nothing more: those of one node, or with the first nodes of the row after
-   them. Counts the rows of each node. mark: node_count entries. */
-GPROJI_INTERNAL void gproji_incidence_scan(const gproj_system *s, gproji_incidence *in, uint32_t *mark) {
-    uint32_t end = 0, before = 0, stamp = 0, known, e; /* before: where the nodes of the row before begin */
-    int32_t i, r;
-    memset(mark, 0, (size_t)s->node_count * sizeof *mark);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            int32_t *node = in->row_node + end;
-            uint32_t count;
-            if (g->row[r].wide) continue;
-            count = gproji_row_nodes(s, g, &g->row[r], mark, ++stamp, node);
-            if (count < 2) continue;
-            known = 0;
-            if (end > before && gproji_begins_like(end - before, in->row_node + before, count, node)) {
-                known = end - before; /* the row before becomes this one */
-            } else {
-                in->row_start[in->row_count++] = before = end;
-            }
-            for (e = known; e < count; ++e) {
-                in->row_node[before + e] = node[e];
-                in->node_start[node[e]]++;
-            }
-            end = before + count;
-        }
-    }
-    in->row_start[in->row_count] = end;
-}
-
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in, uint32_t *mark) {
-    uint32_t r, e;
-    int32_t v, i;
+/* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
+   first nodes that the next row has. False: no memory. */
+GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
+    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
+    int32_t i, r, v;
     in->node_count = s->node_count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
@@ -8287,107 +8256,97 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
-    if (!in->row_start || !in->row_node || !in->node_start) return false;
-    gproji_incidence_scan(s, in, mark);
-    in->node_entry_room = in->row_start[in->row_count];
+    in->mark = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count, sizeof *in->mark);
+    if (!in->row_start || !in->row_node || !in->node_start || !in->mark) return false;
+    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            const int32_t *local = g->local_variable + g->row[r].local, *last = g->local_variable + g->row[r + 1].local;
+            int32_t *node = in->row_node + end;
+            uint32_t count = 0, known = 0;
+            if (g->row[r].wide) continue;
+            for (++stamp; local < last; ++local) {
+                int32_t own = s->node[*local];
+                if (in->mark[own] == stamp) continue;
+                in->mark[own] = stamp;
+                node[count++] = own;
+            }
+            if (count < 2) continue;
+            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
+            while (known < end - before && known < count && node[known] == in->row_node[before + known]) ++known;
+            if (end == before || known < end - before) {
+                known = 0;
+                in->row_start[in->row_count++] = before = end;
+            }
+            for (e = known; e < count; ++e) {
+                in->row_node[before + e] = node[e];
+                in->node_start[node[e]]++;
+            }
+            end = before + count;
+        }
+    }
+    in->row_start[in->row_count] = end;
+    in->node_entry_room = end;
     in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
     if (!in->node_row) return false;
-    /* transpose: sum up, fill backwards */
+    /* 2. Transposes: sums up the counts, and fills each list from its end. */
     for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
-    for (r = in->row_count; r-- > 0;)
-        for (e = in->row_start[r]; e < in->row_start[r + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = r;
+    for (k = in->row_count; k-- > 0;)
+        for (e = in->row_start[k]; e < in->row_start[k + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = k;
     return true;
 }
 
-/* The graph of the nodes: two are adjacent when they meet in a narrow row. */
-typedef struct gproji_meetings {
-    int64_t *start;    /* node_count + 1 */
-    int32_t *adjacent; /* of all nodes */
-    int32_t *size;     /* variables of each node */
-    size_t room;       /* of `adjacent` */
-} gproji_meetings;
-
-GPROJI_INTERNAL void gproji_give_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
-    gproji_give(heap, graph->start, nodes + 1, sizeof *graph->start);
-    gproji_give(heap, graph->size, nodes, sizeof *graph->size);
-    gproji_give(heap, graph->adjacent, graph->room, sizeof *graph->adjacent);
-}
-
-/* Room for the graph of so many nodes; false: none, and nothing is taken. */
-GPROJI_INTERNAL bool gproji_take_meetings(gproji_heap *heap, gproji_meetings *graph, size_t nodes) {
-    memset(graph, 0, sizeof *graph);
-    graph->start = (int64_t *)gproji_take(heap, nodes + 1, sizeof *graph->start);
-    graph->size = (int32_t *)gproji_take(heap, nodes, sizeof *graph->size);
-    if (graph->start && graph->size) return true;
-    gproji_give_meetings(heap, graph, nodes);
-    return false;
-}
-
-/* The graph from the incidence, but for the nodes' sizes. mark: node_count entries. */
-GPROJI_INTERNAL bool gproji_find_meetings(gproji_heap *heap, const gproji_incidence *in, uint32_t *mark,
-                                          gproji_meetings *graph) {
-    const uint32_t *start = in->row_start;
-    size_t filled = 0;
-    int32_t v;
-    memset(mark, 0, (size_t)in->node_count * sizeof *mark);
-    for (v = 0; v < in->node_count; ++v) {
-        const uint32_t own = (uint32_t)v + 1, *row = in->node_row + in->node_start[v], *rows = row;
+/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back. Node v has
+   first[v + 1] - first[v] unknowns. */
+GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first) {
+    const uint32_t *row_start = in->row_start;
+    uint32_t *mark = in->mark;
+    const int32_t nodes = in->node_count;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    size_t room = 0, filled = 0;
+    int64_t *start = (int64_t *)gproji_take(&s->own, (size_t)nodes + 1, sizeof *start);
+    int32_t *size = (int32_t *)gproji_take(&s->own, (size_t)nodes, sizeof *size), *adjacent = NULL, v;
+    bool done = start && size;
+    memset(mark, 0, (size_t)nodes * sizeof *mark);
+    for (v = 0; done && v < nodes; ++v) {
+        const uint32_t own = (uint32_t)v + 1, *rows = in->node_row + in->node_start[v], *row;
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
-        size_t most = filled + 1; /* with all of the node's rows, as if they had nothing in common; never none */
-        for (; row < rows_end; ++row) most += start[*row + 1] - start[*row];
-        if (most > graph->room) {
-            void *room = graph->adjacent;
-            bool enough = gproji_reserve(heap, &room, &graph->room, most, sizeof *graph->adjacent);
-            graph->adjacent = (int32_t *)room;
-            if (!enough) return false;
+        size_t most = filled + 1; /* as if the node's rows had nothing in common; never none */
+        for (row = rows; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
+        if (most > room) {
+            void *block = adjacent;
+            done = gproji_reserve(&s->own, &block, &room, most, sizeof *adjacent);
+            adjacent = (int32_t *)block;
+            if (!done) break;
         }
-        graph->start[v] = (int64_t)filled;
+        /* Lists the nodes in all rows at v, each once; v itself is not. */
+        start[v] = (int64_t)filled;
+        size[v] = first[v + 1] - first[v];
         mark[v] = own;
         for (row = rows; row < rows_end; ++row) {
-            const int32_t *node = in->row_node + start[*row], *end = in->row_node + start[*row + 1];
+            const int32_t *node = in->row_node + row_start[*row], *end = in->row_node + row_start[*row + 1];
             for (; node < end; ++node) {
                 if (mark[*node] == own) continue;
                 mark[*node] = own;
-                graph->adjacent[filled++] = *node;
+                adjacent[filled++] = *node;
             }
         }
     }
-    graph->start[in->node_count] = (int64_t)filled;
-    return true;
-}
-
-/* Step 3: the graph of the nodes. */
-GPROJI_INTERNAL bool gproji_compile_graph(gproj_system *s, gproji_meetings *graph) {
-    gproji_incidence in;
-    size_t nodes = (size_t)s->node_count;
-    uint32_t *mark = (uint32_t *)gproji_take(&s->own, nodes, sizeof *mark);
-    bool done;
-    int32_t v;
-    memset(&in, 0, sizeof in);
-    for (v = 0; v < s->node_count; ++v) graph->size[v] = s->node_first[v + 1] - s->node_first[v];
-    done = mark && gproji_incidence_take(s, &in, mark) && gproji_find_meetings(&s->own, &in, mark, graph);
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, mark, nodes, sizeof *mark);
-    return done;
-}
-
-/* Its analysis for the factorisation. */
-GPROJI_INTERNAL gproj_code gproji_compile_analysis(gproj_system *s) {
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    gproji_meetings graph;
-    if (!gproji_take_meetings(&s->own, &graph, (size_t)s->node_count)) return code;
-    if (gproji_compile_graph(s, &graph))
-        code =
-            gproji_cholesky_analyse_blocks(s->cholesky, s->node_count, graph.size, graph.start, graph.adjacent, NULL);
-    gproji_give_meetings(&s->own, &graph, (size_t)s->node_count);
+    gproji_incidence_give(&s->own, in); /* before the analysis, which needs much memory itself */
+    if (done) start[nodes] = (int64_t)filled;
+    if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
+    gproji_give(&s->own, start, (size_t)nodes + 1, sizeof *start);
+    gproji_give(&s->own, size, (size_t)nodes, sizeof *size);
+    gproji_give(&s->own, adjacent, room, sizeof *adjacent);
     return code;
 }
 
-/* A front's rows come from all over the memory: asks for those that follow the k-th, with or without their gradients. */
+/* Prefetches rows that follow the k-th, with or without gradients: a front's rows come from all over the memory. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gradient) {
-    if (k + GPROJI_ROWS_AHEAD < (int64_t)s->front_row_count) {
-        gproji_row_name far_one = s->front_row[k + GPROJI_ROWS_AHEAD];
-        gproji_row_name near_one = s->front_row[k + GPROJI_ROWS_AHEAD / 2];
+    if (k + GPROJI_ROWS_AHEAD < (int64_t)s->fronts.row_count) {
+        gproji_row_name far_one = s->fronts.row[k + GPROJI_ROWS_AHEAD];
+        gproji_row_name near_one = s->fronts.row[k + GPROJI_ROWS_AHEAD / 2];
         const gproji_group *g = &s->group[near_one.group];
         const gproji_row *row = &s->group[far_one.group].row[far_one.row], *next = &g->row[near_one.row];
         GPROJI_PREFETCH(row);
@@ -8398,32 +8357,22 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
     }
 }
 
-/* Step 4: all that the fronts need. */
-
-/* What the places of all rows are found with. */
-typedef struct gproji_placing {
-    int32_t *column; /* of each variable, its column of L */
-    int32_t *at;     /* of each column of L, its front; then, front by front, its storage row there */
-    int32_t *front;  /* of all rows, group by group, the front; -1: none */
-    size_t rows;
-} gproji_placing;
-
-/* How a row's locals are sorted. */
+/* A permutation that sorts a row's locals. */
 typedef struct gproji_sorting {
-    uint16_t *from; /* which of them comes to each place, */
+    uint16_t *from; /* the local that comes to each place, before the sort */
     uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
 } gproji_sorting;
 
-/* How rows were sorted, which is how others are, mostly: the last one with so many locals, three of which had the same
-   order. Few rows have more than three nodes. */
+/* Permutations met last, by the number of locals and by the order of three among them. Most rows are sorted like the
+   last one, since few have more than three nodes. */
 typedef struct gproji_sortings {
     gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
-    gproji_sorting many; /* of the row at hand if it has more */
+    gproji_sorting many; /* for the row at hand if it has more */
     uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
     uint16_t many_from[GPROJI_WIDE_ROW];
 } gproji_sortings;
 
-/* As they are. */
+/* Starts with the identity. */
 GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *from, int32_t count) {
     int32_t i;
     for (i = 0; i < count; ++i) from[i] = (uint16_t)i;
@@ -8431,31 +8380,23 @@ GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *fro
     sorting->order = 0;
 }
 
-GPROJI_INTERNAL void gproji_start_sortings(gproji_sortings *all) {
-    int32_t i, k;
-    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
-        for (k = 0; k < 8; ++k) gproji_start_sorting(&all->last[i][k], all->last_from[i][k], i);
-}
-
-/* A guess how a row is to be sorted. */
-GPROJI_INLINE gproji_sorting *gproji_guess_sorting(gproji_sortings *all, const int32_t *column, int32_t count,
-                                                   const int32_t *local) {
-    int32_t first, second, last;
+/* Sorts a row's locals by columns, which are written to `at`. Returns the permutation. */
+GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, const int32_t *GPROJI_RESTRICT column,
+                                                       int32_t count, int32_t *GPROJI_RESTRICT local,
+                                                       int32_t *GPROJI_RESTRICT at) {
+    gproji_sorting *sorting = &all->many;
+    int32_t variable[GPROJI_WIDE_ROW], i, k, last = -1;
+    uint16_t *from;
+    bool ascending = true, moved = false;
+    /* 1. Guesses the permutation from three comparisons. */
     if (count > GPROJI_COPY_LOCALS) {
-        gproji_start_sorting(&all->many, all->many_from, count);
-        return &all->many;
+        gproji_start_sorting(sorting, all->many_from, count);
+    } else {
+        int32_t one = column[local[0]], two = column[local[count > 1]], three = column[local[count - 1]];
+        sorting = &all->last[count][(one < two) + 2 * (two < three) + 4 * (one < three)];
     }
-    first = column[local[0]], second = column[local[count > 1]], last = column[local[count - 1]];
-    return &all->last[count][(first < second) + 2 * (second < last) + 4 * (first < last)];
-}
-
-/* Puts the locals where the sorting says. `at`: their columns. Returns whether these are ascending then. */
-GPROJI_INLINE bool gproji_move_locals(const int32_t *GPROJI_RESTRICT column, int32_t count,
-                                      int32_t *GPROJI_RESTRICT local, int32_t *GPROJI_RESTRICT at,
-                                      const gproji_sorting *sorting) {
-    const uint16_t *from = sorting->from;
-    int32_t variable[GPROJI_WIDE_ROW], i, last = -1;
-    bool ascending = true;
+    /* 2. Applies it. */
+    from = sorting->from;
     memcpy(variable, local, (size_t)count * sizeof *local);
     for (i = 0; i < count; ++i) {
         local[i] = variable[from[i]];
@@ -8463,14 +8404,8 @@ GPROJI_INLINE bool gproji_move_locals(const int32_t *GPROJI_RESTRICT column, int
         ascending &= at[i] > last;
         last = at[i];
     }
-    return ascending;
-}
-
-/* Sorts locals and their columns. By insertion: rows are short, and their terms name the variables of a node in order. */
-GPROJI_INTERNAL void gproji_sort_locals(int32_t count, int32_t *local, int32_t *at, gproji_sorting *sorting) {
-    uint16_t *from = sorting->from;
-    int32_t i, k;
-    bool moved = false;
+    if (ascending) return sorting;
+    /* 3. Corrects it by insertion: rows are short, and their terms name a node's variables in order. */
     for (i = 1; i < count; ++i) {
         int32_t own_at = at[i], own = local[i];
         uint16_t own_from = from[i];
@@ -8482,16 +8417,17 @@ GPROJI_INTERNAL void gproji_sort_locals(int32_t count, int32_t *local, int32_t *
         moved |= from[i] != i;
     }
     if (!moved || count > GPROJI_COPY_LOCALS) sorting->order = moved;
+    return sorting;
 }
 
-/* Copies of terms that rows have in common, for locals that have moved: those met last. */
+/* Cache entry: a copy made from shared terms for a permutation. */
 typedef struct gproji_copy {
     uint64_t order; /* see gproji_sorting */
     uint32_t source, term;
     int32_t locals; /* 0: none */
 } gproji_copy;
 
-/* Lets terms name the places where the locals have gone. */
+/* Lets terms name the locals by their new numbers. */
 GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals,
                                        const gproji_sorting *sorting) {
     gproj_term *end = term + count;
@@ -8503,111 +8439,61 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t
     }
 }
 
-/* Gives the row a copy of its terms for the moved locals. False: no memory. */
+/* Gives the row a copy with terms for the permuted locals: another row's if `cache` has it. False: no memory. */
 GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
-                                       const gproji_sorting *sorting) {
-    void *term = g->term;
+                                       const gproji_sorting *sorting, gproji_copy *cache) {
+    const uint64_t order = sorting->order;
+    gproji_copy *known = cache + (order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS));
+    bool enough, cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
     size_t wanted = g->term_count + row->terms;
-    bool enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->term_capacity, wanted, sizeof *g->term);
+    void *term = g->term;
+    if (cached && known->order == order && known->source == row->source && known->locals == locals) {
+        row->term = known->term;
+        return true;
+    }
+    enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
     g->term = (gproj_term *)term;
     if (!enough) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
     gproji_rename_terms(g->term + g->term_count, row->terms, locals, sorting);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
+    if (cached) known->order = order, known->source = row->source, known->locals = locals, known->term = row->term;
     return true;
 }
 
-/* The same, with the copy that another row has got, if there is one. */
-GPROJI_INLINE bool gproji_find_copy(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
-                                    const gproji_sorting *sorting, gproji_copy *copy) {
-    uint64_t order = sorting->order;
-    if (locals > GPROJI_COPY_LOCALS) return gproji_copy_terms(s, g, row, locals, sorting);
-    copy += order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS);
-    if (copy->order != order || copy->source != row->source || copy->locals != locals) {
-        if (!gproji_copy_terms(s, g, row, locals, sorting)) return false;
-        copy->order = order, copy->source = row->source, copy->locals = locals;
-        copy->term = row->term;
-    } else {
-        row->term = copy->term;
-    }
-    return true;
-}
-
-/* Undoes a sorting. */
-GPROJI_INTERNAL void gproji_move_back(int32_t count, int32_t *local, const gproji_sorting *sorting) {
-    int32_t variable[GPROJI_WIDE_ROW], i;
-    for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
-    memcpy(local, variable, (size_t)count * sizeof *local);
-}
-
-/* host: of each column of L, its front. */
-GPROJI_INTERNAL void gproji_name_fronts(const gproji_symbolic *sy, int32_t *host) {
-    int32_t f, k;
-    for (f = 0; f < sy->fronts; ++f)
-        for (k = 0; k < sy->front[f].width; ++k) host[sy->front[f].first + k] = f;
-}
-
-/* Gives the locals of a group's rows their order, and local_at their columns. host: the front of each column; front: of
-   each row, that of the variable which is eliminated first; -1 where there is none. Counts the rows of each front. False:
-   no memory. */
+/* Sorts the locals in each narrow row by columns, which are written to local_at. The first one names the row's front,
+   -1: none; fronts.start counts the rows of each. host: fronts by columns. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
                                         int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
     gproji_sortings sortings;
-    int32_t r;
+    int32_t r, i, k;
     memset(copy, 0, sizeof copy);
-    gproji_start_sortings(&sortings);
+    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
+        for (k = 0; k < 8; ++k) gproji_start_sorting(&sortings.last[i][k], sortings.last_from[i][k], i);
     g->sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         int32_t *local = g->local_variable + row->local;
         int32_t count = (int32_t)(row[1].local - row->local), *at = g->local_at + row->local;
-        gproji_sorting *sorting;
+        const gproji_sorting *sorting;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        sorting = gproji_guess_sorting(&sortings, column, count, local);
-        if (!gproji_move_locals(column, count, local, at, sorting)) gproji_sort_locals(count, local, at, sorting);
+        sorting = gproji_sort_locals(&sortings, column, count, local, at);
         if (sorting->order && !g->common) {
             gproji_rename_terms(g->term + row->term, row->terms, count, sorting);
-        } else if (sorting->order && !gproji_find_copy(s, g, row, count, sorting, copy)) {
-            gproji_move_back(count, local, sorting);
+        } else if (sorting->order && !gproji_copy_terms(s, g, row, count, sorting, copy)) {
+            /* The terms are still for the old order: restores it, so that the rows stay valid. */
+            int32_t variable[GPROJI_WIDE_ROW];
+            for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
+            memcpy(local, variable, (size_t)count * sizeof *local);
             return false;
         }
         front[r] = host[at[0]];
-        s->front_start[front[r] + 2]++;
+        s->fronts.start[front[r] + 2]++;
     }
     return true;
-}
-
-/* Sorts the narrow rows by their fronts: front_start[f + 2] has the number of those of front f. */
-GPROJI_INTERNAL void gproji_sort_rows(gproj_system *s, const int32_t *front) {
-    int64_t *start = s->front_start;
-    int32_t i, r, f;
-    for (f = 0; f < (int32_t)s->front_count; ++f) start[f + 2] += start[f + 1];
-    for (i = 0; i < s->group_count; ++i)
-        for (r = 0; r < s->group[i].row_count; ++r, ++front) {
-            if (*front < 0) continue;
-            s->front_row[start[*front + 1]].group = i;
-            s->front_row[start[*front + 1]++].row = r;
-        }
-    s->front_row_count = (size_t)start[s->front_count];
-}
-
-/* The storage rows of all narrow rows' locals, front by front, from their columns. at: work, of each column. */
-GPROJI_INTERNAL void gproji_place_locals(gproj_system *s, int32_t *at) {
-    int32_t f;
-    int64_t k;
-    for (f = 0; f < (int32_t)s->front_count; ++f) {
-        if (s->front_start[f] < s->front_start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
-        for (k = s->front_start[f]; k < s->front_start[f + 1]; ++k) {
-            gproji_group *g = &s->group[s->front_row[k].group];
-            const gproji_row *row = &g->row[s->front_row[k].row];
-            int32_t *local = g->local_at + row->local, *end = g->local_at + row[1].local;
-            gproji_expect_rows(s, k, false);
-            for (; local < end; ++local) *local = at[*local];
-        }
-    }
 }
 
 GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
@@ -8620,141 +8506,104 @@ GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_take_placing(gproj_system *s, gproji_placing *placing) {
-    const int32_t *permutation = s->cholesky->permutation;
-    size_t n = (size_t)s->variable_count;
-    placing->column = (int32_t *)gproji_take(&s->own, n, sizeof *placing->column);
-    placing->at = (int32_t *)gproji_take(&s->own, n, sizeof *placing->at);
-    placing->front = (int32_t *)gproji_take(&s->own, placing->rows, sizeof *placing->front);
-    if (!placing->column || !placing->at || !placing->front || !gproji_take_local_places(s)) return false;
-    gproji_invert(s->variable_count, permutation, placing->column);
-    s->front_count = (size_t)s->cholesky->symbolic.fronts;
-    s->front_row_room = placing->rows;
-    s->front_start = (int64_t *)gproji_take_zeroed(&s->own, s->front_count + 2, sizeof *s->front_start);
-    s->front_row = (gproji_row_name *)gproji_take(&s->own, s->front_row_room, sizeof *s->front_row);
-    return s->front_start && s->front_row;
-}
-
-/* Places of all rows in their fronts. */
+/* Step 4, for the matrix with all variables: finds each row's front, and the locals' padded rows there. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
-    gproji_placing placing;
-    size_t n = (size_t)s->variable_count, row = 0;
-    int32_t i;
+    const gproji_symbolic *sy = &s->cholesky->symbolic;
+    gproji_front_rows *rows = &s->fronts;
+    size_t n = (size_t)s->variable_count, all = 0, row;
+    int32_t *column = (int32_t *)gproji_take(&s->own, n, sizeof *column); /* variables */
+    int32_t *at = (int32_t *)gproji_take(&s->own, n, sizeof *at);         /* columns: front; then padded row */
+    int32_t *front, i, r, f;                                              /* rows, group by group; -1: none */
+    int64_t k;
     bool done;
-    memset(&placing, 0, sizeof placing);
-    for (i = 0; i < s->group_count; ++i) placing.rows += (size_t)s->group[i].row_count;
-    done = gproji_take_placing(s, &placing);
-    if (done) gproji_name_fronts(&s->cholesky->symbolic, placing.at);
-    for (i = 0; done && i < s->group_count; ++i) {
-        done = gproji_place_group(s, &s->group[i], placing.column, placing.at, placing.front + row);
+    for (i = 0; i < s->group_count; ++i) all += (size_t)s->group[i].row_count;
+    front = (int32_t *)gproji_take(&s->own, all, sizeof *front);
+    rows->count = (size_t)sy->fronts;
+    rows->row_room = all;
+    rows->start = (int64_t *)gproji_take_zeroed(&s->own, rows->count + 2, sizeof *rows->start);
+    rows->row = (gproji_row_name *)gproji_take(&s->own, all, sizeof *rows->row);
+    done = column && at && front && rows->start && rows->row && gproji_take_local_places(s);
+    /* 1. Sorts each row's locals by columns; the first one names the front. */
+    if (done) gproji_invert(s->variable_count, s->cholesky->permutation, column);
+    for (f = 0; done && f < sy->fronts; ++f)
+        for (i = 0; i < sy->front[f].width; ++i) at[sy->front[f].first + i] = f;
+    for (i = 0, row = 0; done && i < s->group_count; ++i) {
+        done = gproji_place_group(s, &s->group[i], column, at, front + row);
         row += (size_t)s->group[i].row_count;
     }
-    if (done) {
-        gproji_sort_rows(s, placing.front);
-        gproji_place_locals(s, placing.at);
+    /* 2. Sorts the rows by fronts: start[f + 2] counts those for front f, and start[f + 1] moves on to their end. */
+    for (f = 0; done && f < sy->fronts; ++f) rows->start[f + 2] += rows->start[f + 1];
+    for (i = 0, row = 0; done && i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r, ++row) {
+            if (front[row] < 0) continue;
+            k = rows->start[front[row] + 1]++;
+            rows->row[k].group = i;
+            rows->row[k].row = r;
+        }
+    if (done) rows->row_count = (size_t)rows->start[rows->count];
+    /* 3. Turns columns into padded rows, front by front. */
+    for (f = 0; done && f < sy->fronts; ++f) {
+        if (rows->start[f] < rows->start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
+        for (k = rows->start[f]; k < rows->start[f + 1]; ++k) {
+            gproji_group *g = &s->group[rows->row[k].group];
+            const gproji_row *own = &g->row[rows->row[k].row];
+            int32_t *local = g->local_at + own->local, *end = g->local_at + own[1].local;
+            gproji_expect_rows(s, k, false);
+            for (; local < end; ++local) *local = at[*local];
+        }
     }
-    gproji_give(&s->own, placing.column, n, sizeof *placing.column);
-    gproji_give(&s->own, placing.at, n, sizeof *placing.at);
-    gproji_give(&s->own, placing.front, placing.rows, sizeof *placing.front);
+    gproji_give(&s->own, column, n, sizeof *column);
+    gproji_give(&s->own, at, n, sizeof *at);
+    gproji_give(&s->own, front, all, sizeof *front);
     return done;
 }
 
-/* The gradients of runs, which are their coefficients, and follow them from now on (gproji_set_coefficient). */
-GPROJI_INTERNAL void gproji_start_runs(gproji_group *g) {
-    int32_t r;
-    uint32_t t;
-    for (r = 0; g->has_wide && r < g->row_count; ++r) {
-        const gproji_row *row = &g->row[r];
-        double *gradient = g->local_gradient + row->local;
-        for (t = 0; row->run && t < row->terms; ++t) gradient[t] = g->term[row->term + t].a;
-    }
+/* Steps 3 and 4, for the matrix with all variables. */
+GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
+    gproji_incidence in;
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    memset(&in, 0, sizeof in);
+    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->node_first);
+    gproji_incidence_give(&s->own, &in);
+    return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
-/* Step 5: what iterations need. */
+/* Step 5: takes the arrays that iterations need. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
-    size_t n = (size_t)s->variable_count;
-    int32_t i;
+    size_t n = (size_t)s->variable_count, wide = (size_t)s->wide_count;
+    int32_t i, r;
+    uint32_t t;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local_gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_gradient);
         g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
         if (!g->local_gradient || !g->tally) return false;
-        gproji_start_runs(g);
+        if (g->kind == GPROJ_BOUND) s->hinge_taken += (size_t)g->row_count;
+        /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
+        for (r = 0; g->has_wide && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            for (t = 0; row->run && t < row->terms; ++t) g->local_gradient[row->local + t] = g->term[row->term + t].a;
+        }
     }
+    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) return false; /* a product overflows */
+    s->wide.taken = wide;
+    s->hinge = (gproji_hinge *)gproji_take(&s->own, s->hinge_taken, sizeof *s->hinge);
     s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
     s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
-    return s->gradient && s->saved;
-}
-
-GPROJI_INTERNAL bool gproji_take_wide_arrays(gproj_system *s) {
-    size_t k = (size_t)s->wide_count, n = (size_t)s->variable_count;
-    if (k + 1 > SIZE_MAX / 2 / sizeof(double) / (n > k ? n : k + 1)) return false; /* (k + 1) n or k k are too many */
-    s->wide_taken = k;
-    s->sides = s->step = (double *)gproji_take(&s->own, (k + 1) * n, sizeof *s->sides);
-    s->wide_matrix = (double *)gproji_take(&s->own, k * k, sizeof *s->wide_matrix);
-    s->wide_vector = (double *)gproji_take(&s->own, k, sizeof *s->wide_vector);
-    if (!s->sides || !s->wide_matrix || !s->wide_vector) return false;
-    if (k == 0) return true;
-    s->residual = (double *)gproji_take(&s->own, n, sizeof *s->residual);
-    s->balance = (double *)gproji_take(&s->own, n, sizeof *s->balance);
-    return s->residual && s->balance;
-}
-
-GPROJI_INTERNAL bool gproji_take_hinges(gproj_system *s) {
-    int32_t i;
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_BOUND) s->hinge_taken += (size_t)s->group[i].row_count;
-    s->hinge = (gproji_hinge *)gproji_take(&s->own, s->hinge_taken, sizeof *s->hinge);
-    return s->hinge != NULL;
-}
-
-/* Gives back the room that has been kept for further ones in a growing array. */
-GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capacity, size_t count, size_t size) {
-    void *moved;
-    if (*capacity == count || !*block) return true;
-    moved = gproji_retake(heap, *block, *capacity, count, size);
-    if (!moved) return false;
-    *block = moved;
-    *capacity = count;
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_trim_rows(gproj_system *s, gproji_group *g) {
-    size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
-    void *row = g->row, *term = g->term, *local = g->local_variable;
-    bool done = gproji_trim(&s->own, &row, &g->row_capacity, rows, sizeof *g->row);
-    g->row = (gproji_row *)row;
-    done = done && gproji_trim(&s->own, &term, &g->term_capacity, terms, sizeof *g->term);
-    g->term = (gproj_term *)term;
-    done = done && gproji_trim(&s->own, &local, &g->local_capacity, locals, sizeof *g->local_variable);
-    g->local_variable = (int32_t *)local;
-    return done;
-}
-
-/* Step 1, with the room for it. */
-GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
-    size_t n = (size_t)s->variable_count;
-    bool done;
-    int32_t i;
-    s->compiled_variables = s->variable_count;
-    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
-    done = s->node && s->node_first;
-    for (i = 0; done && i < s->group_count; ++i) done = gproji_trim_rows(s, &s->group[i]);
-    if (done) gproji_compile_nodes(s);
-    return done;
-}
-
-/* Steps 3 and 4, for the matrix of all variables. */
-GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
-    gproj_code code = gproji_compile_analysis(s);
-    return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
+    s->sides = s->step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->sides);
+    s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
+    s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
+    if (!s->hinge || !s->gradient || !s->saved || !s->sides || !s->wide.matrix || !s->wide.vector) return false;
+    if (wide == 0) return true;
+    s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
+    s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
+    return s->wide.residual && s->wide.balance;
 }
 
 /* -- evaluation -- */
 
-/* phi with twice the digits; the products of three factors have only their first two so exactly, which is what counts
-   where large terms cancel. */
+/* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
+   for large terms that cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
     const int32_t *variable = g->local_variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
@@ -8774,12 +8623,22 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
     return gproji_sum_value(&sum);
 }
 
-/* phi of a row at x; `size` becomes the sum of its terms' absolute values, and grad phi is added to `gradient`. */
-GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_row *row, const double *x,
-                                          double *gradient, double *size) {
+/* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
+GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
     const int32_t *variable = g->local_variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    double phi = row->constant, sum = fabs(row->constant);
+    const double *x = s->x;
+    double *gradient = g->local_gradient + row->local;
+    double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
+    if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+    row->phi = 0;
+    if (!(row->weight > 0)) row->active = false;
+    if (!(row->weight > 0)) return;
+    if (row->run) {
+        size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
+        phi += gproji_dot(gradient, x + variable[0], row->terms);
+        term = end;
+    }
     for (; term < end; ++term) {
         double value = term->a * x[variable[term->i]], other;
         if (term->j < 0) {
@@ -8791,36 +8650,16 @@ GPROJI_INLINE double gproji_linearise_row(const gproji_group *g, const gproji_ro
             value *= other;
         }
         phi += value;
-        sum += fabs(value);
+        size += fabs(value);
     }
-    *size = sum;
-    return phi;
-}
-
-/* The same for a run (see gproji_row), whose gradient is there: its value is summed up as gproji_dot does it. */
-GPROJI_INTERNAL double gproji_run_value(const gproji_group *g, const gproji_row *row, const double *x, double *size) {
-    const double *gradient = g->local_gradient + row->local;
-    x += g->local_variable[row->local];
-    *size = fabs(row->constant) + gproji_absolute_dot(gradient, x, row->terms);
-    return row->constant + gproji_dot(gradient, x, row->terms);
-}
-
-/* phi and grad phi of a row; one without weight gets zeros, but a run keeps its gradient. Rows of bounds act where they are
-   violated, or where they did in the last step (gproji_switch_bounds lets them go again). Where rounding may be larger
-   than s->rounding, phi is added up with more digits. */
-GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
-    double *gradient = g->local_gradient + row->local, phi, size;
-    if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
-    row->phi = 0;
-    if (!(row->weight > 0)) row->active = false;
-    if (!(row->weight > 0)) return;
-    phi = row->run ? gproji_run_value(g, row, s->x, &size) : gproji_linearise_row(g, row, s->x, gradient, &size);
+    /* Large terms that cancel leave rounding: it would look like a residual. */
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
     row->phi = g->metric ? 0 : phi;
+    /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
     row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard && !g->safeguard);
 }
 
-/* Where some rows of a group stand, with its `tallied`. */
+/* Partial merit and largest residual in one chunk, for the weight `tallied`. */
 GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     gproji_group *g = (gproji_group *)data;
     gproji_tally tally = {0, 0, -1};
@@ -8839,7 +8678,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally[task] = tally;
 }
 
-/* Some rows of a group, and where they stand. */
+/* Evaluates one chunk, a part of a group's rows. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
@@ -8852,7 +8691,7 @@ GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproji_tally_task(g, task);
 }
 
-/* The values and gradients of all rows at the current x. Global rows are long, and come first. */
+/* Evaluates all rows at the current x. */
 GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
     int32_t i, global, tasks = 0;
     s->changed = false;
@@ -8877,12 +8716,12 @@ GPROJI_INTERNAL void gproji_refresh_groups(gproj_system *s) {
         if (s->group[i].refresh && s->group[i].weight > 0) s->group[i].refresh(s->group[i].refresh_user, s, i);
 }
 
-/* The weight of a row in this iteration, squared. */
+/* Squared weight in this iteration. */
 GPROJI_INLINE double gproji_weight2(const gproji_group *g, const gproji_row *row) {
     return g->weight * g->weight * row->weight * row->weight;
 }
 
-/* gradient' v over the locals of a row. */
+/* gradient' v over a row's locals. */
 GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row *row, const double *v) {
     double sum = 0;
     int64_t l;
@@ -8905,24 +8744,7 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
-/* out = scale * gradient; only the first n numbers count. */
-GPROJI_INTERNAL void gproji_row_spread(const gproji_group *g, const gproji_row *row, double scale, size_t n,
-                                       double *out) {
-    const double *gradient = g->local_gradient + row->local;
-    size_t first, end, v;
-    if (!row->run) {
-        memset(out, 0, n * sizeof *out);
-        gproji_row_add(g, row, scale, out);
-        return;
-    }
-    first = (size_t)g->local_variable[row->local];
-    end = first + (row[1].local - row->local);
-    memset(out, 0, first * sizeof *out);
-    for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
-    if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
-}
-
-/* gradient = sum w^2 phi grad phi over narrow rows that act: half the gradient of their part of the merit. */
+/* gradient = sum w^2 phi grad phi over narrow rows that act: half their merit's gradient. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
     memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
@@ -8937,8 +8759,8 @@ GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
 
 /* -- the matrix -- */
 
-/* What a front is to load: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature:
-   w^2 y (Hessian of phi) with the multipliers y of what must hold, and y = phi of wishes. */
+/* Arguments for loading fronts: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature
+   w^2 y (Hessian of phi) with the multipliers y for hard rows, and y = phi for soft ones. */
 typedef struct gproji_loading {
     const gproj_system *system;
     double epsilon;
@@ -8947,50 +8769,41 @@ typedef struct gproji_loading {
     double light;
 } gproji_loading;
 
-/* w^2 g g', lower triangle, in the columns that belong to the storage rows [from, to) */
-GPROJI_INTERNAL void gproji_load_square(const gproji_group *g, const gproji_row *row, const gproji_panel *panel,
-                                        int32_t from, int32_t to) {
-    const double *gradient = g->local_gradient + row->local;
-    const int32_t *at = g->local_at + row->local;
-    int32_t count = (int32_t)(row[1].local - row->local), first = 0, end = count, p, q;
-    double w2 = gproji_weight2(g, row);
-    while (first < end && at[first] < from) ++first;
-    while (first < end && at[end - 1] >= to) --end;
-    for (q = first; q < end; ++q) {
-        double *column = gproji_panel_column(panel, at[q]), scale = w2 * gradient[q];
-        for (p = q; p < count; ++p) column[at[p]] += scale * gradient[p];
-    }
-}
-
-/* w^2 y (Hessian of phi) there */
-GPROJI_INTERNAL void gproji_load_curvature(const gproji_group *g, const gproji_row *row, const gproji_panel *panel,
-                                           int32_t from, int32_t to) {
-    const int32_t *at = g->local_at + row->local;
-    double y = g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y, w2y = gproji_weight2(g, row) * y;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    for (; term < end; ++term) {
-        int32_t i = term->i, j = term->j, column;
-        if (j < 0) continue;
-        column = at[gproji_min(i, j)];
-        if (column < from || column >= to) continue;
-        gproji_panel_column(panel, column)[at[gproji_max(i, j)]] += (i == j ? 2 : 1) * w2y * term->a;
-    }
-}
-
-/* See gproji_load. */
+/* Loads A into one front: see gproji_load. */
 GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_panel *panel, int32_t from, int32_t to) {
     const gproji_loading *loading = (const gproji_loading *)user;
     const gproj_system *s = loading->system;
-    const int32_t *variable = s->cholesky->permutation + s->cholesky->symbolic.front[front].first;
-    int32_t j;
+    const int32_t *variable = s->cholesky->permutation + s->cholesky->symbolic.front[front].first, *at;
+    const gproj_term *term, *last;
+    const double *gradient;
+    int32_t count, first, end, p, q, j;
+    double w2;
     int64_t k;
-    for (k = s->front_start[front]; k < s->front_start[front + 1]; ++k) {
-        const gproji_group *g = &s->group[s->front_row[k].group];
-        const gproji_row *row = &g->row[s->front_row[k].row];
+    for (k = s->fronts.start[front]; k < s->fronts.start[front + 1]; ++k) {
+        const gproji_group *g = &s->group[s->fronts.row[k].group];
+        const gproji_row *row = &g->row[s->fronts.row[k].row];
         gproji_expect_rows(s, k, true);
         if (!(g->weight > 0) || !row->active) continue;
-        gproji_load_square(g, row, panel, from, to);
-        if (loading->curved) gproji_load_curvature(g, row, panel, from, to);
+        /* w^2 g g', lower triangle; locals are sorted, so those with columns in [from, to) are [first, end). */
+        gradient = g->local_gradient + row->local;
+        at = g->local_at + row->local;
+        count = (int32_t)(row[1].local - row->local), first = 0, end = count;
+        w2 = gproji_weight2(g, row);
+        while (first < end && at[first] < from) ++first;
+        while (first < end && at[end - 1] >= to) --end;
+        for (q = first; q < end; ++q) {
+            double *column = gproji_panel_column(panel, at[q]), scale = w2 * gradient[q];
+            for (p = q; p < count; ++p) column[at[p]] += scale * gradient[p];
+        }
+        if (!loading->curved) continue;
+        /* w^2 y (Hessian of phi), there, too. */
+        w2 *= g->kind == GPROJ_WISH ? row->phi : g->multiplier[row - g->row].y;
+        for (term = g->term + row->term, last = term + row->terms; term < last; ++term) {
+            if (term->j < 0) continue;
+            q = at[gproji_min(term->i, term->j)], p = at[gproji_max(term->i, term->j)];
+            if (q < from || q >= to) continue;
+            gproji_panel_column(panel, q)[p] += (term->i == term->j ? 2 : 1) * w2 * term->a;
+        }
     }
     if (from >= panel->shape.end) return;
     for (j = 0; j < panel->w; ++j) {
@@ -9008,160 +8821,177 @@ GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool 
     return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, b) == GPROJ_FACTORED;
 }
 
-/* out = A v, A = sum w^2 g g' + eps^2 I over narrow rows that act. */
-GPROJI_INTERNAL void gproji_matrix_times(const gproj_system *s, double epsilon, const double *v, double *out) {
-    int32_t i, r;
-    for (i = 0; i < s->variable_count; ++i) out[i] = epsilon * epsilon * v[i];
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, v), out);
-        }
-    }
-}
+/* -- dense rows -- */
 
-/* -- wide rows -- */
-
-/* With wide rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
+/* With dense ("wide") rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
    (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
    an approximation dx, at first 0, with A = L L', Y = L^-1 U and z = L^-1 (-gradient - A dx), a better one is
        dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
    so that U costs half a solution. */
 
-/* The parts of a step that may cancel to it without a check: see gproji_refine_step. */
+/* Largest `parts` that need no check: see gproji_refine_step. */
 static const double gproji_parts_most = 1e3;
 
-/* Calls `visit` for the wide rows that act in a fixed order; returns how many there are. */
-typedef void (*gproji_visit_wide)(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index);
-
-GPROJI_INTERNAL int32_t gproji_for_wide_rows(gproj_system *s, gproji_visit_wide visit) {
-    int32_t i, r, index = 0;
-    if (s->wide_count == 0) return 0;
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->has_wide && g->weight > 0 && r < g->row_count; ++r)
-            if (g->row[r].wide && g->row[r].active) visit(s, g, &g->row[r], index++);
+/* Next dense row that acts, in a fixed order; NULL: no further one. at: {0, -1} before the first. */
+GPROJI_INTERNAL const gproji_row *gproji_next_wide_row(const gproj_system *s, gproji_row_name *at) {
+    for (; s->wide_count > 0 && at->group < s->group_count; ++at->group, at->row = -1) {
+        const gproji_group *g = &s->group[at->group];
+        if (!g->has_wide || !(g->weight > 0)) continue;
+        while (++at->row < g->row_count)
+            if (g->row[at->row].wide && g->row[at->row].active) return &g->row[at->row];
     }
-    return index;
+    return NULL;
 }
 
-/* Column `index` of U, or of Y. */
+/* Column `index` in U, or in Y. */
 GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
     return s->sides + (int64_t)s->variable_count * (index + 1);
 }
 
-GPROJI_INTERNAL void gproji_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    gproji_row_spread(g, row, sqrt(gproji_weight2(g, row)), (size_t)s->variable_count, gproji_wide_side(s, index));
+/* Writes the columns of U; only their first n numbers count. Returns how many dense rows act. */
+GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
+    gproji_row_name at = {0, -1};
+    const gproji_row *row;
+    int32_t count = 0;
+    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
+        const gproji_group *g = &s->group[at.group];
+        const double *gradient = g->local_gradient + row->local;
+        double *out = gproji_wide_side(s, count++), scale = sqrt(gproji_weight2(g, row));
+        size_t first, end, v;
+        if (!row->run) {
+            memset(out, 0, n * sizeof *out);
+            gproji_row_add(g, row, scale, out);
+            continue;
+        }
+        /* Contiguous rows write each number once: the column is long. */
+        first = (size_t)g->local_variable[row->local];
+        end = first + (row[1].local - row->local);
+        memset(out, 0, first * sizeof *out);
+        for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
+        if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
+    }
+    return count;
 }
 
-/* w phi */
-GPROJI_INTERNAL void gproji_wide_value(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * row->phi;
+/* wide.vector = w phi, or w phi + U'dx if `ahead`. */
+GPROJI_INTERNAL void gproji_wide_values(gproj_system *s, bool ahead) {
+    gproji_row_name at = {0, -1};
+    const gproji_row *row;
+    int32_t index = 0;
+    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
+        const gproji_group *g = &s->group[at.group];
+        double phi = row->phi;
+        if (ahead) phi += gproji_row_times(g, row, s->step);
+        s->wide.vector[index++] = sqrt(gproji_weight2(g, row)) * phi;
+    }
 }
 
-/* w phi + U'dx */
-GPROJI_INTERNAL void gproji_wide_ahead(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    s->wide_vector[index] = sqrt(gproji_weight2(g, row)) * (row->phi + gproji_row_times(g, row, s->step));
-}
-
-/* I + Y'Y, factored. `wide`: columns of Y. */
-GPROJI_INTERNAL void gproji_wide_products(gproj_system *s, int32_t wide) {
-    int32_t i, k;
-    for (i = 0; i < wide; ++i)
-        for (k = 0; k <= i; ++k)
-            s->wide_matrix[(int64_t)i * s->wide_count + k] =
-                gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), (size_t)s->variable_count) + (k == i);
-    gproji_small_factor(s->wide_matrix, wide, s->wide_count, 1);
-}
-
-/* z becomes z - Y m; wide_vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
+/* z becomes z - Y m; wide.vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
 GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
     size_t n = (size_t)s->variable_count, i;
     double parts = sqrt(gproji_dot(z, z, n));
     int32_t k;
-    for (k = 0; k < wide; ++k) s->wide_vector[k] += gproji_dot(gproji_wide_side(s, k), z, n);
-    gproji_small_solve(s->wide_matrix, wide, s->wide_count, s->wide_vector);
+    for (k = 0; k < wide; ++k) s->wide.vector[k] += gproji_dot(gproji_wide_side(s, k), z, n);
+    gproji_small_solve(s->wide.matrix, wide, s->wide_count, s->wide.vector);
     for (k = 0; k < wide; ++k) {
         const double *side = gproji_wide_side(s, k);
-        double m = s->wide_vector[k];
+        double m = s->wide.vector[k];
         for (i = 0; i < n; ++i) z[i] -= m * side[i];
         parts += fabs(m) * sqrt(gproji_dot(side, side, n));
     }
     return parts / gproji_fmax(sqrt(gproji_dot(z, z, n)), DBL_MIN);
 }
 
-/* The right-hand sides of a step: -gradient, and U. Returns the number of wide rows. */
+/* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     int32_t v;
     for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
-    return gproji_for_wide_rows(s, gproji_wide_column);
+    return gproji_wide_columns(s, (size_t)s->variable_count);
 }
 
-/* The step from its right-hand sides, of which the factorisation has made z and Y already if it has taken them along.
-   Returns how large the parts of L'dx are to it. */
+/* Solves for the step from its right-hand sides; taken: the factorisation has made z and Y from them already. Returns
+   `parts` for gproji_refine_step. */
 GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
     gproj_cholesky *c = s->cholesky;
+    size_t n = (size_t)s->variable_count;
     double parts = 1;
+    int32_t i, k;
     if (taken && wide == 0) {
         gproji_cholesky_finish(c, s->step);
         return parts;
     }
+    /* 1. z and Y. */
     if (taken)
-        memcpy(s->sides, c->solution, ((size_t)wide + 1) * (size_t)s->variable_count * sizeof *s->sides);
+        memcpy(s->sides, c->solution, ((size_t)wide + 1) * n * sizeof *s->sides);
     else
         gproji_cholesky_forward(c, wide + 1, s->sides, s->sides);
     if (wide > 0) {
-        gproji_wide_products(s, wide);
-        gproji_for_wide_rows(s, gproji_wide_value);
+        /* 2. I + Y'Y, factored. */
+        for (i = 0; i < wide; ++i)
+            for (k = 0; k <= i; ++k)
+                s->wide.matrix[(int64_t)i * s->wide_count + k] =
+                    gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), n) + (k == i);
+        gproji_small_factor(s->wide.matrix, wide, s->wide_count, 1);
+        /* 3. z - Y m. */
+        gproji_wide_values(s, false);
         parts = gproji_wide_correct(s, wide, s->step);
     }
     gproji_cholesky_backward(c, s->step, s->step);
     return parts;
 }
 
-/* The step with the factor of A. */
+/* Solves for the step with the factor of A. */
 GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* balance += U m at this step. */
-GPROJI_INTERNAL void gproji_wide_pull(gproj_system *s, const gproji_group *g, const gproji_row *row, int32_t index) {
-    (void)index;
-    gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), s->balance);
-}
-
-/* residual = -gradient - A dx. Does U m balance it, as it should? `epsilon`: that of A. */
+/* residual = -gradient - A dx. Does U m balance it, as it should? epsilon: in A. */
 GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
-    double left = 0, size = 0;
-    int32_t v;
-    gproji_matrix_times(s, epsilon, s->step, s->residual);
-    memset(s->balance, 0, (size_t)s->variable_count * sizeof *s->balance);
-    gproji_for_wide_rows(s, gproji_wide_pull);
+    double *residual = s->wide.residual, *balance = s->wide.balance, left = 0, size = 0;
+    gproji_row_name at = {0, -1};
+    const gproji_row *row;
+    int32_t i, r, v;
+    /* 1. A dx, from all narrow rows that act. */
+    for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * s->step[v];
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            row = &g->row[r];
+            if (!row->wide && row->active)
+                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, s->step), residual);
+        }
+    }
+    /* 2. U m at this step. */
+    memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
+    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
+        const gproji_group *g = &s->group[at.group];
+        gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), balance);
+    }
+    /* 3. Their difference, against the right-hand side. */
     for (v = 0; v < s->variable_count; ++v) {
-        s->residual[v] = -s->gradient[v] - s->residual[v];
-        left = gproji_fmax(left, fabs(s->residual[v] - s->balance[v]));
-        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(s->balance[v]));
+        residual[v] = -s->gradient[v] - residual[v];
+        left = gproji_fmax(left, fabs(residual[v] - balance[v]));
+        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(balance[v]));
     }
     return left <= 1e-9 * size;
 }
 
-/* Iterative refinement of the step, at most `rounds` times, until the equations hold to 9 digits. To see whether they do
-   costs a product with all rows, and is left out where the answer is known. `parts`: what z and the Y_k m_k are to their
-   sum z - Y m = L'dx. Triangular solves are backward stable: z misses its equation by some roundings of |L||z|, Y_k by
-   as many of |L||Y_k|, and m, whose matrix is made of the same Y, misses its own by roundings of |Y||Y m|. So the step
-   misses its equations by `parts` times what one without wide rows would, by some roundings of |L||L'dx|, which is not
-   looked at either; besides that by roundings of |U U'||dx|, as U'dx has them, however exact dx is. What must be looked
-   at are large parts that cancel: wide rows that say what narrow ones say already, or other wide ones. */
+/* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
+   product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
+   the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
+   like that in |L||Y_k|, and m, computed from this Y, like that in |Y||Y m|. So the step's residual is `parts` times
+   that without dense rows, the rounding in |L||L'dx|, which is not checked either; besides there is rounding in
+   |U U'||dx|, as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat
+   narrow ones, or each other. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
+    double *residual = s->wide.residual;
     int32_t v;
     if (wide == 0 || parts <= gproji_parts_most) return;
     while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
-        gproji_for_wide_rows(s, gproji_wide_ahead);
-        gproji_cholesky_forward(s->cholesky, 1, s->residual, s->residual);
-        gproji_wide_correct(s, wide, s->residual);
-        gproji_cholesky_backward(s->cholesky, s->residual, s->residual);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += s->residual[v];
+        gproji_wide_values(s, true);
+        gproji_cholesky_forward(s->cholesky, 1, residual, residual);
+        gproji_wide_correct(s, wide, residual);
+        gproji_cholesky_backward(s->cholesky, residual, residual);
+        for (v = 0; v < s->variable_count; ++v) s->step[v] += residual[v];
     }
 }
 
@@ -9169,75 +8999,68 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    >>schur   Steps by multipliers, where these are the smaller system; compilation. Uses platform, memory, error,
    parallel, vector, kernels, dense, symbolic, cholesky, system.
 
-   Where only constraints act there are fewer of them than variables, and it pays to solve for their multipliers. Rows
-   with a common auxiliary node (the normal of a face) are an element, with the other rows of that face; so are the
-   rows of a vertex that join nodes (its equilibrium), and any other row that does is one by itself. eps does not act
-   on auxiliary variables, so those of an element are whatever suits its rows best: of the rows w (phi + G dv + N dn)
-   with other variables v and auxiliary ones n, an orthonormal basis Q of what is orthogonal to the columns of w N
-   leaves
+   If only constraints act there are fewer of them than variables, and solving for their multipliers is cheaper (range
+   space method: Benzi, Golub, Liesen, Numerical solution of saddle point problems, 2005). Rows are joined to elements:
+   rows with common local unknowns (a face's normal) together with other rows on that face; rows at a vertex that join
+   nodes (equilibrium); any other row that joins nodes by itself. eps does not act on local unknowns n, so each element
+   eliminates its own: for rows w (phi + G dv + N dn) an orthonormal basis Q of the complement to w N's range leaves
        r + C dv,   r = Q'w phi,   C = Q'w G.
-   A planar quad has five rows and a normal of three components, and the rows of its edges add up to nothing: one is left.
-   Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step makes
-       |r + C dv|^2 + dv'D dv + 2 dv'sum w^2 phi g
-   smallest. With D = L L', u = L'dv, W = C L'^-1, b = -L^-1 sum w^2 phi g that is
+   A planar quad has five rows and a normal with three components, and its edges' rows sum to zero: one is left.
+   Rows with a single node are taken into D = eps^2 E + sum w^2 g g', which is block diagonal. The step minimises
+       |r + C dv|^2 + dv'D dv + 2 dv'sum w^2 phi g.
+   With D = L L', u = L'dv, W = C L'^-1, b = -L^-1 sum w^2 phi g that is
        u = b - W'y,   (I + W W') y = r + W b,                                                                      (1)
-   with one unknown a quad instead of three a vertex and three a normal (range space method: Benzi, Golub, Liesen,
-   Numerical solution of saddle point problems, 2005). Then R'R dn = - N'w^2 (phi + G dv), where R is that of w N = Q R.
-   Wide rows are further multipliers m, with U = L^-1 (w g_1, w g_2, ...):
+   with one unknown a quad instead of three a vertex and three a normal. Then R'R dn = - N'w^2 (phi + G dv), w N = Q R.
+   Dense rows are further multipliers m, with U = L^-1 (w g_1, w g_2, ...):
        u = b - W'y - U m,   m = w phi + U'u;
-   they border the matrix of (1), and the Schur complement that is left for m is at least I.
+   they border the matrix in (1), and the Schur complement that is left for m is at least I.
 
-   E is not the identity: without eps on their normals, faces that become small would turn as they please. |R^-1|, with
-   weights 1, is how fast they turn; its square, times a factor, is added to E at the vertices that turn them. So E is 1.1
-   to 1.5 where edges have the length 1, and large at faces that are small or nearly straight. Where |R^-1| reaches 1/eps
-   there is next to no area, and what the rows say of the normal is next to nothing: there it gets 1e-3 eps^2 after all,
-   added to R'R.
+   E is not the identity: without eps on their normals, faces that become small would turn freely. |R^-1|, with weights
+   1, is how fast they turn; the square, times a factor, is added to E at the vertices that turn them. So E is 1.1 to
+   1.5 if edges have length 1, and large at faces that are small or nearly straight. If |R^-1| reaches 1/eps there is
+   next to no area, and rows determine next to nothing about the normal: it gets 1e-3 eps^2 after all, added to R'R.
 
-   The steps are not those of the matrix of all variables, though both lead to what must hold. Which of the two a form
-   takes depends on its groups alone, not on what it has been through: on those that have ever had a weight
-   (gproji_wake_groups). Solves for the nearest point and drags always take the matrix of all variables. Rows of the guard
-   have no multipliers until one acts, and then those that are near to it have: few ever are.
+   These steps differ from those with the matrix for all variables, though all lead to feasible points. The choice among
+   them depends on a form's groups alone, not on history: on those that have ever had a weight (gproji_wake_groups).
+   Solves for the nearest point and drags always take the matrix for all variables. A guard's dormant rows have no
+   multipliers until one acts; then those near to acting get them: few ever do.
 
-   Invariant: with schur.on the factorisation's variables are the multipliers, and gproji_group.local_at says where a local
-   stands among the variables of its row's element: k < GPROJI_BLOCK_MAX for the k-th auxiliary one,
-   (l + 1) GPROJI_BLOCK_MAX + k for the k-th of the element's l-th node; in a row with a single node, k. */
+   Invariant: with schur.on the factorisation's unknowns are the multipliers, and gproji_group.local_at is a local's
+   position among the variables in its row's element: k < GPROJI_BLOCK_MAX for the k-th local unknown,
+   (l + 1) GPROJI_BLOCK_MAX + k for the k-th variable at the element's l-th node; in a row with a single node, k. */
 
-static const double gproji_schur_most = 0.85;      /* so many multipliers a variable that elements share, at most */
-static const double gproji_schur_share = 0.1;      /* what |R^-1|^2 is multiplied by */
-static const double gproji_schur_calm = 1e-3;      /* of eps^2, on normals of faces that have next to no area */
-static const double gproji_schur_rounding = 1e-12; /* of R'R, where R has no inverse */
+static const double gproji_schur_most = 0.85;      /* multipliers per variable that elements share, at most */
+static const double gproji_schur_share = 0.1;      /* factor on |R^-1|^2 */
+static const double gproji_schur_calm = 1e-3;      /* times eps^2, on the normals if faces have next to no area */
+static const double gproji_schur_rounding = 1e-12; /* times trace(R'R), added if R has no inverse */
 enum {
     GPROJI_SCHUR_MEETINGS = 256,    /* multipliers at one node at most */
     GPROJI_SCHUR_CHUNKS = 64,       /* tasks at most */
     GPROJI_SCHUR_AHEAD = 8,         /* nodes whose values are on their way into the cache */
-    GPROJI_SCHUR_TABLE = 256,       /* fronts with no more storage rows have a table of their columns */
+    GPROJI_SCHUR_TABLE = 256,       /* fronts with no more padded rows have a table with columns */
     GPROJI_ELEMENTS_PER_TASK = 512, /* at least, unless there are fewer */
     GPROJI_LANES = 8,               /* elements that are worked on together */
-    GPROJI_SCHUR_TOGETHER = 4       /* multipliers of an element for which its rows are read together */
+    GPROJI_SCHUR_TOGETHER = 4,      /* an element's multipliers for which rows are read together */
+    GPROJI_NOWHERE = INT32_MIN      /* see gproji_schur_belongs */
 };
 
 /* -- compilation -- */
 
-enum {
-    GPROJI_NOWHERE = INT32_MIN
-};
-
-/* Where of_place has the element of a row of such a place, a face or a vertex; NULL: the row is of another, or its number is
-   not below that of the nodes. */
+/* Entry in `of_place` for the element with a row at this kind of place, a face or a vertex; NULL: the row is at another
+   kind, or the place's number is too large for a table with as many entries as nodes. */
 GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
                                             gproj_place place, int32_t *of_place) {
     return g->place == place && row->element >= 0 && row->element < s->node_count ? of_place + row->element : NULL;
 }
 
-/* The elements that have been met, by what makes them: -1 at first. Each has room for all nodes. */
+/* Elements met so far, by local unknowns and by place; -1 at first. Each array has room for all nodes. */
 typedef struct gproji_elements {
-    int32_t *of_node; /* auxiliary ones */
+    int32_t *of_node; /* local unknowns */
     int32_t *of_face, *of_vertex;
 } gproji_elements;
 
-/* Where a row belongs: its element, or -1 - node for the only node that it has, or GPROJI_NOWHERE. An auxiliary node makes
-   an element of its rows, and takes in other rows of the same face. False: it joins auxiliary variables of several
-   elements. */
+/* Finds a row's element, or -1 - node if it has a single node, or GPROJI_NOWHERE. False: it joins local unknowns from
+   several elements, which cannot be eliminated one by one then. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           const gproji_elements *elements, int32_t *belongs) {
     int32_t auxiliary = -1, kept = -1, *own, *face;
@@ -9249,7 +9072,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         int32_t node = s->node[g->local_variable[l]];
         int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
         if (*seen >= 0 && *seen != node) {
-            if (seen == &auxiliary) return false;
+            if (seen == &auxiliary) return false; /* two normals in one row */
             many = true;
         }
         *seen = node;
@@ -9259,6 +9082,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         if (kept >= 0) *belongs = -1 - kept;
         return true;
     }
+    /* Local unknowns decide; other rows join a face's element if there is one, or that of a vertex. */
     face = gproji_place_element(s, g, row, GPROJ_PLACE_FACE, elements->of_face);
     own = auxiliary >= 0 ? &elements->of_node[auxiliary] : face;
     if (!own) own = gproji_place_element(s, g, row, GPROJ_PLACE_VERTEX, elements->of_vertex);
@@ -9268,65 +9092,97 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
     return true;
 }
 
-/* How many multipliers may be worth while, at most. */
+/* Multipliers that may be worth while, at most. */
 GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
     int32_t v, kept = 0;
     for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
     return gproji_schur_most * kept;
 }
 
-/* Has the row certainly a multiplier of its own, or is it the first of an element? With auxiliary variables it is if their
-   node comes after `*highest`, which becomes that; others have one if they join nodes and are no rows of a face. */
-GPROJI_INLINE bool gproji_schur_begins(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                       int32_t *highest) {
-    const int32_t *local = g->local_variable + row->local, *end = g->local_variable + row[1].local;
-    bool many = false;
-    int32_t first = local < end ? s->node[*local] : -1;
-    for (; local < end; ++local) {
-        int32_t node = s->node[*local];
-        if (s->auxiliary[*local]) {
-            many = node > *highest;
-            *highest = gproji_max(*highest, node);
-            return many;
-        }
-        many = many || node != first;
-    }
-    return many && g->place != GPROJ_PLACE_FACE;
-}
-
-/* Are there certainly more multipliers than `limit`? To see this costs less than to classify all rows. */
+/* Are there certainly more multipliers than `limit`? A bound from below, which costs less than to classify all rows. */
 GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double limit) {
-    int32_t i, r, count = 0, highest = -1;
+    int32_t i, r, count = 0, highest = -1;      /* highest: the last node with local unknowns so far */
     for (i = s->group_count - 1; i >= 0; --i) { /* wishes, which have many, are often the last */
         const gproji_group *g = &s->group[i];
         for (r = 0; !g->idle && r < g->row_count; ++r) {
+            const int32_t *local = g->local_variable + g->row[r].local, *end = g->local_variable + g->row[r + 1].local;
+            int32_t first = local < end ? s->node[*local] : -1;
+            bool counts = false;
             if (g->row[r].waits || g->row[r].wide) continue;
-            count += gproji_schur_begins(s, g, &g->row[r], &highest);
+            /* A row that joins nodes has a multiplier, unless it may go to a face's element. */
+            for (; local < end && !s->auxiliary[*local]; ++local) counts = counts || s->node[*local] != first;
+            counts = counts && g->place != GPROJ_PLACE_FACE;
+            if (local < end) {
+                /* Local unknowns met for the first time make an element, which has one multiplier at least. */
+                counts = s->node[*local] > highest;
+                highest = gproji_max(highest, s->node[*local]);
+            }
+            count += counts;
             if (count > limit) return true;
         }
     }
     return false;
 }
 
-/* The element or node of all rows, group by group. Groups that are without weight have none. False: nothing is gained. */
-GPROJI_INTERNAL bool gproji_schur_classify(gproj_system *s, double limit, const gproji_elements *elements,
-                                           int32_t *belongs) {
-    int32_t i, r, v;
-    for (v = 0; v < s->node_count; ++v) elements->of_node[v] = elements->of_face[v] = elements->of_vertex[v] = -1;
-    s->schur.elements = 0;
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r)
-            if (!gproji_schur_belongs(s, g, &g->row[r], elements, belongs++) || s->schur.elements > limit) return false;
-    }
-    return s->schur.elements > 0;
+/* Counts the columns that an element's rows are projected off: N, and one more for a zero sum. */
+GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
+    int32_t node = s->schur.auxiliary[element];
+    return s->schur.zero_sum[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
 }
 
-/* Sorts the rows by their elements, and behind them those of single nodes by these. The starts have been cleared. */
-GPROJI_INTERNAL void gproji_schur_sort_rows(gproj_system *s, const int32_t *belongs) {
+/* Numbers the multipliers: an element has as many as its rows leave. False: one has none, or there are too many for
+   this to pay. met: work, by nodes. */
+GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
+    gproji_schur *d = &s->schur;
+    int32_t e, v, shared = 0, most = 0;
+    double limit;
+    int64_t k, l;
+    /* 1. Counts variables in several elements. With the matrix for all variables the others are eliminated cheaply, and
+       count as little as local unknowns. */
+    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    for (l = 0; l < d->link_start[d->elements]; ++l) met[d->link_node[l]]++;
+    for (v = 0; v < s->node_count; ++v)
+        if (met[v] > 1) shared += s->node_first[v + 1] - s->node_first[v];
+    limit = gproji_schur_most * shared;
+    /* 2. Numbers multipliers, and counts those at each node: a node makes a dense block for them. */
+    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    d->first[0] = 0;
+    for (e = 0; e < d->elements; ++e) {
+        int32_t left;
+        d->zero_sum[e] = 0;
+        for (k = d->row_start[e]; d->auxiliary[e] >= 0 && k < d->row_start[e + 1]; ++k)
+            if (d->row[k].row < s->group[d->row[k].group].closing) d->zero_sum[e] = 1;
+        left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
+        if (left < 1 || left > limit - d->first[e]) return false;
+        d->first[e + 1] = d->first[e] + left;
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
+            met[d->link_node[l]] += left;
+            most = gproji_max(most, met[d->link_node[l]]);
+        }
+    }
+    return most <= GPROJI_SCHUR_MEETINGS;
+}
+
+/* Sorts rows by elements, finds the nodes that each joins, and numbers the multipliers. mark: work, by nodes. False: no
+   memory, or d->on is false and it does not pay. */
+GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
     const int32_t *to = belongs;
-    int32_t i, r;
+    int64_t elements = d->elements, nodes = s->node_count, links = 0, count = 0, k, l;
+    int32_t i, r, e;
+    d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
+    d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
+    d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
+    d->auxiliary = (int32_t *)gproji_pool_take(&d->pool, elements, sizeof(int32_t));
+    d->zero_sum = (uint8_t *)gproji_pool_take(&d->pool, elements, 1);
+    d->first = (int32_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int32_t));
+    d->link_start = (int64_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int64_t));
+    for (i = 0; i < s->group_count; ++i) links += (int64_t)gproji_local_count(&s->group[i]); /* at most */
+    d->link_node = (int32_t *)gproji_pool_take(&d->pool, links, sizeof(int32_t));
+    if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->zero_sum || !d->first || !d->link_start ||
+        !d->link_node)
+        return false;
+    /* 1. Counting sort: rows by elements, and behind them those with a single node by these. */
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r, ++to) {
             if (*to >= 0) d->row_start[*to + 2]++;
@@ -9343,23 +9199,8 @@ GPROJI_INTERNAL void gproji_schur_sort_rows(gproj_system *s, const int32_t *belo
             if (*to >= 0) d->row[d->row_start[*to + 1]++] = name;
             if (*to < 0 && *to != GPROJI_NOWHERE) d->row[d->own_start[-*to]++] = name;
         }
-}
-
-/* Has the element closing rows? */
-GPROJI_INTERNAL bool gproji_schur_closes(const gproj_system *s, int32_t element) {
-    const gproji_schur *d = &s->schur;
-    int64_t k;
-    for (k = d->row_start[element]; k < d->row_start[element + 1]; ++k)
-        if (d->row[k].row < s->group[d->row[k].group].closing) return true;
-    return false;
-}
-
-/* The nodes that each element joins, and its auxiliary one; returns how many they are. mark: work, of each node. */
-GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark) {
-    gproji_schur *d = &s->schur;
-    int64_t k, l, count = 0;
-    int32_t e, v;
-    for (v = 0; v < s->node_count; ++v) mark[v] = -1;
+    /* 2. Lists the nodes that each element joins, as rows name them; and finds the one with local unknowns. */
+    for (i = 0; i < s->node_count; ++i) mark[i] = -1;
     for (e = 0; e < d->elements; ++e) {
         d->link_start[e] = count;
         d->auxiliary[e] = -1;
@@ -9376,98 +9217,33 @@ GPROJI_INTERNAL int64_t gproji_schur_scan(gproj_system *s, int32_t *mark) {
         }
     }
     d->link_start[d->elements] = count;
-    return count;
-}
-
-/* What the columns of N, and that of the rows' sum where it is nothing, take from the rows of an element. */
-GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
-    int32_t node = s->schur.auxiliary[element];
-    return s->schur.closes[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
-}
-
-/* How many variables belong to several elements. With the matrix of all variables the others are eliminated without much
-   ado, and count as little as auxiliary ones. met: work, of each node. */
-GPROJI_INTERNAL int32_t gproji_schur_shared(const gproj_system *s, int32_t *met) {
-    const gproji_schur *d = &s->schur;
-    int32_t v, count = 0;
-    int64_t l;
-    memset(met, 0, (size_t)s->node_count * sizeof *met);
-    for (l = 0; l < d->link_start[d->elements]; ++l) met[d->link_node[l]]++;
-    for (v = 0; v < s->node_count; ++v)
-        if (met[v] > 1) count += s->node_first[v + 1] - s->node_first[v];
-    return count;
-}
-
-/* Numbers the multipliers: an element has as many as its rows leave. False: it has none, or there are too many for this
-   to pay. met: work, of each node. */
-GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
-    gproji_schur *d = &s->schur;
-    const double limit = gproji_schur_most * gproji_schur_shared(s, met);
-    int32_t e, most = 0;
-    int64_t l;
-    memset(met, 0, (size_t)s->node_count * sizeof *met);
-    d->first[0] = 0;
-    for (e = 0; e < d->elements; ++e) {
-        int32_t left;
-        d->closes[e] = d->auxiliary[e] >= 0 && gproji_schur_closes(s, e);
-        left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
-        if (left < 1 || left > limit - d->first[e]) return false;
-        d->first[e + 1] = d->first[e] + left;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-            met[d->link_node[l]] += left;
-            most = gproji_max(most, met[d->link_node[l]]);
-        }
-    }
-    return most <= GPROJI_SCHUR_MEETINGS;
-}
-
-/* Sorts rows, and finds what the elements join and leave. False: no memory, or d->on is false and it does not pay. */
-GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
-    gproji_schur *d = &s->schur;
-    int64_t elements = d->elements, nodes = s->node_count, links = 0;
-    int32_t i;
-    d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
-    d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
-    d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
-    d->auxiliary = (int32_t *)gproji_pool_take(&d->pool, elements, sizeof(int32_t));
-    d->closes = (uint8_t *)gproji_pool_take(&d->pool, elements, 1);
-    d->first = (int32_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int32_t));
-    d->link_start = (int64_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int64_t));
-    if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->closes || !d->first || !d->link_start)
-        return false;
-    gproji_schur_sort_rows(s, belongs);
-    for (i = 0; i < s->group_count; ++i) links += (int64_t)gproji_local_count(&s->group[i]); /* at most */
-    d->link_node = (int32_t *)gproji_pool_take(&d->pool, links, sizeof(int32_t));
-    if (!d->link_node) return false;
-    d->link_node = (int32_t *)gproji_pool_shrink(&d->pool, gproji_schur_scan(s, mark), sizeof(int32_t));
+    d->link_node = (int32_t *)gproji_pool_shrink(&d->pool, count, sizeof(int32_t));
     if (!d->link_node) return false;
     d->on = gproji_schur_number(s, mark);
     return true;
 }
 
-/* How many rows all groups have. */
-GPROJI_INTERNAL size_t gproji_all_rows(const gproj_system *s) {
-    size_t rows = 0;
-    int32_t i;
-    for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
-    return rows;
-}
-
-/* Step 2 of compilation: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
+/* Step 2: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
-    size_t nodes = (size_t)s->node_count, rows = gproji_all_rows(s);
+    size_t nodes = (size_t)s->node_count, rows = 0, v;
     gproji_elements elements;
-    int32_t *mark, *belongs;
-    bool enough;
+    int32_t *mark, *belongs, *to, i, r; /* belongs: by rows, group by group */
+    bool enough, pays;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
+    for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
     mark = (int32_t *)gproji_take(&s->own, 3 * nodes, sizeof *mark);
     belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
-    enough = mark && belongs;
+    enough = pays = mark && belongs;
     if (enough) {
+        for (v = 0; v < 3 * nodes; ++v) mark[v] = -1;
         elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
-        if (gproji_schur_classify(s, limit, &elements, belongs))
-            enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+        s->schur.elements = 0;
+        for (i = 0, to = belongs; i < s->group_count; ++i)
+            for (r = 0; pays && r < s->group[i].row_count; ++r)
+                pays = gproji_schur_belongs(s, &s->group[i], &s->group[i].row[r], &elements, to++) &&
+                       s->schur.elements <= limit;
+        if (pays && s->schur.elements > 0) enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
     }
     gproji_give(&s->own, mark, 3 * nodes, sizeof *mark);
     gproji_give(&s->own, belongs, rows, sizeof *belongs);
@@ -9475,7 +9251,7 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     return enough;
 }
 
-/* The elements at each node: the rows of an incidence whose nodes are the elements. */
+/* Takes the incidence whose rows are the system's nodes, and whose nodes are the elements. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *in) {
     const gproji_schur *d = &s->schur;
     int64_t links = d->link_start[d->elements];
@@ -9490,7 +9266,9 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
     in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
-    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start) return false;
+    in->mark = (uint32_t *)gproji_take(&s->own, (size_t)d->elements, sizeof *in->mark);
+    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start || !in->mark) return false;
+    /* Links are the elements' lists; sorted by nodes they are the nodes'. */
     for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
     for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
@@ -9502,65 +9280,124 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     return true;
 }
 
-/* Where the rows of W at each node begin. */
-GPROJI_INTERNAL void gproji_schur_place_nodes(gproj_system *s) {
+/* Consecutive elements with local unknowns that are alike: `left` multipliers, m rows and `count` columns, the first
+   `zero_sum` among them for the zero sum. They are worked on in lanes, number k in lane l at [k GPROJI_LANES + l]:
+   one element alone is a chain of square roots and quotients, each waiting for the one before. Lanes without an
+   element have zeros. */
+typedef struct gproji_alike {
+    int32_t first, lanes, m, count, zero_sum, left;
+    double *column;   /* m x count: the columns that multipliers are orthogonal to; then reflections */
+    double *scale;    /* count */
+    double *diagonal; /* count */
+    double *triangle; /* (count - zero_sum)^2 */
+    double *q;        /* m x GPROJI_SCHUR_TOGETHER */
+    double *c;        /* one element's: GPROJI_BLOCK_MAX a node */
+    double heaviest[GPROJI_LANES];
+    double share[GPROJI_LANES];
+} gproji_alike;
+
+/* Takes the arrays whose sizes depend on the analysis. */
+GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     gproji_schur *d = &s->schur;
+    gproji_schur_matrix *w = &d->w;
+    gproji_pool *pool = &d->pool;
+    int64_t links = d->link_start[d->elements], nodes = s->node_count, multipliers = d->first[d->elements];
+    int64_t fronts = s->cholesky->symbolic.fronts, entries = 0, values = 0, roots = 0, l;
     int32_t e, v;
-    int64_t l;
-    for (e = 0; e < d->elements; ++e)
+    /* 1. Measures the elements: work for the largest batch (see gproji_alike), entries and values in W. */
+    d->most = d->triangle_size = 0;
+    for (e = 0; e < d->elements; ++e) {
+        int64_t m = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
+        int64_t columns = gproji_schur_columns(s, e), joined = d->link_start[e + 1] - d->link_start[e];
+        int64_t lanes = m * (columns + GPROJI_SCHUR_TOGETHER) + 2 * columns + columns * columns;
+        int64_t most = lanes * GPROJI_LANES + GPROJI_BLOCK_MAX * joined * GPROJI_SCHUR_TOGETHER;
+        int32_t size = (int32_t)columns - d->zero_sum[e];
+        d->most = d->most > most ? d->most : most;
+        d->triangle_size = gproji_max(d->triangle_size, size * size);
+        entries += left * joined;
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
-            d->entry_start[d->link_node[l] + 1] += d->first[e + 1] - d->first[e];
-    d->value_start[0] = 0;
-    for (v = 0; v < s->node_count; ++v) {
-        d->value_start[v + 1] = d->value_start[v] + d->entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
-        d->entry_start[v + 1] += d->entry_start[v];
+            values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
     }
+    /* 2. Local unknowns at the end are not in dense columns; rounded up so that gproji_dot sums alike with them. */
+    for (s->wide.kept = s->variable_count; s->wide.kept > 0 && s->auxiliary[s->wide.kept - 1];) s->wide.kept--;
+    s->wide.kept = gproji_min(gproji_round_up(s->wide.kept, 4), s->variable_count);
+    d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
+    d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
+    for (v = 0; d->root_start && v < s->node_count; ++v) {
+        int64_t size = s->auxiliary[s->node_first[v]] ? 0 : s->node_first[v + 1] - s->node_first[v];
+        d->root_start[v] = roots;
+        roots += size * size;
+    }
+    d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
+    w->entry_start = (int64_t *)gproji_pool_take_zeroed(pool, nodes + 1, sizeof(int64_t));
+    w->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
+    w->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    w->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    w->front_start = (int64_t *)gproji_pool_take(pool, fronts + 1, sizeof(int64_t));
+    w->coupling = (gproji_coupling *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *w->coupling);
+    w->front_entry = (int64_t *)gproji_pool_take(pool, fronts, sizeof(int64_t));
+    w->value = (double *)gproji_pool_take(pool, values, sizeof(double));
+    d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
+    d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * multipliers, sizeof(double));
+    d->share = (double *)gproji_pool_take(pool, multipliers, sizeof(double));
+    d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
+    d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
+    d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
+    d->work = gproji_take_aligned(pool, d->chunks * d->most);
+    return d->root_start && d->link_value && w->entry_start && w->value_start && w->entry && w->entry_at &&
+           w->front_start && w->coupling && w->front_entry && w->value && d->root && d->side && d->share && d->metric &&
+           d->turns && d->triangle && d->work;
 }
 
-/* Where W has its blocks: node by node, in each the multipliers in the order of their elimination. And the nodes by the
-   front of their first one: `sequence`. met: work, of each node. */
-GPROJI_INTERNAL void gproji_schur_place_links(gproj_system *s, int32_t *sequence, int32_t *met) {
+/* Places W: node by node, at each the multipliers in elimination order. Work: sequence, by nodes; at, by nodes and by
+   multipliers. */
+GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequence, int32_t *at) {
     gproji_schur *d = &s->schur;
     const gproji_symbolic *sy = &s->cholesky->symbolic;
-    int32_t f, k, i;
-    int64_t count = 0, l;
+    int32_t *met = at, e, v, f, k, i;
+    int64_t count = 0, entry = 0, l, c;
+    /* 1. Counts multipliers at each node: these are the node's rows. */
+    for (e = 0; e < d->elements; ++e)
+        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
+            d->w.entry_start[d->link_node[l] + 1] += d->first[e + 1] - d->first[e];
+    d->w.value_start[0] = 0;
+    for (v = 0; v < s->node_count; ++v) {
+        d->w.value_start[v + 1] =
+            d->w.value_start[v] + d->w.entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
+        d->w.entry_start[v + 1] += d->w.entry_start[v];
+    }
+    /* 2. Places the elements' blocks, front by front; a node goes to the front that eliminates its first multiplier. */
     memset(met, 0, (size_t)s->node_count * sizeof *met);
     for (f = 0; f < sy->fronts; ++f) {
-        d->front_start[f] = count;
+        d->w.front_start[f] = count;
         for (k = sy->front[f].first_position; k < sy->front[f].end_position; ++k) {
-            int32_t e = sy->order[k];
+            e = sy->order[k];
             for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
-                int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-                int32_t *entry = d->entry + d->entry_start[v];
+                v = d->link_node[l];
                 if (met[v] == 0) sequence[count++] = v;
-                d->link_value[l] = d->value_start[v] + (int64_t)met[v] * size;
-                for (i = d->first[e]; i < d->first[e + 1]; ++i) entry[met[v]++] = i;
+                d->link_value[l] = d->w.value_start[v] + (int64_t)met[v] * (s->node_first[v + 1] - s->node_first[v]);
+                for (i = d->first[e]; i < d->first[e + 1]; ++i) d->w.entry[d->w.entry_start[v] + met[v]++] = i;
             }
         }
     }
-    d->front_start[sy->fronts] = count;
-}
-
-/* The nodes of each front, and the storage rows of their multipliers there. at: work, of each multiplier. */
-GPROJI_INTERNAL void gproji_schur_place_entries(gproj_system *s, const int32_t *sequence, int32_t *at) {
-    gproji_schur *d = &s->schur;
-    int32_t f;
-    int64_t k, i, entry = 0;
-    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
-        d->front_entry[f] = entry;
-        if (d->front_start[f] < d->front_start[f + 1]) gproji_map_rows(s->cholesky, f, s->cholesky->permutation, at);
-        for (k = d->front_start[f]; k < d->front_start[f + 1]; ++k) {
-            int32_t v = sequence[k];
-            d->crossing[k].value = d->value_start[v];
-            d->crossing[k].count = (int32_t)(d->entry_start[v + 1] - d->entry_start[v]);
-            d->crossing[k].size = s->node_first[v + 1] - s->node_first[v];
-            for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i) d->entry_at[entry++] = at[d->entry[i]];
+    d->w.front_start[sy->fronts] = count;
+    /* 3. Finds the padded rows for each node's multipliers in that front. */
+    for (f = 0; f < sy->fronts; ++f) {
+        d->w.front_entry[f] = entry;
+        if (d->w.front_start[f] < d->w.front_start[f + 1])
+            gproji_map_rows(s->cholesky, f, s->cholesky->permutation, at);
+        for (c = d->w.front_start[f]; c < d->w.front_start[f + 1]; ++c) {
+            v = sequence[c];
+            d->w.coupling[c].value = d->w.value_start[v];
+            d->w.coupling[c].count = (int32_t)(d->w.entry_start[v + 1] - d->w.entry_start[v]);
+            d->w.coupling[c].size = s->node_first[v + 1] - s->node_first[v];
+            for (l = d->w.entry_start[v]; l < d->w.entry_start[v + 1]; ++l) d->w.entry_at[entry++] = at[d->w.entry[l]];
         }
     }
 }
 
-/* Where the locals of a row stand: `at` of their nodes, which is 0 for auxiliary ones alone among those of an element's
-   row, and which variable there. Returns whether there are nodes at 0. */
+/* Places a row's locals: at[node], which in an element's row is 0 for local unknowns only, plus the variable's number
+   there. Returns whether there are nodes at 0. */
 GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name name, const int32_t *at) {
     gproji_group *g = &s->group[name.group];
     const gproji_row *row = &g->row[name.row];
@@ -9574,15 +9411,8 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     return auxiliary;
 }
 
-/* Notes that the nodes of this row turn auxiliary variables. */
-GPROJI_INTERNAL void gproji_schur_turn(const gproj_system *s, gproji_row_name name) {
-    const gproji_group *g = &s->group[name.group];
-    int64_t l;
-    for (l = g->row[name.row].local; l < g->row[name.row + 1].local; ++l)
-        s->schur.turns[s->node[g->local_variable[l]]] = 1;
-}
-
-/* Where the locals of all rows stand (see the section's invariant), and what turns. at: work, of each node. */
+/* Places the locals in all rows (see the section's invariant), and notes nodes that turn local unknowns. at: work, by
+   nodes. */
 GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     const gproji_schur *d = &s->schur;
     int64_t k, l;
@@ -9592,111 +9422,13 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     for (e = 0; e < d->elements; ++e) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
-        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k)
-            if (gproji_schur_place_row(s, d->row[k], at)) gproji_schur_turn(s, d->row[k]);
+        for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
+            const gproji_group *g = &s->group[d->row[k].group];
+            const gproji_row *row = &g->row[d->row[k].row];
+            if (!gproji_schur_place_row(s, d->row[k], at)) continue;
+            for (l = row->local; l < row[1].local; ++l) d->turns[s->node[g->local_variable[l]]] = 1;
+        }
     }
-}
-
-/* Consecutive elements with auxiliary variables that are alike: `left` multipliers, m rows and `count` columns, the
-   first `closes` of which are no auxiliary variables. What is done to all of them is done in lanes, number k of lane l
-   being at [k GPROJI_LANES + l]: one element alone is a chain of square roots and quotients, each of which waits for
-   the one before. Lanes without an element have zeros. */
-typedef struct gproji_alike {
-    int32_t first, lanes, m, count, closes, left;
-    double *column;   /* m x count: what the multipliers are orthogonal to; then reflections */
-    double *scale;    /* count */
-    double *diagonal; /* count */
-    double *triangle; /* (count - closes)^2 */
-    double *q;        /* m x GPROJI_SCHUR_TOGETHER */
-    double *c;        /* of one element: GPROJI_BLOCK_MAX a node */
-    double heaviest[GPROJI_LANES];
-    double share[GPROJI_LANES];
-} gproji_alike;
-
-/* The doubles that such a batch needs. */
-GPROJI_INTERNAL int64_t gproji_alike_size(int64_t m, int64_t count, int64_t nodes) {
-    int64_t lanes = m * (count + GPROJI_SCHUR_TOGETHER) + 2 * count + count * count;
-    return lanes * GPROJI_LANES + GPROJI_BLOCK_MAX * nodes * GPROJI_SCHUR_TOGETHER;
-}
-
-/* How much the elements need: `most` and `triangle_size`, and numbers of entries and of values of W. */
-GPROJI_INTERNAL void gproji_schur_measure(gproj_system *s, int64_t *entries, int64_t *values) {
-    gproji_schur *d = &s->schur;
-    int64_t l;
-    int32_t e;
-    d->most = d->triangle_size = 0;
-    *entries = *values = 0;
-    for (e = 0; e < d->elements; ++e) {
-        int64_t rows = d->row_start[e + 1] - d->row_start[e], left = d->first[e + 1] - d->first[e];
-        int64_t columns = gproji_schur_columns(s, e), links = d->link_start[e + 1] - d->link_start[e];
-        int64_t most = gproji_alike_size(rows, columns, links);
-        int32_t size = (int32_t)columns - d->closes[e];
-        d->most = d->most > most ? d->most : most;
-        d->triangle_size = gproji_max(d->triangle_size, size * size);
-        *entries += left * links;
-        for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
-            *values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
-    }
-}
-
-/* The arrays whose sizes depend on the analysis. */
-GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
-    gproji_schur *d = &s->schur;
-    gproji_pool *pool = &d->pool;
-    int64_t links = d->link_start[d->elements], nodes = s->node_count, entries, values, roots = 0;
-    int32_t i;
-    gproji_schur_measure(s, &entries, &values);
-    for (d->kept = s->variable_count; d->kept > 0 && s->auxiliary[d->kept - 1];) d->kept--;
-    d->kept =
-        gproji_min(gproji_round_up(d->kept, 4), s->variable_count); /* gproji_dot's sums do not see what follows */
-    d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
-    for (i = 0; d->root_start && i < nodes; ++i) {
-        int64_t size = s->auxiliary[s->node_first[i]] ? 0 : s->node_first[i + 1] - s->node_first[i];
-        d->root_start[i] = roots;
-        roots += size * size;
-    }
-    d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
-    d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
-    d->entry_start = (int64_t *)gproji_pool_take_zeroed(pool, nodes + 1, sizeof(int64_t));
-    d->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
-    d->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    d->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    d->front_start = (int64_t *)gproji_pool_take(pool, (int64_t)s->cholesky->symbolic.fronts + 1, sizeof(int64_t));
-    d->crossing = (gproji_crossing *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *d->crossing);
-    d->front_entry = (int64_t *)gproji_pool_take(pool, s->cholesky->symbolic.fronts, sizeof(int64_t));
-    d->value = (double *)gproji_pool_take(pool, values, sizeof(double));
-    d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
-    d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * d->first[d->elements], sizeof(double));
-    d->share = (double *)gproji_pool_take(pool, d->first[d->elements], sizeof(double));
-    d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
-    d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
-    d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
-    d->work = gproji_take_aligned(pool, d->chunks * d->most);
-    return d->root_start && d->link_value && d->entry_start && d->value_start && d->entry && d->entry_at &&
-           d->front_start && d->crossing && d->front_entry && d->value && d->root && d->side && d->share && d->metric &&
-           d->turns && d->triangle && d->work;
-}
-
-/* The graph of the elements, analysed, and the places of all. mark, at: work, of each variable and of each multiplier;
-   sequence: of each node. */
-GPROJI_INTERNAL gproj_code gproji_schur_arrange(gproj_system *s, gproji_incidence *in, uint32_t *mark,
-                                                int32_t *sequence, int32_t *at) {
-    const gproji_schur *d = &s->schur;
-    gproji_meetings graph;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    int32_t e;
-    if (!gproji_schur_incidence(s, in) || !gproji_take_meetings(&s->own, &graph, (size_t)d->elements)) return code;
-    for (e = 0; e < d->elements; ++e) graph.size[e] = d->first[e + 1] - d->first[e];
-    if (gproji_find_meetings(&s->own, in, mark, &graph))
-        code = gproji_cholesky_analyse_blocks(s->cholesky, d->elements, graph.size, graph.start, graph.adjacent, NULL);
-    gproji_give_meetings(&s->own, &graph, (size_t)d->elements);
-    if (code) return code;
-    if (!gproji_schur_take(s)) return GPROJ_ERROR_MEMORY;
-    gproji_schur_place_nodes(s);
-    gproji_schur_place_links(s, sequence, at);
-    gproji_schur_place_entries(s, sequence, at);
-    gproji_schur_place_locals(s, at);
-    return GPROJ_OK;
 }
 
 /* Steps 3 and 4, for multipliers. */
@@ -9704,13 +9436,17 @@ GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     gproji_incidence in;
     size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
-    uint32_t *mark = (uint32_t *)gproji_take(&s->own, most, sizeof *mark);
     int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
     int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *sequence);
     memset(&in, 0, sizeof in);
-    if (mark && at && sequence && gproji_take_local_places(s)) code = gproji_schur_arrange(s, &in, mark, sequence, at);
+    if (at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
+        code = gproji_analyse_graph(s, &in, s->schur.first);
+    if (code == GPROJ_OK && !gproji_schur_take(s)) code = GPROJ_ERROR_MEMORY;
+    if (code == GPROJ_OK) {
+        gproji_schur_place_matrix(s, sequence, at);
+        gproji_schur_place_locals(s, at);
+    }
     gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, mark, most, sizeof *mark);
     gproji_give(&s->own, at, most, sizeof *at);
     gproji_give(&s->own, sequence, (size_t)s->node_count, sizeof *sequence);
     return code;
@@ -9722,6 +9458,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
+        /* Metric groups count from the first iteration in which steps are stiff enough for them. */
         if (s->group[i].metric && s->stiffness <= (s->group[i].brake ? 1 : 0)) continue;
         s->group[i].idle = false;
         woken = true;
@@ -9729,34 +9466,25 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* All steps. whole: the matrix of all variables is needed. */
-GPROJI_INTERNAL gproj_code gproji_compile_steps(gproj_system *s, bool whole) {
-    gproj_code code;
-    gproji_wake_groups(s);
-    if (!gproji_compile_variables(s) || !gproji_schur_decide(s)) return GPROJ_ERROR_MEMORY;
-    s->schur.stale = s->schur.on && whole;
-    if (s->schur.stale) gproji_schur_forget(s);
-    code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s);
-    if (code) return code;
-    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-    if (!gproji_take_compiled_arrays(s) || !gproji_take_wide_arrays(s) || !gproji_take_hinges(s) ||
-        !gproji_cholesky_take_numeric(s->cholesky))
-        return GPROJ_ERROR_MEMORY;
-    return GPROJ_OK;
-}
-
-/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix of all variables, which is not
-   there where steps are found by multipliers. */
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
+   does not exist while steps are found by multipliers. */
 GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
-    gproj_code code;
+    gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return GPROJ_OK;
-    code = gproji_compile_steps(s, whole);
-    if (code == GPROJ_OK) {
-        s->compiled = true;
-        return code;
+    gproji_wake_groups(s);
+    /* Steps 1 and 2; the decision is remembered as stale if it is overruled. */
+    if (gproji_compile_variables(s) && gproji_schur_decide(s)) {
+        s->schur.stale = s->schur.on && whole;
+        if (s->schur.stale) gproji_schur_forget(s);
+        code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s); /* steps 3 and 4 */
     }
+    if (code == GPROJ_OK) {
+        s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
+        s->compiled = gproji_take_compiled_arrays(s) && gproji_cholesky_take_numeric(s->cholesky); /* step 5 */
+    }
+    if (s->compiled) return GPROJ_OK;
     gproji_system_forget(s);
     if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
         return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
@@ -9765,7 +9493,7 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
 
 /* -- steps -- */
 
-/* x = K x for a node of `size` variables; K: a lower triangle, by rows. */
+/* x = K x for a node with `size` variables; K: a lower triangle, by rows. */
 GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
     int32_t i, k;
     for (i = size - 1; i >= 0; --i) {
@@ -9785,7 +9513,7 @@ GPROJI_INLINED void gproji_unwhiten(int32_t size, const double *root, double *x)
     }
 }
 
-/* A lower triangle of `size` rows becomes its inverse. */
+/* Inverts a lower triangle with `size` rows. */
 GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
     int32_t i, j, k;
     for (j = 0; j < size; ++j) {
@@ -9798,40 +9526,19 @@ GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
     }
 }
 
-/* The weight of a row in this step; 0 where it does not act. */
+/* Weight in this step; 0 if the row does not act. */
 GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_row *row) {
     return g->weight > 0 && row->active ? g->weight * row->weight : 0;
 }
 
-/* As many elements as there are lanes, from e on, and before `end`. */
-GPROJI_INTERNAL gproji_alike gproji_gather_alike(const gproj_system *s, int32_t e, int32_t end, double *work) {
-    const gproji_schur *d = &s->schur;
-    gproji_alike a;
-    memset(&a, 0, sizeof a);
-    a.first = e, a.lanes = 1;
-    a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
-    a.count = gproji_schur_columns(s, e), a.closes = d->closes[e], a.left = d->first[e + 1] - d->first[e];
-    for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
-              gproji_schur_columns(s, e) == a.count && d->closes[e] == a.closes;
-         ++e)
-        a.lanes++;
-    a.column = work;
-    a.scale = a.column + a.m * a.count * GPROJI_LANES;
-    a.diagonal = a.scale + a.count * GPROJI_LANES;
-    a.triangle = a.diagonal + a.count * GPROJI_LANES;
-    a.q = a.triangle + a.count * a.count * GPROJI_LANES;
-    a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
-    return a;
-}
-
-/* The columns of the element in a lane that its multipliers are orthogonal to: first, where the rows add up to nothing, how
-   they do (without weight on one of them, that one); then w N. They are zeros on entry. Returns the largest weight of a
-   row of N. */
+/* Writes the columns that multipliers are orthogonal to, for the element in a lane; they are zeros on entry. Zero-sum
+   rows add up to nothing with the coefficients 1 / w, the first column; if one is without weight, that row is left out
+   instead. Then comes w N. Returns the largest weight in N. */
 GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gproji_alike *a, int32_t lane) {
     const gproji_schur *d = &s->schur;
     const gproji_row_name *name = d->row + d->row_start[a->first + lane];
     int32_t m = a->m, i, idle = -1;
-    double *column = a->column + lane, *normal = column + a->closes * m * GPROJI_LANES, heaviest = 0;
+    double *column = a->column + lane, *normal = column + a->zero_sum * m * GPROJI_LANES, heaviest = 0;
     for (i = 0; i < m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
@@ -9846,7 +9553,8 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
                 joins = true;
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
-        if (!a->closes || !joins || name[i].row >= g->closing) continue;
+        /* Zero-sum rows join nodes; any other row at the face is free. */
+        if (!a->zero_sum || !joins || name[i].row >= g->closing) continue;
         if (!(w > 0)) idle = i;
         column[i * GPROJI_LANES] = w > 0 ? 1 / w : 0;
     }
@@ -9854,7 +9562,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
     return heaviest;
 }
 
-/* In lanes: part = sum of v[i] x[i] for i >= k, times `scale`. */
+/* In lanes: part = scale * sum over i >= k: v[i] x[i]. */
 GPROJI_INLINED void gproji_lanes_dot(int32_t m, int32_t k, const double *v, const double *x, const double *scale,
                                      double *part) {
     int32_t i, l;
@@ -9871,8 +9579,8 @@ GPROJI_INLINED void gproji_lanes_take_off(int32_t m, int32_t k, const double *v,
         for (l = 0; l < GPROJI_LANES; ++l) x[i * GPROJI_LANES + l] -= part[l] * v[i * GPROJI_LANES + l];
 }
 
-/* Householder's reflections that make `count` columns of m numbers triangular: the k-th is I - scale[k] v v', where v has
-   taken the place of the column from its k-th number on; what becomes of that number is diagonal[k]. In lanes. */
+/* Triangularises `count` columns with m numbers by Householder's reflections I - scale[k] v v': v replaces the k-th
+   column from the k-th number on, and diagonal[k] is that number after the reflection. In lanes. */
 GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, double *scale, double *diagonal) {
     double part[GPROJI_LANES], one[GPROJI_LANES];
     int32_t k, j, l;
@@ -9894,7 +9602,7 @@ GPROJI_INLINED void gproji_reflect(int32_t m, int32_t count, double *column, dou
     }
 }
 
-/* q: the j-th unit vector, reflected back. In lanes. */
+/* q = Q e_j, the j-th unit vector reflected back. In lanes. */
 GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *column, const double *scale, int32_t j,
                                         double *q) {
     double part[GPROJI_LANES];
@@ -9907,11 +9615,12 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
     }
 }
 
-/* R, by rows and with the inverses of its diagonal (0: none), becomes that of R'R + shift I; the shift is not below
+/* Turns R, by rows and with a reciprocal diagonal (0: none), into the factor of R'R + shift I; the shift is not below
    rounding. */
 GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
     double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
     int32_t i, j, k;
+    /* R'R, from R with a true diagonal. */
     for (k = 0; k < size; ++k)
         if (triangle[k * size + k] != 0) triangle[k * size + k] = 1 / triangle[k * size + k];
     for (i = 0; i < size; ++i) {
@@ -9927,12 +9636,13 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
         for (j = 0; j <= i; ++j) triangle[j * size + i] = i == j ? 1 / square[i * size + i] : square[i * size + j];
 }
 
-/* R of w N = Q R, by rows and with the inverses of its diagonal; 0 where a column depends on those before it. a->share: the
-   sum of the squares of R^-1, infinite where there are such columns. In lanes. */
+/* Takes R in w N = Q R, by rows and with a reciprocal diagonal; 0 if a column depends on those before it. a->share:
+   squared Frobenius norm |R^-1|^2, infinite if there are such columns. In lanes. */
 GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
     const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
     double unit[(int32_t)GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
     int32_t i, j, k, l;
+    /* 1. R; a column is dependent if next to nothing is left on the diagonal. */
     for (j = 0; j < size; ++j) {
         const double *own = diagonal + j * GPROJI_LANES;
         double *corner = triangle + (j * size + j) * GPROJI_LANES;
@@ -9950,8 +9660,9 @@ GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t clo
             corner[l] = own[l] * own[l] > 8 * DBL_EPSILON * all[l] ? inverse : 0;
         }
     }
+    /* 2. Columns of R^-1, by back substitution, and their squares. */
     for (l = 0; l < GPROJI_LANES; ++l) a->share[l] = 0;
-    for (j = 0; j < size; ++j) /* the columns of R^-1 */
+    for (j = 0; j < size; ++j)
         for (i = j; i >= 0; --i) {
             double *x = unit + i * GPROJI_LANES;
             const double *corner = triangle + (i * size + i) * GPROJI_LANES;
@@ -9968,22 +9679,25 @@ GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t clo
             if (triangle[(j * size + j) * GPROJI_LANES + l] == 0) a->share[l] = HUGE_VAL;
 }
 
-/* The rows of C that belong to some q of the element in a lane, GPROJI_BLOCK_MAX numbers a node; `right`: their parts of
-   r. */
-GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t together,
-                                         double *right) {
+/* Projects the rows of the element in a lane to `together` columns q, from its multiplier `first` on: these rows in C,
+   which go to their block in W, and numbers in r. */
+GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t first,
+                                         int32_t together) {
     const gproji_schur *d = &s->schur;
-    int32_t e = a->first + lane, i, j;
-    int32_t numbers = (int32_t)(d->link_start[e + 1] - d->link_start[e]) * GPROJI_BLOCK_MAX;
+    const int32_t e = a->first + lane;
+    const int64_t link = d->link_start[e], link_end = d->link_start[e + 1];
+    const int32_t numbers = (int32_t)(link_end - link) * GPROJI_BLOCK_MAX;
     const gproji_row_name *name = d->row + d->row_start[e];
-    double *c = a->c, scale[GPROJI_SCHUR_TOGETHER];
+    double *c = a->c, *right = d->side + d->first[e] + first, scale[GPROJI_SCHUR_TOGETHER];
+    int32_t i, j, p;
+    int64_t l;
+    /* 1. Each row, read once: C has GPROJI_BLOCK_MAX numbers a node at first, so that local_at is an index. */
     memset(c, 0, (size_t)(numbers * together) * sizeof *c);
     for (j = 0; j < together; ++j) right[j] = 0;
     for (i = 0; i < a->m; ++i) {
         const gproji_group *g = &s->group[name[i].group];
         const gproji_row *row = &g->row[name[i].row];
         double w = gproji_acting_weight(g, row);
-        int64_t l;
         if (w == 0) continue;
         for (j = 0; j < together; ++j) {
             scale[j] = w * a->q[(j * a->m + i) * GPROJI_LANES + lane];
@@ -9994,6 +9708,13 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
             for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local_gradient[l];
         }
     }
+    /* 2. Packed into W. */
+    for (j = first; j < first + together; ++j)
+        for (l = link; l < link_end; ++l, c += GPROJI_BLOCK_MAX) {
+            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            double *to = d->w.value + d->link_value[l] + (int64_t)j * size;
+            for (p = 0; p < size; ++p) to[p] = c[p];
+        }
 }
 
 typedef struct gproji_assembly {
@@ -10001,88 +9722,63 @@ typedef struct gproji_assembly {
     double epsilon2;
 } gproji_assembly;
 
-/* Both for the numbers of a quad, alone or with another row, as constants: nearly all elements have these. */
-GPROJI_INTERNAL void gproji_reflect_alike(gproji_alike *a) {
+/* Computes C, r and R for a batch, and additions to E at the nodes. */
+GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
+    const gproji_schur *d = &s->schur;
+    const int32_t size = a->count - a->zero_sum;
+    int32_t j, k, lane, together;
+    /* 1. Reflections, compiled for a quad, alone or with another row: nearly all elements have these sizes. */
+    memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
+    for (lane = 0; lane < a->lanes; ++lane) a->heaviest[lane] = gproji_schur_columns_of(s, a, lane);
     if (a->m == 5 && a->count == 4)
         gproji_reflect(5, 4, a->column, a->scale, a->diagonal);
     else if (a->m == 6 && a->count == 4)
         gproji_reflect(6, 4, a->column, a->scale, a->diagonal);
     else
         gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
-}
-
-GPROJI_INTERNAL void gproji_reflect_alike_back(const gproji_alike *a, int32_t j, double *q) {
-    if (a->m == 5 && a->count == 4)
-        gproji_reflect_back(5, 4, a->column, a->scale, j, q);
-    else if (a->m == 6 && a->count == 4)
-        gproji_reflect_back(6, 4, a->column, a->scale, j, q);
-    else
-        gproji_reflect_back(a->m, a->count, a->column, a->scale, j, q);
-}
-
-/* R of the elements, and how much they add to E at their nodes. */
-GPROJI_INTERNAL void gproji_schur_triangles(const gproj_system *s, gproji_alike *a, double epsilon2) {
-    const gproji_schur *d = &s->schur;
-    int32_t size = a->count - a->closes, l, k;
+    /* 2. R, and the share in E that keeps normals from turning too fast. */
     if (size == 3)
-        gproji_take_triangle(a, a->m, a->closes, 3);
+        gproji_take_triangle(a, a->m, a->zero_sum, 3);
     else
-        gproji_take_triangle(a, a->m, a->closes, size);
-    for (l = 0; l < a->lanes; ++l) {
-        double *triangle = d->triangle + (int64_t)(a->first + l) * d->triangle_size, heaviest = a->heaviest[l];
-        double share = heaviest > 0 ? gproji_fmin(a->share[l] * heaviest * heaviest, 1 / epsilon2) : 0;
-        for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + l];
+        gproji_take_triangle(a, a->m, a->zero_sum, size);
+    for (lane = 0; lane < a->lanes; ++lane) {
+        double *triangle = d->triangle + (int64_t)(a->first + lane) * d->triangle_size, heaviest = a->heaviest[lane];
+        double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / epsilon2) : 0;
+        for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + lane];
         if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
-        a->share[l] = share * gproji_schur_share;
+        a->share[lane] = share * gproji_schur_share;
     }
-}
-
-/* The rows of C from the j-th multiplier of the element in a lane on, `together` of them, to where W is. */
-GPROJI_INTERNAL void gproji_schur_place(const gproj_system *s, const gproji_alike *a, int32_t lane, int32_t j,
-                                        int32_t together) {
-    const gproji_schur *d = &s->schur;
-    int32_t e = a->first + lane, k, p;
-    int64_t first = d->link_start[e], end = d->link_start[e + 1], l;
-    const double *c = a->c;
-    for (k = j; k < j + together; ++k)
-        for (l = first; l < end; ++l, c += GPROJI_BLOCK_MAX) {
-            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-            double *to = d->value + d->link_value[l] + (int64_t)k * size;
-            for (p = 0; p < size; ++p) to[p] = c[p];
-        }
-}
-
-/* C, r and R of elements that are alike, and what they add to E at their nodes. */
-GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
-    const gproji_schur *d = &s->schur;
-    int32_t j, k, lane, together;
-    memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
-    for (lane = 0; lane < a->lanes; ++lane) a->heaviest[lane] = gproji_schur_columns_of(s, a, lane);
-    gproji_reflect_alike(a);
-    gproji_schur_triangles(s, a, epsilon2);
+    /* 3. Multipliers: columns of Q behind the first `count`, which span N. */
     for (j = 0; j < a->left; j += together) {
         together = gproji_min(GPROJI_SCHUR_TOGETHER, a->left - j);
-        for (k = 0; k < together; ++k) gproji_reflect_alike_back(a, a->count + j + k, a->q + k * a->m * GPROJI_LANES);
+        for (k = 0; k < together; ++k) {
+            double *q = a->q + k * a->m * GPROJI_LANES;
+            if (a->m == 5 && a->count == 4)
+                gproji_reflect_back(5, 4, a->column, a->scale, a->count + j + k, q);
+            else if (a->m == 6 && a->count == 4)
+                gproji_reflect_back(6, 4, a->column, a->scale, a->count + j + k, q);
+            else
+                gproji_reflect_back(a->m, a->count, a->column, a->scale, a->count + j + k, q);
+        }
         for (lane = 0; lane < a->lanes; ++lane) {
             int32_t at = d->first[a->first + lane] + j;
             if (together == 1)
-                gproji_schur_project(s, a, lane, 1, d->side + at);
+                gproji_schur_project(s, a, lane, j, 1);
             else
-                gproji_schur_project(s, a, lane, together, d->side + at);
+                gproji_schur_project(s, a, lane, j, together);
             for (k = 0; k < together; ++k) d->share[at + k] = a->share[lane] / a->left;
-            gproji_schur_place(s, a, lane, j, together);
         }
     }
 }
 
-/* C and r of an element without auxiliary variables: its multipliers are those of its rows. */
+/* Computes C and r for an element without local unknowns: each row has a multiplier. */
 GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     const gproji_schur *d = &s->schur;
     int32_t first = d->first[e], left = d->first[e + 1] - first, i;
     int64_t link = d->link_start[e], l;
     for (l = link; l < d->link_start[e + 1]; ++l) {
         int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
-        memset(d->value + d->link_value[l], 0, (size_t)(left * size) * sizeof *d->value);
+        memset(d->w.value + d->link_value[l], 0, (size_t)(left * size) * sizeof *d->w.value);
     }
     for (i = 0; i < left; ++i) {
         gproji_row_name name = d->row[d->row_start[e] + i];
@@ -10093,30 +9789,45 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
         d->share[first + i] = 0;
         for (l = row->local; l < row[1].local && w > 0; ++l) {
             int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX, v = d->link_node[link + at / GPROJI_BLOCK_MAX];
-            double *value = d->value + d->link_value[link + at / GPROJI_BLOCK_MAX];
+            double *value = d->w.value + d->link_value[link + at / GPROJI_BLOCK_MAX];
             value[i * (s->node_first[v + 1] - s->node_first[v]) + at % GPROJI_BLOCK_MAX] = w * g->local_gradient[l];
         }
     }
 }
 
+/* Computes C, r and R for one chunk of elements, batch by batch. */
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
-    const gproji_schur *d = &assembly->system->schur;
+    const gproj_system *s = assembly->system;
+    const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     while (e < end) {
-        gproji_alike alike;
-        if (gproji_schur_columns(assembly->system, e) == 0) {
-            gproji_schur_plain(assembly->system, e++);
+        gproji_alike a;
+        if (gproji_schur_columns(s, e) == 0) {
+            gproji_schur_plain(s, e++);
             continue;
         }
-        alike = gproji_gather_alike(assembly->system, e, end, d->work + chunk * d->most);
-        gproji_schur_alike(assembly->system, &alike, assembly->epsilon2);
-        e += alike.lanes;
+        /* Gathers consecutive elements with equal sizes, one a lane. */
+        memset(&a, 0, sizeof a);
+        a.first = e, a.lanes = 1;
+        a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
+        a.count = gproji_schur_columns(s, e), a.zero_sum = d->zero_sum[e], a.left = d->first[e + 1] - d->first[e];
+        for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
+                  gproji_schur_columns(s, e) == a.count && d->zero_sum[e] == a.zero_sum;
+             ++e)
+            a.lanes++;
+        a.column = d->work + chunk * d->most;
+        a.scale = a.column + a.m * a.count * GPROJI_LANES;
+        a.diagonal = a.scale + a.count * GPROJI_LANES;
+        a.triangle = a.diagonal + a.count * GPROJI_LANES;
+        a.q = a.triangle + a.count * a.count * GPROJI_LANES;
+        a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
+        gproji_schur_alike(s, &a, assembly->epsilon2);
     }
 }
 
-/* D and - sum w^2 phi g of a node, from its rows. */
+/* Adds a node's own rows to D and b: w^2 g g' and - w^2 phi g. */
 GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t size, double *root, double *b) {
     const gproji_schur *d = &s->schur;
     int64_t k;
@@ -10135,34 +9846,37 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     }
 }
 
-/* K, b, W and U of a node. Without rows of its own D is a multiple of I, and b = 0. */
+/* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
-    double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->value + d->value_start[v];
+    double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->w.value + d->w.value_start[v];
     bool plain = d->own_start[v] == d->own_start[v + 1];
     double share = 1, corner;
     int64_t k;
     int32_t i, j;
-    for (k = d->entry_start[v]; d->turns[v] && k < d->entry_start[v + 1]; ++k) share += d->share[d->entry[k]];
+    for (k = d->w.entry_start[v]; d->turns[v] && k < d->w.entry_start[v + 1]; ++k) share += d->share[d->w.entry[k]];
     d->metric[v] = share;
     corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
     for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
     memset(b, 0, (size_t)size * sizeof *b);
     if (plain) {
-        int64_t numbers = (d->entry_start[v + 1] - d->entry_start[v]) * size;
+        /* K is a multiple of I, too. */
+        int64_t numbers = (d->w.entry_start[v + 1] - d->w.entry_start[v]) * size;
         for (k = 0; k < numbers; ++k) w[k] *= corner;
-        for (j = 0; j < d->wide; ++j)
+        for (j = 0; j < s->wide.acting; ++j)
             for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
         return;
     }
+    /* D = L L', K = L^-1; then b, the rows in W and U are multiplied by it. */
     gproji_schur_own(s, v, size, root, b);
     gproji_small_factor(root, size, size, DBL_MIN);
     gproji_invert_triangle(root, size);
     gproji_whiten(size, root, b);
-    for (k = d->entry_start[v]; k < d->entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
-    for (j = 0; j < d->wide; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
+    for (k = d->w.entry_start[v]; k < d->w.entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
+    for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
 }
 
+/* Computes these at one chunk of nodes; local unknowns rest at 0. */
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproj_system *s = assembly->system;
@@ -10184,7 +9898,7 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->node_count];
 }
 
-/* w'x at a node of any size; apart, so that it takes no registers from nodes of three variables. */
+/* w'x at a node with any size; apart, so that it takes no registers from nodes with three variables. */
 GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, int32_t size) {
     double sum = 0;
     int32_t k;
@@ -10192,7 +9906,7 @@ GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, in
     return sum;
 }
 
-/* side = a + W x at the multipliers of some elements. */
+/* side = a + W x at the multipliers in elements e .. end - 1. */
 GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
                                         double *side) {
     const gproji_schur *d = &s->schur;
@@ -10206,7 +9920,7 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
             double sum = a ? a[first + j] : 0;
             for (; v < last; ++v, ++value) {
                 int32_t at = node_first[*v], size = node_first[*v + 1] - at;
-                const double *w = d->value + *value + (ptrdiff_t)j * size;
+                const double *w = d->w.value + *value + (ptrdiff_t)j * size;
                 sum += size == 3 ? gproji_dot3(w, x + at) : gproji_schur_product(w, x + at, size);
             }
             side[first + j] = sum;
@@ -10214,77 +9928,69 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
     }
 }
 
-/* r + W b and W U of some elements. */
+/* Completes the right-hand sides in one chunk of elements: r + W b, and W U. */
 GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     if (gproji_schur_has_own(s)) gproji_schur_times(s, e, end, d->side, s->step, d->side);
-    for (i = 0; i < d->wide; ++i)
+    for (i = 0; i < s->wide.acting; ++i)
         gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
 
-/* The column of the front that belongs to storage row `at`; column: all of them, or NULL. */
+/* Front's column for the padded row `at`; column: all columns, or NULL. */
 GPROJI_INLINE double *gproji_schur_column(const gproji_panel *panel, double *const *column, int32_t at) {
     return column ? column[at] : gproji_panel_column(panel, at);
 }
 
-/* The column of W W' at a node that belongs to its j-th multiplier; at: the storage rows of all. */
-GPROJI_INLINED void gproji_schur_load_column(const double *w, int32_t size, const int32_t *at, int32_t count, int32_t j,
-                                             double *column) {
-    int32_t i, p;
-    for (i = j; i < count; ++i) {
-        double sum = 0;
-        for (p = 0; p < size; ++p) sum += w[i * size + p] * w[j * size + p];
-        column[at[i]] += sum;
+/* Adds W W' at a node, in columns for the padded rows [from, to). at: padded rows, one a multiplier. */
+GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
+                                           const gproji_panel *panel, double *const *column, int32_t from, int32_t to) {
+    int32_t first = 0, end = count, i, p;
+    while (first < end && at[first] < from) ++first;
+    while (first < end && at[end - 1] >= to) --end;
+    if (column && size == 3 && count == 4 && end - first == 4) {
+        /* Four quads, the most frequent node: no loops, and all is read before anything is stored. */
+        const double ax = w[0], ay = w[1], az = w[2], bx = w[3], by = w[4], bz = w[5];
+        const double cx = w[6], cy = w[7], cz = w[8], dx = w[9], dy = w[10], dz = w[11];
+        const int32_t a = at[0], b = at[1], c = at[2], d = at[3];
+        double *to_a = column[a], *to_b = column[b], *to_c = column[c], *to_d = column[d];
+        to_a[a] += ax * ax + ay * ay + az * az;
+        to_a[b] += ax * bx + ay * by + az * bz;
+        to_a[c] += ax * cx + ay * cy + az * cz;
+        to_a[d] += ax * dx + ay * dy + az * dz;
+        to_b[b] += bx * bx + by * by + bz * bz;
+        to_b[c] += bx * cx + by * cy + bz * cz;
+        to_b[d] += bx * dx + by * dy + bz * dz;
+        to_c[c] += cx * cx + cy * cy + cz * cz;
+        to_c[d] += cx * dx + cy * dy + cz * dz;
+        to_d[d] += dx * dx + dy * dy + dz * dz;
+        return;
+    }
+    for (; first < end; ++first) {
+        double *own = gproji_schur_column(panel, column, at[first]);
+        for (i = first; i < count; ++i) {
+            double sum = 0;
+            for (p = 0; p < size; ++p) sum += w[i * size + p] * w[first * size + p];
+            own[at[i]] += sum;
+        }
     }
 }
 
-/* All four columns at a vertex of four quads, the most frequent node: without loops, and all is read before anything is
-   stored. */
-GPROJI_INLINED void gproji_schur_load_four(const double *w, const int32_t *at, double *const *column) {
-    const double ax = w[0], ay = w[1], az = w[2], bx = w[3], by = w[4], bz = w[5];
-    const double cx = w[6], cy = w[7], cz = w[8], dx = w[9], dy = w[10], dz = w[11];
-    const int32_t a = at[0], b = at[1], c = at[2], d = at[3];
-    double *to_a = column[a], *to_b = column[b], *to_c = column[c], *to_d = column[d];
-    to_a[a] += ax * ax + ay * ay + az * az;
-    to_a[b] += ax * bx + ay * by + az * bz;
-    to_a[c] += ax * cx + ay * cy + az * cz;
-    to_a[d] += ax * dx + ay * dy + az * dz;
-    to_b[b] += bx * bx + by * by + bz * bz;
-    to_b[c] += bx * cx + by * cy + bz * cz;
-    to_b[d] += bx * dx + by * dy + bz * dz;
-    to_c[c] += cx * cx + cy * cy + cz * cz;
-    to_c[d] += cx * dx + cy * dy + cz * dz;
-    to_d[d] += dx * dx + dy * dy + dz * dz;
-}
-
-/* W W' at a node, in the columns that belong to the storage rows [from, to). */
-GPROJI_INLINED void gproji_schur_load_node(const double *w, int32_t size, const int32_t *at, int32_t count,
-                                           const gproji_panel *panel, double *const *column, int32_t from, int32_t to) {
-    int32_t first = 0, end = count;
-    while (first < end && at[first] < from) ++first;
-    while (first < end && at[end - 1] >= to) --end;
-    if (column && size == 3 && count == 4 && end - first == 4)
-        gproji_schur_load_four(w, at, column);
-    else
-        for (; first < end; ++first)
-            gproji_schur_load_column(w, size, at, count, first, gproji_schur_column(panel, column, at[first]));
-}
-
-/* I + W W' of one front: see gproji_load. */
+/* Loads I + W W' into one front: see gproji_load. */
 GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gproji_panel *panel, int32_t from,
                                              int32_t to) {
     const gproj_system *s = (const gproj_system *)user;
     const gproji_schur *d = &s->schur;
-    const gproji_crossing *node = d->crossing + d->front_start[front], *end = d->crossing + d->front_start[front + 1];
-    const int32_t *at = d->entry_at + d->front_entry[front];
+    const gproji_coupling *node = d->w.coupling + d->w.front_start[front];
+    const gproji_coupling *end = d->w.coupling + d->w.front_start[front + 1];
+    const int32_t *at = d->w.entry_at + d->w.front_entry[front];
     double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
     int32_t j;
     if (column) gproji_panel_columns(panel, to, column);
     for (; node < end; at += node++->count) {
-        const double *w = d->value + node->value, *later = d->value + node[GPROJI_SCHUR_AHEAD].value;
+        const double *w = d->w.value + node->value, *later = d->w.value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
         GPROJI_PREFETCH(later + 8);
         if (node->size == 3)
@@ -10295,49 +10001,45 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     for (j = gproji_max(from, panel->shift); j < panel->shape.end; ++j) gproji_schur_column(panel, column, j)[j] += 1;
 }
 
-/* w g_i, without auxiliary variables, where U will be. */
-GPROJI_INTERNAL void gproji_schur_wide_column(gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                              int32_t index) {
-    gproji_row_spread(g, row, sqrt(gproji_weight2(g, row)), (size_t)s->schur.kept, gproji_wide_side(s, index));
-}
-
-/* From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
+/* Borders (1) with the dense rows. From z = L^-1 (r + W b) and Y = L^-1 W U, one after the other: m, and z - Y m. */
 GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     const gproji_schur *d = &s->schur;
-    size_t n = (size_t)d->kept, multipliers = (size_t)d->first[d->elements], j;
+    size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
-    gproji_for_wide_rows(s, gproji_wide_value);
-    for (i = 0; i < d->wide; ++i) {
+    /* I + U'U - Y'Y, and w phi + U'b - Y'z: y is eliminated. */
+    gproji_wide_values(s, false);
+    for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
-            s->wide_matrix[(int64_t)i * s->wide_count + k] =
+            s->wide.matrix[(int64_t)i * s->wide_count + k] =
                 (k == i) + gproji_dot(u, gproji_wide_side(s, k), n) -
                 gproji_dot(y, z + (size_t)(k + 1) * multipliers, multipliers);
-        if (gproji_schur_has_own(s)) s->wide_vector[i] += gproji_dot(u, s->step, n);
-        s->wide_vector[i] -= gproji_dot(y, z, multipliers);
+        if (gproji_schur_has_own(s)) s->wide.vector[i] += gproji_dot(u, s->step, n);
+        s->wide.vector[i] -= gproji_dot(y, z, multipliers);
     }
-    gproji_small_factor(s->wide_matrix, d->wide, s->wide_count, 1);
-    gproji_small_solve(s->wide_matrix, d->wide, s->wide_count, s->wide_vector);
-    for (k = 0; k < d->wide; ++k) {
+    gproji_small_factor(s->wide.matrix, s->wide.acting, s->wide_count, 1);
+    gproji_small_solve(s->wide.matrix, s->wide.acting, s->wide_count, s->wide.vector);
+    for (k = 0; k < s->wide.acting; ++k) {
         const double *y = z + (size_t)(k + 1) * multipliers;
-        for (j = 0; j < multipliers; ++j) z[j] -= s->wide_vector[k] * y[j];
+        for (j = 0; j < multipliers; ++j) z[j] -= s->wide.vector[k] * y[j];
     }
 }
 
-/* dv of a node: K'(b - W'y - U m). */
+/* Moves a node: dv = K'(b - W'y - U m). */
 GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t size) {
     const gproji_schur *d = &s->schur;
-    const double *w = d->value + d->value_start[v];
+    const double *w = d->w.value + d->w.value_start[v];
     double *u = s->step + s->node_first[v];
     int64_t i;
     int32_t k, p;
-    for (i = d->entry_start[v]; i < d->entry_start[v + 1]; ++i, w += size)
-        for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->entry[i]];
-    for (k = 0; k < d->wide; ++k)
-        for (p = 0; p < size; ++p) u[p] -= s->wide_vector[k] * gproji_wide_side(s, k)[s->node_first[v] + p];
+    for (i = d->w.entry_start[v]; i < d->w.entry_start[v + 1]; ++i, w += size)
+        for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->w.entry[i]];
+    for (k = 0; k < s->wide.acting; ++k)
+        for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->node_first[v] + p];
     gproji_unwhiten(size, d->root + d->root_start[v], u);
 }
 
+/* Moves one chunk of nodes. */
 GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
@@ -10352,33 +10054,21 @@ GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     }
 }
 
-/* x = - (R'R)^-1 x */
-GPROJI_INLINED void gproji_solve_triangles(int32_t size, const double *triangle, double *x) {
-    int32_t i, k;
-    for (i = 0; i < size; ++i) {
-        x[i] = -x[i];
-        for (k = 0; k < i; ++k) x[i] -= triangle[k * size + i] * x[k];
-        x[i] *= triangle[i * size + i];
-    }
-    for (i = size - 1; i >= 0; --i) {
-        for (k = i + 1; k < size; ++k) x[i] -= triangle[i * size + k] * x[k];
-        x[i] *= triangle[i * size + i];
-    }
-}
-
-/* The auxiliary variables of some elements: R'R dn = - N'w^2 (phi + G dv). */
+/* Finds the local unknowns in one chunk of elements: R'R dn = - N'w^2 (phi + G dv). */
 GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     for (; e < end; ++e) {
-        int32_t node = d->auxiliary[e], size, i;
-        double dn[GPROJI_BLOCK_MAX];
+        const double *triangle = d->triangle + (int64_t)e * d->triangle_size;
+        int32_t node = d->auxiliary[e], size, i, j;
+        double x[GPROJI_BLOCK_MAX];
         int64_t k, l;
         if (node < 0) continue;
         size = s->node_first[node + 1] - s->node_first[node];
-        memset(dn, 0, sizeof dn);
+        /* 1. x = N'w^2 (phi + G dv). */
+        memset(x, 0, sizeof x);
         for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
             const gproji_group *g = &s->group[d->row[k].group];
             const gproji_row *row = &g->row[d->row[k].row];
@@ -10388,40 +10078,50 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
                 if (g->local_at[l] >= GPROJI_BLOCK_MAX) left += g->local_gradient[l] * s->step[g->local_variable[l]];
             left *= w * w;
             for (l = row->local; l < row[1].local; ++l)
-                if (g->local_at[l] < GPROJI_BLOCK_MAX) dn[g->local_at[l]] += left * g->local_gradient[l];
+                if (g->local_at[l] < GPROJI_BLOCK_MAX) x[g->local_at[l]] += left * g->local_gradient[l];
         }
-        gproji_solve_triangles(size, d->triangle + (int64_t)e * d->triangle_size, dn);
-        for (i = 0; i < size; ++i) s->step[s->node_first[node] + i] = dn[i];
+        /* 2. x = - (R'R)^-1 x: forwards with R', then backwards with R. */
+        for (i = 0; i < size; ++i) {
+            x[i] = -x[i];
+            for (j = 0; j < i; ++j) x[i] -= triangle[j * size + i] * x[j];
+            x[i] *= triangle[i * size + i];
+        }
+        for (i = size - 1; i >= 0; --i) {
+            for (j = i + 1; j < size; ++j) x[i] -= triangle[i * size + j] * x[j];
+            x[i] *= triangle[i * size + i];
+        }
+        for (i = 0; i < size; ++i) s->step[s->node_first[node] + i] = x[i];
     }
 }
 
-/* Matrix and right-hand sides of a step. */
+/* Assembles matrix and right-hand sides for a step. */
 GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
     gproji_assembly assembly;
     assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
-    d->wide = gproji_for_wide_rows(s, gproji_schur_wide_column);
+    /* w g, without local unknowns; gproji_schur_node turns them into U. */
+    s->wide.acting = gproji_wide_columns(s, (size_t)s->wide.kept);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
     gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
-    if (d->wide > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
+    if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
 /* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
 GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
-    int32_t sides = s->schur.wide < s->cholesky->batch ? s->schur.wide + 1 : 0;
+    int32_t sides = s->wide.acting < s->cholesky->batch ? s->wide.acting + 1 : 0;
     return gproji_cholesky_factor_with(s->cholesky, gproji_schur_load_front, s, sides, s->schur.side) == GPROJ_FACTORED;
 }
 
-/* The step. */
+/* Solves for the multipliers, then for the step. */
 GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproj_cholesky *c = s->cholesky;
-    if (d->wide < c->batch) {
-        if (d->wide > 0) gproji_schur_border(s, c->solution);
+    if (s->wide.acting < c->batch) {
+        if (s->wide.acting > 0) gproji_schur_border(s, c->solution);
         c->sides = 1;
         gproji_cholesky_finish(c, d->side);
     } else {
-        gproji_cholesky_forward(c, d->wide + 1, d->side, d->side);
+        gproji_cholesky_forward(c, s->wide.acting + 1, d->side, d->side);
         gproji_schur_border(s, d->side);
         gproji_cholesky_backward(c, d->side, d->side);
     }
@@ -23913,7 +23613,7 @@ GPROJI_INTERNAL void gproji_solve_responses(gproj_drag *drag, int32_t first, int
     }
     gproji_cholesky_forward(c, drag->columns - first, column, column);
     for (j = first; j < drag->columns; ++j, column += n) {
-        memset(s->wide_vector, 0, (size_t)wide * sizeof *s->wide_vector);
+        memset(s->wide.vector, 0, (size_t)wide * sizeof *s->wide.vector);
         gproji_wide_correct(s, wide, column);
         gproji_cholesky_backward(c, column, column);
     }
