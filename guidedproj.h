@@ -19814,7 +19814,8 @@ typedef struct gproji_part {
 
 /* What the section statics keeps for a form. */
 typedef struct gproji_statics {
-    gproj_loads loads; /* its arrays are the two below */
+    gproji_pool pool;  /* has all arrays */
+    gproj_loads loads; /* with the next two arrays */
     double *edge_density, *point_load;
     uint8_t *axes;      /* of each vertex: the axes along which it is in equilibrium; 0: pinned */
     int32_t *force;     /* of each edge, the variable of its force; -1: none */
@@ -19899,23 +19900,6 @@ GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
     gproji_give(&form->own, part, 1, sizeof *part);
 }
 
-GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
-    gproji_give(&form->own, s->edge_density, edges, sizeof *s->edge_density);
-    gproji_give(&form->own, s->point_load, 3 * vertices, sizeof *s->point_load);
-    gproji_give(&form->own, s->load_vertex, s->load_start ? (size_t)s->load_start[vertices] : 0,
-                sizeof *s->load_vertex);
-    gproji_give(&form->own, s->face_load, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
-    gproji_give(&form->own, s->axes, vertices, sizeof *s->axes);
-    gproji_give(&form->own, s->force, edges, sizeof *s->force);
-    gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
-    gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
-    gproji_give(&form->own, s->work, 3 * vertices, sizeof *s->work);
-    gproji_give(&form->own, s->queue, 2 * vertices, sizeof *s->queue);
-    gproji_give(&form->own, s, 1, sizeof *s);
-}
-
 GPROJI_INTERNAL void gproji_corners_give(gproj_form *form) {
     gproji_corners *guard = form->corners;
     size_t corners = 2 * (size_t)form->mesh->halfedge_count;
@@ -19930,7 +19914,10 @@ GPROJI_INTERNAL void gproji_corners_give(gproj_form *form) {
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     if (!form) return;
     if (form->corners) gproji_corners_give(form);
-    if (form->statics) gproji_statics_give(form);
+    if (form->statics) {
+        gproji_pool_give_all(&form->statics->pool);
+        gproji_give(&form->own, form->statics, 1, sizeof *form->statics);
+    }
     if (form->guard)
         gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
     while (form->part) {
@@ -21786,23 +21773,25 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
    >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses platform, memory,
    error, vector, least-squares, system, loop, mesh, form, catalogue.
 
-   Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method for form finding
-   and computation of general networks (1974).
+   Edge ij has a force density w_ij, its force divided by its length, positive if it pushes. Vertex i is in equilibrium
+   along an axis when there
+       sum over edges ij of w_ij (v_i - v_j) + load_i = 0,                                                     (1)
+   which is quadratic. Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method
+   for form finding and computation of general networks (1974).
 
-   Edge e has the variable force[e] = w_e load_scale / scale, and the rows of its ends are in internal lengths and loads
-   times load_scale, chosen at the start so that these variables have mean square 1. The weight on a vertex depends on
-   the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], as linear terms at the end of its z row whose
-   coefficients the refresh fills in. */
+   Edge e has the variable force[e] = w_e load_scale / scale; rows are in internal lengths, and loads times load_scale,
+   chosen at the start so that these variables have mean square 1. Weights depend on the shape. That on vertex i is
+   linearised in the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], by terms at the end of the z row. */
 
 enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* First forces. A density of `thrust` times the mean load, for each edge from the middle to the supports, is that of a
-   shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A solve
-   for the nearest mesh finds how large they should be, and begins with 1.) Forces that balance the shape best are drawn to
-   three quarters of it, and more with signs, which keeps them off zero. A shape whose best forces, drawn by `faint`, leave
-   more than `lost` of its loads carries nothing: it starts from uniform forces, which are kept at first. */
+/* First forces. A density of `thrust` times the mean load, for each edge between the middle and the supports, is that of
+   a shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A
+   solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that balance a shape best are
+   damped towards three quarters of this, and more with signs, which keeps them off zero. A shape carries nothing if its
+   best forces, damped by `faint`, leave more than `lost` of its loads: it starts from uniform forces, kept at first. */
 static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
                     gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
@@ -21813,6 +21802,8 @@ static const double gproji_least_force = 1e-4;
 typedef struct gproji_load_units {
     double force, per_length, per_area;
 } gproji_load_units;
+
+static const gproji_load_units gproji_caller_loads = {1, 1, 1};
 
 GPROJI_INTERNAL gproji_load_units gproji_internal_loads(const gproj_form *form) {
     gproji_load_units units;
@@ -21830,7 +21821,7 @@ GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
 GPROJI_INLINE bool gproji_areas_weigh(const gproj_loads *loads) { return loads->area_load != 0 || loads->snow != 0; }
 
 /* The weight on a face is h'a, a its vectorial area and h a direction that depends on a only: area_load a / |a|, and
-   snow (0, 0, 1) with the sign of a. Returns it. */
+   snow (0, 0, 1) with the sign that a_z has. Returns it. */
 GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
                                         double h[3]) {
     static const double up[3] = {0, 0, 1};
@@ -21869,10 +21860,7 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
 
 /* -- the rows of equilibrium -- */
 
-/* Has the vertex an equation along z whose weight can change? */
-GPROJI_INLINE bool gproji_has_weight(const gproji_statics *s, int32_t vertex) { return (s->axes[vertex] & 4) != 0; }
-
-/* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: how far its rows go. */
+/* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: the end of its rows. */
 GPROJI_INLINE int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
     int32_t row = s->first_row[vertex], c;
     for (c = 0; c < axis; ++c) row += s->axes[vertex] >> c & 1;
@@ -21886,172 +21874,124 @@ typedef struct gproji_weight_row {
     gproj_term *term;
 } gproji_weight_row;
 
-GPROJI_INTERNAL gproji_weight_row gproji_weight_row_of(const gproj_form *form, int32_t vertex) {
-    const gproji_statics *statics = form->statics;
-    int64_t first = statics->load_start[vertex];
-    int32_t count, row = gproji_axis_row(statics, vertex, 2);
-    gproji_weight_row weight;
-    weight.constant = &form->system->group[statics->group].row[row].constant;
-    weight.vertex = statics->load_vertex + first;
-    weight.term = gproji_row_terms(form->system, statics->group, row, &count);
-    weight.term += count - 3 * (statics->load_start[vertex + 1] - first);
-    return weight;
-}
-
-/* The coefficients of vertex `other`: += s d. */
-GPROJI_INLINE void gproji_add_weight_terms(const gproji_weight_row *weight, int32_t other, double s,
+/* Adds s d to the coefficients of vertex `other`; `term` has three for each entry of the list `vertex`. */
+GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *term, int32_t other, double s,
                                            const double d[3]) {
-    gproj_term *term = weight->term;
-    const int32_t *vertex;
     int32_t k;
-    for (vertex = weight->vertex; *vertex != other; ++vertex) term += 3;
+    for (; *vertex != other; ++vertex) term += 3;
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
-/* The weight of an edge, w'(a - b) / 2 on each end with w along the edge: linear, without a constant. */
-GPROJI_INLINE void gproji_linearise_edge_load(const gproji_weight_row *weight, const double *x, double half,
-                                              int32_t vertex, int32_t other) {
-    static const double none[3] = {0, 0, 0};
-    double d[3];
-    gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
-    gproji_normalise3(d, none);
-    gproji_add_weight_terms(weight, vertex, -half, d);
-    gproji_add_weight_terms(weight, other, half, d);
-}
-
-/* The weight on a face is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j, so linearised it is its
-   gradient times x minus its value. A corner's part of a face: load[0..3) is -h / 2, load[3] the value. */
-GPROJI_INTERNAL void gproji_find_face_loads(const gproj_form *form, const double *x, double per_area) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t f, k;
-    for (f = 0; f < mesh->face_count; ++f) {
-        double h[3], scale = per_area / mesh->face_degree[f], *load = form->statics->face_load + 4 * (size_t)f;
-        load[3] = scale * gproji_face_load(mesh, &form->statics->loads, x, f, h);
-        for (k = 0; k < 3; ++k) load[k] = -0.5 * scale * h[k];
-    }
-}
-
-/* The face's part of the weight on the vertex where a halfedge begins. */
-GPROJI_INLINE void gproji_linearise_face_load(const gproji_weight_row *weight, const gproj_mesh *mesh, const double *x,
-                                              const double *load, int32_t halfedge) {
-    int32_t h = halfedge;
-    *weight->constant += load[3];
-    do {
-        double across[3], gradient[3];
-        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
-        gproji_cross3(across, load, gradient);
-        gproji_add_weight_terms(weight, mesh->origin[h], 1, gradient);
-        h = mesh->next[h];
-    } while (h != halfedge);
-}
-
-/* The weight on one vertex. */
+/* Linearises the weight on a vertex: adds to the constant of its z row, fills in the row's last terms. */
 GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                              int32_t vertex) {
+    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
-    const gproji_statics *statics = form->statics;
-    gproji_weight_row weight = gproji_weight_row_of(form, vertex);
-    int64_t terms = 3 * (statics->load_start[vertex + 1] - statics->load_start[vertex]), t;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    for (t = 0; t < terms; ++t) weight.term[t].a = 0;
+    const gproji_statics *s = form->statics;
+    const int32_t *list = s->load_vertex + s->load_start[vertex];
+    int32_t row = gproji_axis_row(s, vertex, 2), start = mesh->vertex_halfedge[vertex], h = start, around, count, t;
+    int32_t terms = 3 * (int32_t)(s->load_start[vertex + 1] - s->load_start[vertex]);
+    double *constant = &form->system->group[s->group].row[row].constant;
+    gproj_term *term = gproji_row_terms(form->system, s->group, row, &count);
+    term += count - terms;
+    for (t = 0; t < terms; ++t) term[t].a = 0;
     if (terms == 0) return;
     do {
-        double half = 0.5 * per_length * gproji_density(&statics->loads, h / 2);
-        if (half != 0) gproji_linearise_edge_load(&weight, x, half, vertex, mesh->origin[mesh->twin[h]]);
-        if (statics->face_load && mesh->face[h] >= 0)
-            gproji_linearise_face_load(&weight, mesh, x, statics->face_load + 4 * (size_t)mesh->face[h], h);
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
-}
-
-/* The loads at the present x. */
-GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
-    gproj_form *form = (gproj_form *)user;
-    gproji_statics *statics = form->statics;
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system), *point = statics->loads.point_load;
-    gproji_load_units units = gproji_internal_loads(form);
-    int32_t v, c, row = 0;
-    if (statics->face_load) gproji_find_face_loads(form, x, units.per_area);
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        for (c = 0; c < 3; ++c)
-            if (statics->axes[v] >> c & 1)
-                gproj_system_set_row(system, group, row++, NULL,
-                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
-        if (gproji_has_weight(statics, v)) gproji_linearise_weight(form, x, units.per_length, v);
-    }
-}
-
-/* The edges of a vertex that have a force: spoke[2 k] is the force's variable, spoke[2 k + 1] the vertex at the other end.
-   Returns how many they are. */
-GPROJI_INTERNAL int32_t gproji_find_spokes(const gproj_form *form, int32_t vertex, int32_t *spoke) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
-    do {
-        int32_t force = form->statics->force[h / 2];
-        if (force >= 0) {
-            spoke[2 * count] = force;
-            spoke[2 * count++ + 1] = mesh->origin[mesh->twin[h]];
+        int32_t other = mesh->origin[mesh->twin[h]];
+        double half = 0.5 * per_length * gproji_density(&s->loads, h / 2), d[3], gradient[3];
+        /* An edge puts w'(a - b) / 2 on each end, w along it: linear, without a constant. */
+        if (half != 0) {
+            gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
+            gproji_normalise3(d, none);
+            gproji_add_weight_terms(list, term, vertex, -half, d);
+            gproji_add_weight_terms(list, term, other, half, d);
+        }
+        /* A face's weight is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j: linearised it is
+           this gradient times x, minus its value. */
+        if (s->face_load && mesh->face[h] >= 0) {
+            const double *load = s->face_load + 4 * (size_t)mesh->face[h];
+            *constant += load[3];
+            around = h;
+            do {
+                gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[around]],
+                            x + 3 * (size_t)mesh->origin[mesh->prev[around]], d);
+                gproji_cross3(d, load, gradient);
+                gproji_add_weight_terms(list, term, mesh->origin[around], 1, gradient);
+                around = mesh->next[around];
+            } while (around != h);
         }
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    return count;
 }
 
-/* The terms of a row y_e (x_i - x_j) summed over spokes, by places: y_e, x_i and x_j of the first one, then y_e and x_j of
-   the others. */
-GPROJI_INTERNAL void gproji_set_spoke_terms(int32_t spokes, gproj_term *term) {
-    int32_t k;
+/* Renews the loads in the rows (1) at the present x. */
+GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
+    gproj_form *form = (gproj_form *)user;
+    gproji_statics *s = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(system), *point = s->loads.point_load;
+    gproji_load_units units = gproji_internal_loads(form);
+    int32_t f, v, c, row = 0;
+    /* Each corner of a face has the same share: load[0..3) is -h / 2, load[3] the value. */
+    for (f = 0; s->face_load && f < mesh->face_count; ++f) {
+        double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
+        load[3] = scale * gproji_face_load(mesh, &s->loads, x, f, h);
+        for (c = 0; c < 3; ++c) load[c] = -0.5 * scale * h[c];
+    }
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        for (c = 0; c < 3; ++c)
+            if (s->axes[v] >> c & 1)
+                gproj_system_set_row(system, group, row++, NULL,
+                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
+        if (s->axes[v] & 4) gproji_linearise_weight(form, x, units.per_length, v);
+    }
+}
+
+/* Adds the rows (1) of one vertex. `spoke` has 2 numbers for each of its edges, `term` all terms; both are work. */
+GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *s = form->statics;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, spokes = 0, count, c, k;
+    int64_t l;
+    /* 1. Spokes, the edges that have a force: its variable, and the vertex at the other end. */
+    do {
+        if (s->force[h / 2] >= 0) {
+            spoke[2 * spokes] = s->force[h / 2];
+            spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
+        }
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
+    /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for the
+       first spoke, y_e and x_j for others: so rows with equally many spokes share them. */
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
         gproji_set_term(&term[2 * k + 1], force, 2 * k + 2, -1);
     }
-}
-
-/* A vertex's row for coordinate c, with these terms. */
-GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
-                                          const int32_t *spoke, const gproj_term *term) {
-    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k, *local;
-    local = gproji_add_placed_rows(form->system, form->statics->group, -1, 1, 2 * spokes, term, locals, 0, vertex);
-    if (!local || spokes == 0) return;
-    for (k = 0; k < spokes; ++k) {
-        local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
-        local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
+    for (c = 0; c < 3; ++c) {
+        int32_t *local;
+        if (!(s->axes[vertex] >> c & 1)) continue;
+        if (c == 2 && s->load_start[vertex] < s->load_start[vertex + 1]) break;
+        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term,
+                                       spokes > 0 ? 2 * spokes + 1 : 0, 0, vertex);
+        for (k = 0; k < spokes && local; ++k) {
+            local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
+            local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
+        }
+        if (local && spokes > 0) local[1] = 3 * vertex + c;
     }
-    local[1] = 3 * vertex + c;
-}
-
-/* The row for the third one with room for the weight's terms, which may name more variables. */
-GPROJI_INTERNAL void gproji_add_weight_row(gproj_form *form, int32_t vertex, int32_t spokes, const int32_t *spoke,
-                                           gproj_term *term) {
-    const gproji_statics *statics = form->statics;
-    int32_t count = 0, k;
-    int64_t l;
-    for (k = 0; k < spokes; ++k) {
+    if (c == 3) return;
+    /* 3. A z row with a weight has the weight's terms at its end, for gproji_linearise_weight to fill in. */
+    for (k = 0, count = 0; k < spokes; ++k) {
         gproji_set_term(&term[count++], spoke[2 * k], 3 * vertex + 2, 1);
         gproji_set_term(&term[count++], spoke[2 * k], 3 * spoke[2 * k + 1] + 2, -1);
     }
-    for (l = statics->load_start[vertex]; l < statics->load_start[vertex + 1]; ++l)
-        for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * statics->load_vertex[l] + k, -1, 0);
-    gproj_system_add_row(form->system, statics->group, count, term, 0, vertex);
+    for (l = s->load_start[vertex]; l < s->load_start[vertex + 1]; ++l)
+        for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * s->load_vertex[l] + k, -1, 0);
+    gproj_system_add_row(form->system, s->group, count, term, 0, vertex);
 }
 
-/* The rows of one vertex. spoke, term: work. */
-GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
-    const gproji_statics *statics = form->statics;
-    int32_t spokes = gproji_find_spokes(form, vertex, spoke), c;
-    gproji_set_spoke_terms(spokes, term); /* the weight's row, the last one, has others */
-    for (c = 0; c < 3; ++c) {
-        if (!(statics->axes[vertex] >> c & 1)) continue;
-        if (c == 2 && statics->load_start[vertex] < statics->load_start[vertex + 1])
-            gproji_add_weight_row(form, vertex, spokes, spoke, term);
-        else
-            gproji_add_force_row(form, vertex, c, spokes, spoke, term);
-    }
-}
-
-/* Notes `other` among the vertices that the weight on `vertex` depends on, once. */
+/* Notes `other` once among the vertices that the weight on `vertex` depends on. */
 GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex, int32_t other, int32_t *mark,
                                         int64_t *count) {
     if (mark[other] == vertex) return;
@@ -22060,7 +22000,7 @@ GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex,
     ++*count;
 }
 
-/* The vertices that the weight on each vertex depends on; without load_vertex only counts. `mark`: work, one number a
+/* Lists the vertices that each vertex's weight depends on; without load_vertex only counts. `mark`: work, one number a
    vertex. */
 GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) {
     const gproj_mesh *mesh = form->mesh;
@@ -22073,7 +22013,7 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start, around;
         statics->load_start[v] = count;
-        if (!gproji_has_weight(statics, v) || start < 0 || !(areas || lengths)) continue;
+        if (!(statics->axes[v] & 4) || start < 0 || !(areas || lengths)) continue;
         gproji_note_weight(statics, v, v, mark, &count);
         do {
             gproji_note_weight(statics, v, mesh->origin[mesh->twin[h]], mark, &count);
@@ -22087,18 +22027,28 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 
 /* -- making the statics of a form -- */
 
-GPROJI_INTERNAL double *gproji_copy_numbers(gproj_form *form, const double *numbers, size_t count) {
-    double *copy = (double *)gproji_take(&form->own, count, sizeof *copy);
-    if (copy && count) memcpy(copy, numbers, count * sizeof *copy);
+GPROJI_INTERNAL double *gproji_copy_numbers(gproji_pool *pool, const double *numbers, int64_t count) {
+    double *copy = (double *)gproji_pool_take(pool, count, sizeof *copy);
+    if (copy && count) memcpy(copy, numbers, (size_t)count * sizeof *copy);
     return copy;
 }
 
-/* Refuses loads that are no numbers. */
-GPROJI_INTERNAL bool gproji_loads_are_valid(gproj_form *form, const gproj_loads *loads) {
+/* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
+GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
+                                                 const gproj_supports *supports) {
     int32_t e, v;
-    bool finite = loads && gproji_is_finite(loads->density) && gproji_is_finite(loads->area_load) &&
-                  gproji_is_finite(loads->snow);
-    if (!finite) {
+    if (form->statics) {
+        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "the form has its equilibrium already: set its schedule, or make a new form");
+        return false;
+    }
+    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
+        return false;
+    }
+    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex)) return false;
+    if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
+        !gproji_is_finite(loads->snow)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "equilibrium: there are no loads, or density, area load or snow is not a finite number");
         return false;
@@ -22118,116 +22068,87 @@ GPROJI_INTERNAL bool gproji_loads_are_valid(gproj_form *form, const gproj_loads 
     return true;
 }
 
-/* Takes the arrays; what is missing is seen by the caller. */
-GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *loads) {
-    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
+/* Makes form->statics; false without memory. */
+GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports) {
+    const gproj_mesh *mesh = form->mesh;
+    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count;
     gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->own, 1, sizeof *s);
+    int32_t v, e, k, first, carrying = 0;
     form->statics = s;
     if (!s) return false;
+    /* 1. Arrays; loads are copied. */
+    gproji_pool_start(&s->pool, &form->own);
     s->group = s->guidance = s->brake = -1;
     s->load_scale = 1;
     s->loads = *loads;
-    if (loads->edge_density) s->edge_density = gproji_copy_numbers(form, loads->edge_density, edges);
-    if (loads->point_load) s->point_load = gproji_copy_numbers(form, loads->point_load, 3 * vertices);
+    if (loads->edge_density) s->edge_density = gproji_copy_numbers(&s->pool, loads->edge_density, edges);
+    if (loads->point_load) s->point_load = gproji_copy_numbers(&s->pool, loads->point_load, 3 * vertices);
     s->loads.edge_density = s->edge_density;
     s->loads.point_load = s->point_load;
-    s->axes = (uint8_t *)gproji_take(&form->own, vertices, sizeof *s->axes);
-    s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
-    s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
-    s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
-    s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
-    s->queue = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *s->queue);
+    s->axes = (uint8_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->axes);
+    s->force = (int32_t *)gproji_pool_take(&s->pool, edges, sizeof *s->force);
+    s->first_row = (int32_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->first_row);
+    s->load_start = (int64_t *)gproji_pool_take(&s->pool, vertices + 1, sizeof *s->load_start);
+    s->work = (double *)gproji_pool_take(&s->pool, 3 * vertices, sizeof *s->work);
+    s->queue = (int32_t *)gproji_pool_take(&s->pool, 2 * vertices, sizeof *s->queue);
     if (gproji_areas_weigh(loads))
-        s->face_load = (double *)gproji_take(&form->own, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
-    return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start && s->work && s->queue && (s->face_load || !gproji_areas_weigh(loads));
-}
-
-/* Which vertices are in equilibrium along which axes, which edges have a force. */
-GPROJI_INTERNAL void gproji_set_supports(gproj_form *form, const gproj_supports *supports) {
-    const gproj_mesh *mesh = form->mesh;
-    gproji_statics *s = form->statics;
-    int32_t v, e, k, first, carrying = 0;
+        s->face_load = (double *)gproji_pool_take(&s->pool, 4 * (int64_t)mesh->face_count, sizeof *s->face_load);
+    if ((loads->edge_density && !s->edge_density) || (loads->point_load && !s->point_load) || !s->axes || !s->force ||
+        !s->first_row || !s->load_start || !s->work || !s->queue || (gproji_areas_weigh(loads) && !s->face_load))
+        return false;
+    /* 2. Axes along which each vertex is in equilibrium; none for vertices that no face has. */
     for (v = 0; v < mesh->vertex_count; ++v) s->axes[v] = mesh->vertex_halfedge[v] < 0 ? 0 : GPROJI_AXES;
     for (k = 0; k < supports->count; ++k) {
         v = supports->vertex[k];
-        if (mesh->vertex_halfedge[v] >= 0) /* else no face has it */
-            s->axes[v] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
+        if (mesh->vertex_halfedge[v] >= 0) s->axes[v] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
     }
     for (v = 0, k = 0; v < mesh->vertex_count; ++v) {
         s->first_row[v] = k;
         k = gproji_axis_row(s, v, 3);
     }
-    for (e = 0; e < mesh->edge_count; ++e) {
+    /* 3. Variables of the forces: an edge between pinned vertices is in no row, and has none. */
+    for (e = 0; e < mesh->edge_count; ++e)
         s->force[e] = s->axes[mesh->origin[2 * e]] || s->axes[mesh->origin[2 * e + 1]] ? carrying++ : -1;
-    }
     first = gproj_system_add_variables(form->system, carrying, 1, NULL);
     for (e = 0; e < mesh->edge_count; ++e)
         if (s->force[e] >= 0) s->force[e] += first;
-}
-
-/* The lists of weights; `mark`: work, one number a vertex. */
-GPROJI_INTERNAL bool gproji_take_weights(gproj_form *form, int32_t *mark) {
-    gproji_statics *s = form->statics;
-    gproji_list_weights(form, mark);
-    s->load_vertex =
-        (int32_t *)gproji_take(&form->own, (size_t)s->load_start[form->mesh->vertex_count], sizeof *s->load_vertex);
-    if (!s->load_vertex) return false;
-    gproji_list_weights(form, mark);
-    return true;
-}
-
-GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    int64_t most = 0, v;
-    size_t count, spokes = 2 * (size_t)form->ring_size;
-    gproj_term *term;
-    int32_t *spoke;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
-        if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
-    gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
-                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v],
-                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)(v + s->load_start[v]));
-    count = spokes + 3 * (size_t)most;
-    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
-    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
-    if (!spoke || !term) gproji_fail_memory(&form->error);
-    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
-        if (s->axes[v]) gproji_add_vertex_equilibrium(form, (int32_t)v, spoke, term);
-    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
-    gproji_give(&form->own, term, count, sizeof *term);
+    /* 4. Vertices that weights depend on: counted, then listed. */
+    gproji_list_weights(form, s->queue);
+    s->load_vertex = (int32_t *)gproji_pool_take(&s->pool, s->load_start[vertices], sizeof *s->load_vertex);
+    if (s->load_vertex) gproji_list_weights(form, s->queue);
+    return s->load_vertex != NULL;
 }
 
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight) {
-    int32_t *mark;
+    gproji_statics *s;
+    size_t count, spokes, edge_terms, most = 0;
+    gproj_term *term;
+    int32_t *spoke, v;
+    if (!gproji_form_ready(form) || !gproji_equilibrium_is_valid(form, loads, supports)) return -1;
+    if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
-    if (form->statics) {
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "the form has its equilibrium already: set its schedule, or make a new form");
-        return -1;
-    }
-    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
-        return -1;
-    }
-    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex) ||
-        !gproji_loads_are_valid(form, loads))
-        return -1;
-    mark = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->vertex_count, sizeof *mark);
-    if (mark && gproji_take_statics(form, loads)) {
-        gproji_set_supports(form, supports);
-        if (!gproji_take_weights(form, mark)) gproji_fail_memory(&form->error);
-    } else {
-        gproji_fail_memory(&form->error);
-    }
-    gproji_give(&form->own, mark, (size_t)form->mesh->vertex_count, sizeof *mark);
-    if (!gproji_form_ready(form)) return -1;
-    form->statics->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
-                                            gproji_refresh_equilibrium, form);
-    if (form->statics->group < 0) return -1;
-    gproji_add_equilibrium_rows(form);
-    return gproji_form_ready(form) ? form->statics->group : -1;
+    s = form->statics;
+    s->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
+                                gproji_refresh_equilibrium, form);
+    if (s->group < 0) return -1;
+    /* Each edge has at most 2 terms in the 3 rows at each end. */
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        if (s->load_start[v + 1] - s->load_start[v] > (int64_t)most)
+            most = (size_t)(s->load_start[v + 1] - s->load_start[v]);
+    edge_terms = 12 * (size_t)form->mesh->edge_count;
+    gproji_expect_group(form, s->group, 0, 3 * (size_t)v, edge_terms + 3 * (size_t)s->load_start[v],
+                        edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
+    spokes = 2 * (size_t)form->ring_size;
+    count = spokes + 3 * most;
+    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
+    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
+    if (!spoke || !term) gproji_fail_memory(&form->error);
+    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
+        if (s->axes[v]) gproji_add_vertex_equilibrium(form, v, spoke, term);
+    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
+    gproji_give(&form->own, term, count, sizeof *term);
+    return gproji_form_ready(form) ? s->group : -1;
 }
 
 /* -- bounds and fairness of forces -- */
@@ -22243,7 +22164,7 @@ GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
 
 static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
 
-/* sign w >= 0. */
+/* sign w >= 0, a lazy bound: rows without a chance to act stay dormant. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
@@ -22267,7 +22188,7 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
     return gproji_add_sign(form, gproji_tension_name, -1, count, edges, weight);
 }
 
-/* The terms s y l of the force in an edge: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
+/* The terms s y l of an edge's force: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
 GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge, gproj_term *term) {
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
     int32_t k;
@@ -22305,32 +22226,25 @@ GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int
     }
 }
 
-GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, const int32_t *edges,
-                                            const double *sections, double min, double max) {
-    int32_t k;
-    if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
+GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
+                                          double min, double max, double weight) {
+    gproji_part *part;
+    gproj_term term[6];
+    int32_t k, side;
+    if (!gproji_has_statics(form, "stress bounds") || !gproji_edges_are_valid(form, "stress bounds", count, edges))
+        return -1;
     if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "stress bounds: the least, %g, is not below the greatest, %g", min, max);
-        return false;
+        return -1;
     }
     for (k = 0; sections && k < count; ++k) {
         if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
                     "stress bounds: edge %d would have the cross-section %g, which is not > 0", edges ? edges[k] : k,
                     sections[k]);
-        return false;
-    }
-    return true;
-}
-
-GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
-                                          double min, double max, double weight) {
-    gproji_part *part;
-    gproj_term term[6];
-    int32_t k, side;
-    if (!gproji_has_statics(form, "stress bounds") || !gproji_stress_is_valid(form, count, edges, sections, min, max))
         return -1;
+    }
     part = gproji_new_part(form, 2 * count);
     if (!part) return -1;
     part->count = 0;
@@ -22356,7 +22270,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* Rows y_e l_e - y_f l_f = 0; part->vertex holds the pairs e, f. */
+/* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->vertex holds the pairs e, f. */
 GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t r, count;
@@ -22396,7 +22310,7 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* -- the forces that balance a given shape best -- */
 
-/* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
+/* The edge whose force a bound's row keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
     const gproji_group *g = &form->system->group[group];
     int32_t count, edge = g->row[row].element;
@@ -22409,7 +22323,8 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
     return edge;
 }
 
-/* May the force of an edge be negative or positive? Bounds with weight 0 do not count. */
+/* Finds which forces may be negative or positive. Recognises bounds by their rows, so that those count that the caller
+   has added to the system; those with weight 0 do not. */
 GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
     double sign;
@@ -22429,55 +22344,71 @@ GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, 
     }
 }
 
-static const char gproji_loads_too_large[] = "equilibrium: the loads are too large, their squares overflow";
-
-/* The least-squares problem of equilibrium at positions x: a column for each edge, rows as in the group; and its
-   solution. */
+/* Equilibrium (1) for given positions is a linear least-squares problem in the forces: a column for each edge, rows as
+   in the group. */
 typedef struct gproji_balance {
-    gproj_least_squares problem;
-    int32_t row_count;
-    int64_t *start;
+    gproji_pool pool;
+    int64_t *start; /* the matrix in compressed columns, with `row` and `value` */
     int32_t *row;
-    double *value, *load, *b, *lower, *upper, *force;
-    size_t edges, vertices;
-    bool opposite; /* of the signs that are asked for */
+    double *value, *b, *lower, *upper;
+    double *load;  /* 3 numbers a vertex */
+    double *force; /* the solution */
+    bool opposite; /* bounds with the other sign */
 } gproji_balance;
 
-GPROJI_INTERNAL void gproji_give_balance(gproj_form *form, gproji_balance *p) {
-    gproji_give(&form->own, p->start, p->edges + 1, sizeof *p->start);
-    gproji_give(&form->own, p->row, 6 * p->edges, sizeof *p->row);
-    gproji_give(&form->own, p->value, 6 * p->edges, sizeof *p->value);
-    gproji_give(&form->own, p->load, 3 * p->vertices, sizeof *p->load);
-    gproji_give(&form->own, p->b, 3 * p->vertices, sizeof *p->b);
-    gproji_give(&form->own, p->lower, p->edges, sizeof *p->lower);
-    gproji_give(&form->own, p->upper, p->edges, sizeof *p->upper);
-    gproji_give(&form->own, p->force, p->edges, sizeof *p->force);
-}
-
 GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
+    int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
-    p->edges = (size_t)form->mesh->edge_count;
-    p->vertices = (size_t)form->mesh->vertex_count;
-    p->start = (int64_t *)gproji_take(&form->own, p->edges + 1, sizeof *p->start);
-    p->row = (int32_t *)gproji_take(&form->own, 6 * p->edges, sizeof *p->row);
-    p->value = (double *)gproji_take(&form->own, 6 * p->edges, sizeof *p->value);
-    p->load = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->load);
-    p->b = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->b);
-    p->lower = (double *)gproji_take(&form->own, p->edges, sizeof *p->lower);
-    p->upper = (double *)gproji_take(&form->own, p->edges, sizeof *p->upper);
-    p->force = (double *)gproji_take_zeroed(&form->own, p->edges, sizeof *p->force);
+    gproji_pool_start(&p->pool, &form->own);
+    p->start = (int64_t *)gproji_pool_take(&p->pool, edges + 1, sizeof *p->start);
+    p->row = (int32_t *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->row);
+    p->value = (double *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->value);
+    p->load = (double *)gproji_pool_take(&p->pool, 3 * vertices, sizeof *p->load);
+    p->b = (double *)gproji_pool_take(&p->pool, 3 * vertices, sizeof *p->b);
+    p->lower = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->lower);
+    p->upper = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->upper);
+    p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
     if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
-    gproji_give_balance(form, p);
+    gproji_pool_give_all(&p->pool);
     gproji_fail_memory(&form->error);
     return false;
 }
 
-/* The entries of the matrix: (x_i - x_j) in the rows of i, the opposite in those of j, for edges with a force. */
-GPROJI_INTERNAL void gproji_fill_balance(const gproj_form *form, const double *x, gproji_balance *p) {
+/* The mean load on the vertices that are not pinned; not finite after an overflow. */
+GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *load) {
+    double sum = 0;
+    int32_t v, count = 0;
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        if (!form->statics->axes[v]) continue;
+        sum += gproji_length3(load + 3 * (size_t)v);
+        ++count;
+    }
+    return count ? sum / count : 0;
+}
+
+/* p->load at positions x; returns their mean, -1 after an error. */
+GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units units, const double *x, gproji_balance *p) {
+    double mean;
+    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
+    mean = gproji_mean_load(form, p->load);
+    if (gproji_is_finite(mean)) return mean;
+    gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                "equilibrium: the loads are too large, their squares overflow");
+    return -1;
+}
+
+/* Finds p->force, the best forces y for the loads p->load at x: the least (1), with y damped towards `mean`. False after
+   an error. */
+GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
+                                          gproji_balance *p) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
-    int64_t count = 0;
-    int32_t e, side, c;
+    gproj_least_squares problem;
+    gproj_least_squares_result result;
+    gproj_error error;
+    int32_t e, v, side, c;
+    int64_t t, count = 0;
+    /* 1. The matrix, a column an edge: x_i - x_j in the rows of i, the opposite in those of j. */
     for (e = 0; e < mesh->edge_count; ++e) {
         p->start[e] = count;
         for (side = 0; s->force[e] >= 0 && side < 2; ++side) {
@@ -22490,66 +22421,33 @@ GPROJI_INTERNAL void gproji_fill_balance(const gproj_form *form, const double *x
         }
     }
     p->start[mesh->edge_count] = count;
-    p->row_count = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
-}
-
-/* b = -load, in the rows of the group. */
-GPROJI_INTERNAL void gproji_fill_loads(const gproj_form *form, gproji_balance *p) {
-    int32_t v, c;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
+    /* 2. b = -load, and the forces' bounds. */
+    for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
-            if (form->statics->axes[v] >> c & 1)
-                p->b[gproji_axis_row(form->statics, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
-}
-
-/* The mean load on the vertices that are not pinned. */
-GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *load) {
-    double sum = 0;
-    int32_t v, count = 0;
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
-        if (!form->statics->axes[v]) continue;
-        sum += gproji_length3(load + 3 * (size_t)v);
-        ++count;
-    }
-    return count ? sum / count : 0;
-}
-
-/* p->force: the best forces y for the loads p->load at x, drawn by `damping` to `mean`. False after an error. */
-GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
-                                          gproji_balance *p) {
-    gproj_least_squares_result result;
-    gproj_error error;
-    int32_t e;
-    int64_t t;
-    gproji_error_clear(&error);
-    gproji_fill_balance(form, x, p);
-    gproji_fill_loads(form, p);
+            if (s->axes[v] >> c & 1) p->b[gproji_axis_row(s, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
     gproji_force_limits(form, p->lower, p->upper);
-    for (e = 0; p->opposite && e < form->mesh->edge_count; ++e) {
+    for (e = 0; p->opposite && e < mesh->edge_count; ++e) {
         double lower = p->lower[e];
         p->lower[e] = -p->upper[e];
         p->upper[e] = -lower;
     }
-    for (e = 0; e < form->mesh->edge_count; ++e) { /* y = mean + z: the same problem for z, with 0 in the middle */
+    /* 3. With y = mean + z, the damping draws z to 0. */
+    for (e = 0; e < mesh->edge_count; ++e) {
         p->lower[e] -= mean;
         p->upper[e] -= mean;
         for (t = p->start[e]; t < p->start[e + 1]; ++t) p->b[p->row[t]] -= mean * p->value[t];
     }
-    memset(&p->problem, 0, sizeof p->problem);
-    p->problem.rows = p->row_count;
-    p->problem.columns = form->mesh->edge_count;
-    p->problem.start = p->start;
-    p->problem.row = p->row;
-    p->problem.value = p->value;
-    p->problem.b = p->b;
-    p->problem.lower = p->lower;
-    p->problem.upper = p->upper;
-    p->problem.damping = damping;
-    if (gproj_solve_least_squares(&p->problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
+    memset(&problem, 0, sizeof problem);
+    problem.rows = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
+    problem.columns = mesh->edge_count;
+    problem.start = p->start, problem.row = p->row, problem.value = p->value, problem.b = p->b;
+    problem.lower = p->lower, problem.upper = p->upper, problem.damping = damping;
+    gproji_error_clear(&error);
+    if (gproj_solve_least_squares(&problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
         gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
         return false;
     }
-    for (e = 0; e < form->mesh->edge_count; ++e) p->force[e] = form->statics->force[e] >= 0 ? p->force[e] + mean : 0;
+    for (e = 0; e < mesh->edge_count; ++e) p->force[e] = s->force[e] >= 0 ? p->force[e] + mean : 0;
     return true;
 }
 
@@ -22562,7 +22460,7 @@ GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, i
     }
 }
 
-/* out = load + the forces' sum in each vertex at x (NULL: no forces), nothing along the axes of supports. */
+/* out = load + the sum of forces (NULL: none) in each vertex at x, 0 along the axes of supports. */
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
@@ -22574,22 +22472,7 @@ GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, 
             if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
 }
 
-/* p->load, at positions x, as parts of the mean load. Returns this mean, 0 without loads; -1 after an error. */
-GPROJI_INTERNAL double gproji_relative_loads(gproj_form *form, const double *x, gproji_balance *p) {
-    static const gproji_load_units units = {1, 1, 1};
-    double mean;
-    size_t i;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
-    mean = gproji_mean_load(form, p->load);
-    if (!gproji_is_finite(mean)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
-        return -1;
-    }
-    for (i = 0; mean > 0 && i < 3 * p->vertices; ++i) p->load[i] /= mean;
-    return mean;
-}
-
-/* The best forces for the mesh as it is, and what they leave: any of the arrays may be NULL. */
+/* Finds the best forces for the mesh as it is, and the loads that they leave: any of the arrays may be NULL. */
 GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left) {
     gproji_balance p;
     double *x, mean;
@@ -22597,10 +22480,11 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
         !gproji_take_balance(form, &p))
         return gproj_form_error(form)->code;
-    x = (double *)gproji_take(&form->own, 3 * p.vertices, sizeof *x);
-    if (!x) gproji_fail_memory(&form->error);
-    mean = x ? gproji_relative_loads(form, form->mesh->position, &p) : -1;
-    for (v = 0; x && v < form->mesh->vertex_count; ++v)
+    /* With loads in parts of their mean the problem does not depend on units. */
+    mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
+    for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
+    x = form->statics->work;
+    for (v = 0; v < form->mesh->vertex_count; ++v)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)v, x + 3 * (size_t)v);
     if (mean >= 0 && gproji_solve_balance(form, x, 0, 0, &p)) {
         gproji_unbalanced(form, x, p.force, p.load, p.load);
@@ -22609,8 +22493,7 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         for (v = 0; left && v < 3 * form->mesh->vertex_count; ++v) left[v] = mean > 0 ? p.load[v] : 0;
         for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
-    gproji_give(&form->own, x, 3 * p.vertices, sizeof *x);
-    gproji_give_balance(form, &p);
+    gproji_pool_give_all(&p.pool);
     return gproj_form_error(form)->code;
 }
 
@@ -22624,7 +22507,7 @@ GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacement
 
 /* -- the start of a solve -- */
 
-/* The largest distance of a vertex from the supports, in edges; 1 where there are none. `queue`, `distance`: work, one
+/* The largest distance between a vertex and the supports, in edges; 1 without supports. `queue`, `distance`: work, one
    number a vertex each. */
 GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *queue, int32_t *distance) {
     const gproj_mesh *mesh = form->mesh;
@@ -22649,99 +22532,78 @@ GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *q
     return radius;
 }
 
-/* 1: most of the edges are for compression only, -1: for tension only, 0: neither. The limits are those in p. */
-GPROJI_INTERNAL int gproji_wanted_sign(const gproj_form *form, const gproji_balance *p) {
-    int32_t e, carrying = 0, count[2] = {0, 0};
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        if (form->statics->force[e] < 0) continue;
-        ++carrying;
-        count[0] += p->lower[e] >= 0;
-        count[1] += p->upper[e] <= 0;
-    }
-    return 2 * count[1] > carrying ? -1 : 2 * count[0] > carrying ? 1 : 0;
-}
-
-/* Every force becomes `force`, or the nearest one that is allowed. */
-GPROJI_INTERNAL void gproji_set_uniform(const gproj_form *form, double force, gproji_balance *p) {
-    int32_t e;
-    gproji_force_limits(form, p->lower, p->upper);
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        p->force[e] = form->statics->force[e] >= 0 ? gproji_fmin(gproji_fmax(force, p->lower[e]), p->upper[e]) : 0;
-}
-
-/* Takes the forces p->force as variables, scaled to mean square 1, and the loads with them. */
-GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *p) {
-    gproji_statics *s = form->statics;
-    double *x = gproj_system_values(form->system), sum = 0;
-    int32_t e, carrying = 0;
-    for (e = 0; e < form->mesh->edge_count; ++e) carrying += s->force[e] >= 0;
-    sum = sqrt(gproji_dot(p->force, p->force, p->edges) / gproji_fmax(1, carrying));
-    if (!(sum > 0)) sum = 1;
-    s->load_scale /= sum;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / sum;
-}
-
 /* Finds p->force by gproji_solve_balance; returns the part of the loads that is left, a root of sums of squares, or -1
    after an error. */
 GPROJI_INTERNAL double gproji_lost_load(gproj_form *form, double damping, double typical, gproji_balance *p) {
     const double *x = gproj_system_values(form->system);
+    size_t count = 3 * (size_t)form->mesh->vertex_count;
     double all;
     if (!gproji_solve_balance(form, x, damping, typical, p)) return -1;
     gproji_unbalanced(form, x, NULL, p->load, p->b);
-    all = gproji_dot(p->b, p->b, 3 * p->vertices);
+    all = gproji_dot(p->b, p->b, count);
     gproji_unbalanced(form, x, p->force, p->load, p->b);
-    return all > 0 ? sqrt(gproji_dot(p->b, p->b, 3 * p->vertices) / all) : 0;
+    return all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
 }
 
-/* Sets the scale of loads so that the mean load is 1, and p->load. False after an error. */
-GPROJI_INTERNAL bool gproji_start_loads(gproj_form *form, gproji_balance *p) {
-    gproji_statics *s = form->statics;
-    const double *x = gproj_system_values(form->system);
-    double load;
-    s->load_scale = 1;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
-    load = gproji_mean_load(form, p->load);
-    if (!gproji_is_finite(load)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
-        return false;
-    }
-    if (load > 0) s->load_scale = 1 / load;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
-    return true;
-}
-
-/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
-   uniform. */
+/* Gives the forces their first values: those that balance the shape best, or uniform ones if it carries nothing. Returns
+   whether they are uniform. */
 GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_balance *p) {
-    int32_t *queue = form->statics->queue;
-    double lost, damping, typical = gproji_support_radius(form, queue, queue + form->mesh->vertex_count);
+    gproji_statics *s = form->statics;
+    double *x = gproj_system_values(form->system), lost, damping, typical, drawn, size;
+    int32_t e, sign, carrying = 0, pushed = 0, pulled = 0;
     bool uniform = false;
-    int sign;
-    if (!gproji_start_loads(form, p)) return false;
+    /* 1. Scale the loads to mean 1. */
+    s->load_scale = 1;
+    size = gproji_set_loads(form, gproji_internal_loads(form), x, p);
+    if (size < 0) return false;
+    if (size > 0) s->load_scale = 1 / size;
+    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    /* 2. The sign of a typical force: tension if most edges are bound to it, else compression. */
     gproji_force_limits(form, p->lower, p->upper);
-    sign = gproji_wanted_sign(form, p);
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        if (s->force[e] < 0) continue;
+        ++carrying;
+        pushed += p->lower[e] >= 0;
+        pulled += p->upper[e] <= 0;
+    }
+    sign = 2 * pulled > carrying ? -1 : 2 * pushed > carrying ? 1 : 0;
+    typical = gproji_support_radius(form, s->queue, s->queue + form->mesh->vertex_count);
     typical *= (sign < 0 ? -1 : 1) * (nearest ? 1 : gproji_force_thrust);
+    /* 3. The forces that balance the loads best. */
     damping = sign && !nearest ? gproji_force_signed : gproji_force_damping;
-    lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
-    if (lost > gproji_force_lost) { /* by the shape, or by the damping? */
-        lost = gproji_lost_load(form, gproji_force_faint, gproji_force_part * typical, p);
+    drawn = gproji_force_part * typical;
+    lost = gproji_lost_load(form, damping, drawn, p);
+    if (lost > gproji_force_lost) {
+        /* Is it the shape that cannot carry, or does the damping hold the forces back? */
+        lost = gproji_lost_load(form, gproji_force_faint, drawn, p);
         uniform = lost > gproji_force_lost;
-        if (uniform && sign) { /* would it hang instead of standing, or the opposite? */
-            form->statics->lost[0] = lost;
+        if (uniform && sign) {
+            /* For the verdict: would it hang instead of standing, or stand instead of hanging? */
+            s->lost[0] = lost;
             p->opposite = true;
-            lost = gproji_lost_load(form, gproji_force_faint, -gproji_force_part * typical, p);
-            form->statics->lost[1] = lost;
+            lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
+            s->lost[1] = lost;
             p->opposite = false;
         }
-        if (uniform) gproji_set_uniform(form, typical, p);
-        if (!uniform && lost >= 0) lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+        if (uniform) {
+            gproji_force_limits(form, p->lower, p->upper);
+            for (e = 0; e < form->mesh->edge_count; ++e)
+                p->force[e] = s->force[e] >= 0 ? gproji_fmin(gproji_fmax(typical, p->lower[e]), p->upper[e]) : 0;
+        } else if (lost >= 0) {
+            lost = gproji_lost_load(form, damping, drawn, p);
+        }
     }
-    if (lost >= 0) gproji_take_forces(form, p);
+    if (!(lost >= 0)) return uniform;
+    /* 4. As variables they have mean square 1, and the loads follow. */
+    size = sqrt(gproji_dot(p->force, p->force, (size_t)form->mesh->edge_count) / gproji_fmax(1, carrying));
+    if (!(size > 0)) size = 1;
+    s->load_scale /= size;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / size;
     return uniform;
 }
 
-/* The group that draws the forces to where they are, once. */
+/* Adds the group that draws the forces to their start. */
 GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     gproji_statics *s = form->statics;
     gproj_term term;
@@ -22753,37 +22615,32 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     }
 }
 
-/* Draws the forces to where they are, where they bend the shape first, with weights 0.3^n, n <= 5; and where there are
-   wishes, as long as these guide, for a shape that carries nothing is nearest to itself without forces. Weight 0
-   otherwise. */
-GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted, bool wishes) {
+/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
     static const gproj_schedule fading = {1, 0.3, 5}, steady = {0.3, 1, 0};
     gproji_statics *s = form->statics;
     gproj_schedule schedule = wishes ? steady : fading;
+    gproji_balance p;
+    bool guided = false;
     const double *x;
     int32_t e, row = 0;
-    if (s->guidance < 0 && !wanted) return;
+    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
+    s->lost[0] = s->lost[1] = 0;
+    if (!s->started && gproji_take_balance(form, &p)) {
+        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
+           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
+           solve for the nearest mesh forces are free. */
+        guided = gproji_start_forces(form, nearest, &p) && !nearest;
+        gproji_pool_give_all(&p.pool);
+        s->started = gproji_form_ready(form);
+    }
+    if (s->guidance < 0 && !guided) return;
     if (s->guidance < 0) gproji_add_force_guidance(form);
-    if (!wanted) schedule.weight = 0;
+    if (!guided) schedule.weight = 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
         if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
-}
-
-/* What comes before a solve: forces, if there are none yet, and their guidance; for the nearest mesh they are free. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
-    gproji_statics *s = form->statics;
-    gproji_balance p;
-    bool uniform = false;
-    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
-    s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &p)) {
-        uniform = gproji_start_forces(form, nearest, &p);
-        gproji_give_balance(form, &p);
-        s->started = gproji_form_ready(form);
-    }
-    gproji_set_force_guidance(form, uniform && !nearest, wishes);
 }
 
 /* -- forces for the caller -- */
@@ -22809,65 +22666,55 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
 }
 
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
-    static const gproji_load_units units = {1, 1, 1};
     if (!form || !loads) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
     if (!form->statics) return GPROJ_ERROR_STATE;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, form->mesh->position, loads);
+    gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
     return GPROJ_OK;
-}
-
-/* Root of the mean square of the densities of edges with a force; without overflow. */
-GPROJI_INTERNAL double gproji_mean_density(const gproj_form *form, const double *densities) {
-    double largest = 0, sum = 0;
-    int32_t e, carrying = 0;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) largest = gproji_fmax(largest, fabs(densities[e]));
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        double part = largest > 0 ? densities[e] / largest : 0;
-        if (form->statics->force[e] < 0) continue;
-        sum += part * part;
-        ++carrying;
-    }
-    return carrying ? largest * sqrt(sum / carrying) : 0;
-}
-
-/* The density that balances the mean load at an angle of 45 degrees in a mean edge. */
-GPROJI_INTERNAL double gproji_density_of_loads(const gproj_form *form) {
-    double density;
-    gproj_get_loads(form, form->statics->work);
-    density = gproji_mean_load(form, form->statics->work) * form->scale;
-    return gproji_is_finite(density) ? density : 0;
 }
 
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
-    double *x, mean, of_loads;
-    int32_t e;
+    gproji_statics *s;
+    double *x, mean, of_loads, largest = 0, sum = 0;
+    int32_t e, carrying = 0;
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
-    form->statics->started = false;
+    s = form->statics;
+    s->started = false;
     x = gproj_system_values(form->system);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = 0;
+        if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) return GPROJ_OK;
+    /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
-        if (form->statics->force[e] < 0 || gproji_is_finite(densities[e])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                           "set forces: the density of edge %d is not a finite number", e);
+        if (s->force[e] < 0) continue;
+        if (!gproji_is_finite(densities[e]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "set forces: the density of edge %d is not a finite number", e);
+        largest = gproji_fmax(largest, fabs(densities[e]));
     }
-    of_loads = gproji_density_of_loads(form);
-    mean = gproji_mean_density(form, densities);
-    /* forces that are next to nothing must not make the loads huge */
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        double part = largest > 0 ? densities[e] / largest : 0;
+        if (s->force[e] < 0) continue;
+        sum += part * part;
+        ++carrying;
+    }
+    mean = carrying ? largest * sqrt(sum / carrying) : 0;
+    /* 2. Forces that are next to nothing must not make the loads huge: then the scale is the density that balances the
+       mean load at 45 degrees in a mean edge. */
+    gproj_get_loads(form, s->work);
+    of_loads = gproji_mean_load(form, s->work) * form->scale;
+    if (!gproji_is_finite(of_loads)) of_loads = 0;
     if (mean < gproji_least_force * of_loads) mean = of_loads;
     if (!(mean > DBL_MIN)) mean = 1;
-    form->statics->load_scale = form->scale / mean;
+    s->load_scale = form->scale / mean;
     for (e = 0; e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / mean;
-    form->statics->started = true;
+        if (s->force[e] >= 0) x[s->force[e]] = densities[e] / mean;
+    s->started = true;
     return GPROJ_OK;
 }
 
-/* out += the forces' sum in each vertex, at the mesh's positions. */
+/* out += the sum of forces in each vertex, at the mesh's positions. */
 GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
     int32_t e;
     for (e = 0; e < form->mesh->edge_count; ++e)
@@ -22889,61 +22736,54 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
     return GPROJ_OK;
 }
 
-/* The measures that belong to edges. */
-GPROJI_INTERNAL void gproji_measure_members(const gproj_form *form, gproj_forces *m) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t e;
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
+    gproj_forces m;
+    const gproj_mesh *mesh;
+    double largest = 0, *sum;
+    int32_t e, v, c;
     bool first = true;
+    memset(&m, 0, sizeof m);
+    m.residual_vertex = -1;
+    if (!form || !gproji_has_statics(form, "measure forces")) return m;
+    mesh = form->mesh;
+    /* 1. Edges: extremes and the load path, the sum of |force| length. */
     for (e = 0; e < mesh->edge_count; ++e) {
         double w = gproji_force_density(form, e), length, force;
         if (form->statics->force[e] < 0) continue;
         length = gproji_distance3(mesh->position + 3 * (size_t)mesh->origin[2 * e],
                                   mesh->position + 3 * (size_t)mesh->origin[2 * e + 1]);
         force = w * length;
-        m->load_path += fabs(force) * length;
-        m->min_density = first ? w : gproji_fmin(m->min_density, w);
-        m->max_density = first ? w : gproji_fmax(m->max_density, w);
-        m->min_force = first ? force : gproji_fmin(m->min_force, force);
-        m->max_force = first ? force : gproji_fmax(m->max_force, force);
+        m.load_path += fabs(force) * length;
+        m.min_density = first ? w : gproji_fmin(m.min_density, w);
+        m.max_density = first ? w : gproji_fmax(m.max_density, w);
+        m.min_force = first ? force : gproji_fmin(m.min_force, force);
+        m.max_force = first ? force : gproji_fmax(m.max_force, force);
         first = false;
     }
-}
-
-/* The measures that belong to vertices; `sum`: 3 numbers a vertex, loads on entry, destroyed. */
-GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, gproj_forces *m) {
-    const gproj_mesh *mesh = form->mesh;
-    double largest = 0;
-    int32_t v, c;
+    /* 2. Vertices: `sum` is the load, then load and forces together. */
+    sum = form->statics->work;
+    gproj_get_loads(form, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
-        m->total_load -= sum[3 * (size_t)v + 2];
+        m.total_load -= sum[3 * (size_t)v + 2];
     }
     gproji_add_force_sums(form, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         double left[3], given[3];
         if (mesh->vertex_halfedge[v] < 0) continue;
+        /* Along free axes nothing should be left; along the others supports give the sum back. */
         for (c = 0; c < 3; ++c) {
             bool balanced = form->statics->axes[v] >> c & 1;
             left[c] = balanced ? sum[3 * (size_t)v + (size_t)c] : 0;
             given[c] = balanced ? 0 : sum[3 * (size_t)v + (size_t)c];
         }
-        m->max_reaction = gproji_fmax(m->max_reaction, gproji_length3(given));
+        m.max_reaction = gproji_fmax(m.max_reaction, gproji_length3(given));
         if (!form->statics->axes[v]) continue;
-        if (!(gproji_length3(left) > m->residual) && m->residual_vertex >= 0) continue;
-        m->residual = gproji_length3(left);
-        m->residual_vertex = v;
+        if (!(gproji_length3(left) > m.residual) && m.residual_vertex >= 0) continue;
+        m.residual = gproji_length3(left);
+        m.residual_vertex = v;
     }
-    if (largest > 0) m->residual /= largest;
-}
-
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
-    gproj_forces m;
-    memset(&m, 0, sizeof m);
-    m.residual_vertex = -1;
-    if (!form || !gproji_has_statics(form, "measure forces")) return m;
-    gproj_get_loads(form, form->statics->work);
-    gproji_measure_members(form, &m);
-    gproji_measure_nodes(form, form->statics->work, &m);
+    if (largest > 0) m.residual /= largest;
     return m;
 }
 
