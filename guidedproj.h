@@ -20076,14 +20076,6 @@ GPROJI_NOINLINE int32_t gproji_new_group(gproj_form *form, const char *name, gpr
     return gproj_system_add_group(form->system, &group);
 }
 
-/* The same for global rows, which belong to the whole mesh. */
-GPROJI_INTERNAL int32_t gproji_new_global_group(gproj_form *form, const char *name, gproj_kind kind, double weight,
-                                                gproj_refresh refresh, void *user) {
-    int32_t group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, user);
-    if (group >= 0) form->system->group[group].global = true;
-    return group;
-}
-
 /* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
 GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
     gproji_part *part;
@@ -20176,10 +20168,6 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex) {
     return form && form->mesh && form->original && gproji_is_corner(form->mesh, form->original, vertex);
 }
 
-GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex) {
-    return gproj_form_is_corner(form, vertex);
-}
-
 GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t vertex) {
     return gproji_select_boundary(form, vertex) && !gproj_form_is_corner(form, vertex);
 }
@@ -20193,8 +20181,8 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* -- points: fixed vertices, handles, closeness -- */
 
-/* Rows x - p = 0 for the three coordinates of each vertex of the part; p = targets[3k..] in the mesh's units, or NULL:
-   the original place. */
+/* Rows v - p = 0, one a coordinate, for each vertex of the part; p = targets[3 k..] in the mesh's units, or NULL: the
+   original places. */
 GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
                                           const double *targets, double weight) {
     int32_t i, k, group;
@@ -20225,7 +20213,7 @@ GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight) {
 }
 
 GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
-    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_corner), "fixed corners",
+    return gproji_add_points(form, gproji_new_selected_part(form, gproj_form_is_corner), "fixed corners",
                              GPROJ_CONSTRAINT, NULL, weight);
 }
 
@@ -20272,7 +20260,7 @@ GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
         gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->area + 3 * (size_t)f);
 }
 
-/* The unit sum of form->area over the faces around a vertex; e_z where that has no direction. */
+/* The unit sum of form->area over the faces around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
@@ -20285,7 +20273,7 @@ GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex
     gproji_normalise3(out, up);
 }
 
-/* The unit vector of form->area of a face; where it has none, the normal at its first vertex. */
+/* The unit normal of a face by form->area; without a direction, the normal at its first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_copy3(form->area + 3 * (size_t)face, out);
@@ -20296,8 +20284,8 @@ GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, do
     }
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. All rows of the group
-   are such ones, and have their terms in common: places among n, or among n and v_i by pairs and behind them v_j. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). A group
+   has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by pairs, then v_j. */
 GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
@@ -20326,61 +20314,51 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     }
 }
 
-/* Room for the normals of all faces that have none yet. */
-GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
-    size_t faces = 0, corners = 0;
-    int32_t f;
-    for (f = 0; f < form->mesh->face_count; ++f)
-        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
-            ++faces, corners += (size_t)form->mesh->face_degree[f];
-    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
-}
-
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
+    const gproj_mesh *mesh;
+    size_t faces = 0, corners = 0;
     int32_t group, f;
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
         gproj_system_set_schedule(form->system, form->planarity, schedule);
         return gproji_form_ready(form) ? form->planarity : -1;
     }
+    mesh = form->mesh;
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
-    gproji_expect_normals(form, group);
-    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
-        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
+    for (f = 0; f < mesh->face_count; ++f)
+        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
+    for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f)
+        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
+    /* The edges of a face close: the gradients of its rows sum to zero. */
     if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
     return gproji_form_ready(form) ? group : -1;
 }
 
 /* -- curves and surfaces -- */
 
-/* How far p is along segment `segment` from its start, minus the segment's length if `from_end`. */
+/* The distance from the start of a segment to p along it; from_end: minus the segment's length. */
 GPROJI_INTERNAL double gproji_along(const gproj_curve *curve, int32_t segment, const double p[3], bool from_end) {
     double d[3];
     gproji_sub3(p, curve->point + 3 * ((size_t)segment + from_end), d);
     return gproji_dot3(d, curve->tangent + 3 * (size_t)segment);
 }
 
-/* The segment after or before; -1 at an open end. */
-GPROJI_INTERNAL int32_t gproji_next_segment(const gproj_curve *curve, int32_t segment, int32_t direction) {
-    bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
-    segment += direction;
-    if (segment >= 0 && segment < curve->segment_count) return segment;
-    if (!closed) return -1;
-    return segment < 0 ? curve->segment_count - 1 : 0;
-}
-
-/* Walks from a segment to the one on which p has its foot. Where p is in the wedge outside a vertex of the polyline,
-   with its foot on neither side, it stays. */
+/* Walks from a segment to the one on which p has its foot. */
 GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, const double p[3]) {
-    int32_t direction = gproji_along(curve, segment, p, true) > 0 ? 1 : -1, steps;
-    for (steps = 0; steps < curve->segment_count; ++steps) {
-        bool forward = direction > 0;
+    bool forward = gproji_along(curve, segment, p, true) > 0;
+    bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
+    int32_t last = curve->segment_count - 1, steps;
+    for (steps = 0; steps <= last; ++steps) {
         double beyond = gproji_along(curve, segment, p, forward);
-        int32_t next = gproji_next_segment(curve, segment, direction);
-        if ((forward ? beyond <= 0 : beyond >= 0) || next < 0) break;
+        int32_t next = segment + (forward ? 1 : -1);
+        if (closed && next < 0) next = last;
+        if (closed && next > last) next = 0;
+        if ((forward ? beyond <= 0 : beyond >= 0) || next < 0 || next > last) break;
+        /* In the wedge outside a vertex of the polyline p has its foot on neither side: it stays. */
         beyond = gproji_along(curve, next, p, !forward);
         if (forward ? beyond < 0 : beyond > 0) break;
         segment = next;
@@ -20388,14 +20366,15 @@ GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, c
     return segment;
 }
 
-/* The three rows of a gliding vertex: it is on the line of its segment (2 rows orthogonal to the tangent), and, with
-   weight only when it is pinned, at `end`. The first row keeps its direction as nearly as it can, so that values before and
-   after a step are of one kind. Everything in internal units. */
+/* Sets the three rows of a gliding vertex: t1'(v - end) = t2'(v - end) = 0 keep it on the line of its segment (t1, t2
+   orthogonal to the tangent), and tangent'(v - end) = 0, with weight only when it is pinned, at `end`. Everything in
+   internal units. */
 GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int32_t first, const double tangent[3],
                                         const double end[3], bool pinned) {
     const gproj_term *old;
     double basis[3][3];
     int32_t k, count;
+    /* t1 keeps its direction as nearly as it can: else values before and after a step could not be compared. */
     old = gproji_row_terms(system, group, first, &count);
     for (k = 0; k < 3; ++k) basis[0][k] = old[k].a;
     gproji_copy3(tangent, basis[2]);
@@ -20410,13 +20389,12 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Does vertex i of a gliding part stay where it was? */
+/* Does vertex i of a gliding part stay in its place? */
 GPROJI_INTERNAL bool gproji_stays(const gproji_part *part, int32_t i) {
     return part->curve_of && part->curve_of[i] < 0;
 }
 
-/* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment,
-   and is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
+/* Keeps each vertex to the line of a segment, from which it walks to neighbouring segments. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     bool settled = system->late >= 2;
@@ -20430,6 +20408,8 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         if (!curve) curve = part->own_curve[part->curve_of[i]];
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
         if (part->curve) gproji_from_internal(part->form, p, p);
+        /* Late in a solve it stays on its segment, and is pinned to an end that it would leave: so it cannot hop between
+           two segments for ever. */
         if (part->segment[i] < 0) {
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
@@ -20446,7 +20426,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     }
 }
 
-/* All vertices look for their segments anew. */
+/* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
     gproji_part *part;
     int32_t i;
@@ -20493,69 +20473,47 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
     return gproji_add_gliding_part(form, part, "gliding", weight);
 }
 
-/* The boundary loops of the original as curves in internal units. A loop without extent gives NULL. `points`: work, 3
-   numbers a vertex of the mesh. */
-GPROJI_INTERNAL bool gproji_take_loop_curves(gproj_form *form, gproji_part *part, double *points) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t l;
-    for (l = 0; l < mesh->loop_count; ++l) {
-        int32_t h = mesh->loop_halfedge[l], count = 0;
-        gproj_error error;
-        gproji_error_clear(&error);
-        do {
-            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
-            h = mesh->next[h];
-        } while (h != mesh->loop_halfedge[l]);
-        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
-        if (part->own_curve[l] || error.code == GPROJ_ERROR_DEGENERATE) continue;
-        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
-        return false;
-    }
-    return true;
-}
-
-/* The curve of each vertex of the part, -1 for those that stay: corners, and loops without extent. `loop_of`: work, one
-   entry a vertex of the mesh. */
-GPROJI_INTERNAL void gproji_assign_loops(const gproj_form *form, gproji_part *part, int32_t *loop_of) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t l, i;
-    for (l = 0; l < mesh->loop_count; ++l) {
-        int32_t h = mesh->loop_halfedge[l];
-        do {
-            loop_of[mesh->origin[h]] = part->own_curve[l] ? l : -1;
-            h = mesh->next[h];
-        } while (h != mesh->loop_halfedge[l]);
-    }
-    for (i = 0; i < part->count; ++i)
-        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) ? -1 : loop_of[part->vertex[i]];
-}
-
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_selected_part(form, gproji_select_boundary);
+    const gproj_mesh *mesh;
     size_t vertices;
-    int32_t *loop_of;
+    int32_t *loop_of, l, i;
     double *points;
-    bool done = false;
     if (!part) return -1;
-    vertices = (size_t)form->mesh->vertex_count;
-    part->curve_count = form->mesh->loop_count;
+    mesh = form->mesh;
+    vertices = (size_t)mesh->vertex_count;
+    part->curve_count = mesh->loop_count;
     part->own_curve =
         (gproj_curve **)gproji_take_zeroed(&form->own, (size_t)part->curve_count, sizeof *part->own_curve);
     part->curve_of = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->curve_of);
     loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
-    if (part->own_curve && part->curve_of && loop_of && points) {
-        done = gproji_take_loop_curves(form, part, points);
-        if (done) gproji_assign_loops(form, part, loop_of);
-    } else {
-        gproji_fail_memory(&form->error);
+    if (!part->own_curve || !part->curve_of || !loop_of || !points) gproji_fail_memory(&form->error);
+    /* 1. Each boundary loop of the original as a curve in internal units; NULL for one without extent. */
+    for (l = 0; l < mesh->loop_count && gproji_form_ready(form); ++l) {
+        int32_t h = mesh->loop_halfedge[l], count = 0;
+        gproj_error error;
+        gproji_error_clear(&error);
+        do {
+            loop_of[mesh->origin[h]] = l;
+            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[l]);
+        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
+        if (!part->own_curve[l] && error.code != GPROJ_ERROR_DEGENERATE)
+            gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+    }
+    /* 2. Vertices glide on their loop; corners stay, and those on a loop without extent. */
+    for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
+        l = loop_of[part->vertex[i]];
+        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->own_curve[l] ? -1 : l;
     }
     gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->own, points, 3 * vertices, sizeof *points);
-    return done ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
+    return gproji_form_ready(form) ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
 }
 
-/* The row n'(v - p) = 0 for each vertex: p the closest point of the surface, n its normal there. */
+/* Rows n'(v - p) = 0: p the point of the surface closest to v, n the surface's normal there. */
 GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
@@ -20591,61 +20549,56 @@ GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *sur
 
 /* -- fairness -- */
 
-/* One second difference: centre - sum of `neighbour` / count, of points (vertices or normals) given by their first
+/* One second difference: centre - sum of `neighbour` / count, for points (vertices or normals) given by their first
    variables. */
 typedef struct gproji_difference {
-    int32_t centre;
-    int32_t count;
+    int32_t element; /* the vertex or face that its rows belong to */
+    int32_t centre, count;
     const int32_t *neighbour;
 } gproji_difference;
 
-/* The three rows of a difference, one a coordinate. Its points are different ones. Their number makes the terms: rows with
-   as many have them in common, where they follow each other. `term`: room for count + 1 terms. */
-GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
-                                           gproj_term *term) {
+/* Adds the rows of a difference: one for each coordinate; in a tangent plane two, whose coefficients the refresh of the
+   part `tangential` fills in for the element that it notes. `term`: room for 3 (count + 1). */
+GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
+                                           const gproji_difference *d, gproj_term *term) {
     int32_t points = d->count + 1, last, k, i, *local;
+    if (tangential) {
+        for (i = 0; i < points; ++i)
+            for (k = 0; k < 3; ++k)
+                gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
+        for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
+        tangential->vertex[tangential->count++] = d->element;
+        return;
+    }
     if (!gproji_system_has_group(form->system, group)) return;
+    /* Rows that follow each other share their terms if they have the same number of points. */
     last = form->system->group[group].row_count - 1;
     for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
-    local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, element);
+    local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, d->element);
     for (k = 0; k < 3 && local; ++k, local += points) {
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
     }
 }
 
-/* The same seen in a tangent plane: two rows whose coefficients the refresh fills in. `term`: 3 (count + 1). */
-GPROJI_INTERNAL void gproji_add_tangential_difference(gproj_form *form, int32_t group, const gproji_difference *d,
-                                                      int32_t element, gproj_term *term) {
-    int32_t k, i;
-    for (i = 0; i <= d->count; ++i)
-        for (k = 0; k < 3; ++k)
-            gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
-    for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * (d->count + 1), term, 0, element);
-}
-
-typedef void (*gproji_add_one_difference)(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
-                                          gproj_term *term);
-
-/* The differences of a point with its cyclic neighbours: opposite pairs where there are four, else the mean of all
-   (paper 3.2). Returns how many differences there are. */
-GPROJI_INTERNAL int32_t gproji_add_ring_differences(gproj_form *form, int32_t group, int32_t centre, int32_t *ring,
-                                                    int32_t count, int32_t element, gproj_term *term,
-                                                    gproji_add_one_difference add) {
+/* Adds the differences between a point and its `count` cyclic neighbours form->ring: opposite pairs if there are four,
+   else the mean of all (paper 3.2). */
+GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
+                                                 int32_t centre, int32_t count, int32_t element, gproj_term *term) {
     gproji_difference d;
     int32_t pairs[4];
+    d.element = element;
     d.centre = centre;
     d.count = count;
-    d.neighbour = ring;
+    d.neighbour = form->ring;
     if (count == 4) {
-        pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
+        pairs[0] = form->ring[0], pairs[1] = form->ring[2], pairs[2] = form->ring[1], pairs[3] = form->ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        add(form, group, &d, element, term);
+        gproji_add_difference(form, group, tangential, &d, term);
         d.neighbour = pairs + 2;
     }
-    add(form, group, &d, element, term);
-    return count == 4 ? 2 : 1;
+    gproji_add_difference(form, group, tangential, &d, term);
 }
 
 /* Room for the terms of the largest difference of this mesh. */
@@ -20659,7 +20612,8 @@ GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
     gproji_give(&form->own, term, 3 * ((size_t)form->ring_size + 1), sizeof *term);
 }
 
-/* The neighbours of an interior vertex by their first variables; 0 for other vertices. */
+/* Fills form->ring with an interior vertex's neighbours by their first variables, returns their number; 0 for other
+   vertices. */
 GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     int32_t count, i;
     if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
@@ -20668,6 +20622,7 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     return count;
 }
 
+/* Adds the differences along the boundary, except at corners. */
 GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group, gproj_term *term) {
     const gproj_mesh *mesh = form->mesh;
     int32_t v;
@@ -20678,10 +20633,11 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
         h = mesh->vertex_halfedge[v];
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
+        d.element = v;
         d.centre = 3 * v;
         d.count = 2;
         d.neighbour = pair;
-        gproji_add_difference(form, group, &d, v, term);
+        gproji_add_difference(form, group, NULL, &d, term);
     }
 }
 
@@ -20709,14 +20665,14 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, 3 * v, form->ring, count, v, term, gproji_add_difference);
+        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v, term);
     }
     gproji_add_boundary_differences(form, group, term);
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* Fills in rows `row` and `row` + 1: u' and w' of a difference, u, w spanning the plane orthogonal to `normal`. */
+/* Fills in rows `row` and `row` + 1: u'd and w'd for a difference d, u, w spanning the plane orthogonal to `normal`. */
 GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
                                                const double normal[3]) {
     double basis[2][3];
@@ -20729,11 +20685,6 @@ GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t gro
         for (i = 0; i <= count; ++i)
             for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[k][c] * (i == 0 ? 1.0 : -1.0 / count);
     }
-}
-
-/* One part for differences in tangent planes: part->vertex names the vertex or face of each. */
-GPROJI_INTERNAL void gproji_note_differences(gproji_part *part, int32_t element, int32_t count) {
-    while (count-- > 0) part->vertex[part->count++] = element;
 }
 
 GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group) {
@@ -20760,10 +20711,7 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
                                    gproji_refresh_tangential, part);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count == 0) continue;
-        count = gproji_add_ring_differences(form, part->group, 3 * v, form->ring, count, v, term,
-                                            gproji_add_tangential_difference);
-        gproji_note_differences(part, v, count);
+        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
     }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
@@ -20781,35 +20729,8 @@ GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int3
     }
 }
 
-/* The differences of face `face` in the Gauss image: with all its neighbours where they all exist, else with opposite
-   neighbours of a quad. Returns how many there are. */
-GPROJI_INTERNAL int32_t gproji_add_gauss_differences(gproj_form *form, int32_t group, int32_t face, gproj_term *term) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], count = 0, k, added = 0;
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        int32_t neighbour = mesh->face[mesh->twin[h]];
-        form->ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
-        count += neighbour >= 0;
-    }
-    if (count == degree)
-        return gproji_add_ring_differences(form, group, form->normal[face], form->ring, degree, face, term,
-                                           gproji_add_tangential_difference);
-    for (k = 0; degree == 4 && k < 2; ++k) {
-        gproji_difference d;
-        int32_t pair[2];
-        pair[0] = form->ring[k];
-        pair[1] = form->ring[k + 2];
-        if (pair[0] < 0 || pair[1] < 0) continue;
-        d.centre = form->normal[face];
-        d.count = 2;
-        d.neighbour = pair;
-        gproji_add_tangential_difference(form, group, &d, face, term);
-        added++;
-    }
-    return added;
-}
-
-/* Triangles have no normals as variables until something needs them. Other faces get theirs from the planarity. */
+/* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
+   planarity. */
 GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *name) {
     int32_t f, group = -1;
     gproji_update_areas(form);
@@ -20828,18 +20749,40 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *na
 }
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
+    const gproj_mesh *mesh;
     gproji_part *part;
     gproj_term *term;
-    int32_t f;
+    int32_t f, k;
     if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form, "Gauss image fairness")) return -1;
-    part = gproji_new_part(form, 2 * form->mesh->face_count);
+    mesh = form->mesh;
+    part = gproji_new_part(form, 2 * mesh->face_count);
     term = part ? gproji_take_terms(form) : NULL;
     if (!term) return -1;
     part->count = 0;
     part->group = gproji_new_group(form, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
                                    gproji_refresh_gauss, part);
-    for (f = 0; f < form->mesh->face_count; ++f)
-        gproji_note_differences(part, f, gproji_add_gauss_differences(form, part->group, f, term));
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
+        for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+            int32_t neighbour = mesh->face[mesh->twin[h]];
+            form->ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
+            count += neighbour >= 0;
+        }
+        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f, term);
+        /* A quad at the boundary still has a difference if it has two opposite neighbours. */
+        for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
+            gproji_difference d;
+            int32_t pair[2];
+            pair[0] = form->ring[k];
+            pair[1] = form->ring[k + 2];
+            if (pair[0] < 0 || pair[1] < 0) continue;
+            d.element = f;
+            d.centre = form->normal[f];
+            d.count = 2;
+            d.neighbour = pair;
+            gproji_add_difference(form, part->group, part, &d, term);
+        }
+    }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
 }
@@ -20854,56 +20797,40 @@ GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t
     return gproj_system_group_info(form ? form->system : NULL, group);
 }
 
-/* How many elements of this kind the mesh has; 0 for what is no part of a mesh. */
-GPROJI_INTERNAL int32_t gproji_element_count(const gproj_mesh *mesh, gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return mesh->vertex_count;
-    case GPROJ_PLACE_EDGE: return mesh->edge_count;
-    case GPROJ_PLACE_FACE: return mesh->face_count;
-    default: return 0;
-    }
-}
-
-/* Refuses lists of elements and weights that do not fit the group. */
-GPROJI_INTERNAL bool gproji_element_weights_are_valid(gproj_form *form, int32_t group, int32_t count,
-                                                      const int32_t *elements, const double *weights) {
-    gproj_group_info info = gproj_system_group_info(form->system, group);
-    int32_t have = gproji_element_count(form->mesh, info.place), k;
-    if (!gproji_system_has_group(form->system, group)) {
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                    "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
-        return false;
-    }
-    if (count < 0 || (count > 0 && !weights) || (!elements && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                    "element weights: %d of the %d elements of group '%s', or no weights", count, have, info.name);
-        return false;
-    }
+GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
+                                               const double *weights) {
+    gproj_group_info info;
+    gproji_group *g;
+    double *of; /* the new weight of each element; -1: unchanged */
+    int32_t have, k;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    /* 1. Refuse lists that do not fit the group. */
+    if (!gproji_system_has_group(form->system, group))
+        return gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                           "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
+    info = gproj_system_group_info(form->system, group);
+    have = info.place == GPROJ_PLACE_VERTEX ? form->mesh->vertex_count
+           : info.place == GPROJ_PLACE_EDGE ? form->mesh->edge_count
+           : info.place == GPROJ_PLACE_FACE ? form->mesh->face_count
+                                            : 0;
+    if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                           "element weights: %d of the %d elements of group '%s', or no weights", count, have,
+                           info.name);
     for (k = 0; k < count; ++k) {
         int32_t element = elements ? elements[k] : k;
         if (element < 0 || element >= have)
-            gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
-                        "element weights: there is no %s %d (the mesh has %d, counted from 0)",
-                        gproji_place_word(info.place), element, have);
-        else if (!(weights[k] >= 0 && weights[k] <= 1e50))
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
-                        "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
-                        gproji_place_word(info.place), element, info.name);
-        if (form->error.code != GPROJ_OK) return false;
+            return gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
+                               "element weights: there is no %s %d (the mesh has %d, counted from 0)",
+                               gproji_place_word(info.place), element, have);
+        if (!(weights[k] >= 0 && weights[k] <= 1e50))
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
+                               "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
+                               gproji_place_word(info.place), element, info.name);
     }
-    return true;
-}
-
-GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
-                                               const double *weights) {
-    int32_t have, k;
-    double *of; /* of each element the new weight; -1: as it was */
-    gproji_group *g;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    if (!gproji_element_weights_are_valid(form, group, count, elements, weights)) return form->error.code;
+    /* 2. Set them. A row's weight is the product of a share by its element and one that a refresh may set. */
     g = &form->system->group[group];
-    have = gproji_element_count(form->mesh, g->place);
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
     if (!of || !gproji_share_weights(form->system, g)) {
         gproji_give(&form->own, of, (size_t)have, sizeof *of);
@@ -20924,7 +20851,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists that are no elements (edges, faces) of the mesh, which has `have` of them. */
+/* Refuses lists of elements (edges, faces) that the mesh does not have; it has `have`. */
 GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
                                                int32_t count, const int32_t *elements) {
     const char *word = gproji_place_word(place);
@@ -20947,11 +20874,7 @@ GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, 
     return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
 }
 
-GPROJI_INTERNAL bool gproji_faces_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *faces) {
-    return gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces);
-}
-
-/* The terms of scale |v_i - v_j|^2 for the ends of an edge: 9 of them. */
+/* The 9 terms of scale |v_i - v_j|^2 for the ends of an edge. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
     int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
     for (k = 0; k < 3; ++k) {
@@ -20961,12 +20884,13 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     }
 }
 
-/* The length of an edge of the original, in internal units. */
+/* The original length of an edge, in internal units. */
 GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t edge) {
     const int32_t *origin = form->mesh->origin + 2 * (size_t)edge;
     return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
 }
 
+/* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight) {
     int32_t group, k;
@@ -21006,13 +20930,23 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean of points x[3 v] for `count` vertices v, and unit vectors along, across, flat in the directions in which
-   they scatter most, less and least. */
-GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int32_t *vertices, double mean[3],
-                                       double along[3], double across[3], double flat[3]) {
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    int32_t k, i, j;
+/* The mean of the originals of `count` vertices. */
+GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
+                                          double mean[3]) {
+    int32_t k;
     gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
+}
+
+/* Fits planes n'(v - m) = d to the points x[3 v] of these vertices, 4 numbers each: n, d; m is the mean of their
+   originals. One plane, or two at right angles whose line fits best. */
+GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
+                                       double plane[8]) {
+    const double *x = gproj_system_values(form->system);
+    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, mean[3] = {0, 0, 0}, middle[3], along[3], d[3], u[3],
+           v[3], uu = 0, uv = 0, vv = 0, angle;
+    int32_t k, i, j;
+    /* 1. The direction in which they scatter most. */
     for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, x + 3 * (size_t)vertices[k], mean);
     for (k = 0; k < count; ++k) {
         gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
@@ -21020,6 +20954,7 @@ GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
     gproji_largest_eigenvector3(scatter, along);
+    /* 2. Across it, the direction with the least scatter, which is the first plane's normal, and the other one. */
     gproji_tangents3(along, u, v);
     for (k = 0; k < count; ++k) {
         gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
@@ -21029,54 +20964,21 @@ GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int
     }
     angle = 0.5 * atan2(2 * uv, uu - vv);
     for (k = 0; k < 3; ++k) {
-        across[k] = cos(angle) * u[k] + sin(angle) * v[k];
-        flat[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        plane[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        if (planes == 2) plane[4 + k] = cos(angle) * u[k] + sin(angle) * v[k];
     }
-}
-
-/* The mean of the originals of `count` vertices. */
-GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
-                                          double mean[3]) {
-    int32_t k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
-}
-
-/* The planes n'(v - m) = d through the points x[3 v] of these vertices that fit best, 4 numbers each: n, d; m is the
-   mean of their originals. One plane, or two at right angles whose line fits best. */
-GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
-                                       double plane[8]) {
-    const double *x = gproj_system_values(form->system);
-    double mean[3], middle[3], along[3], across[3], flat[3];
-    int32_t p;
-    gproji_fit_points(x, count, vertices, mean, along, across, flat);
     gproji_original_mean(form, count, vertices, middle);
     gproji_sub3(mean, middle, mean);
-    for (p = 0; p < planes; ++p) {
-        gproji_copy3(p ? across : flat, plane + 4 * p);
-        plane[4 * p + 3] = gproji_dot3(plane + 4 * p, mean);
-    }
+    for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
 }
 
-/* The rows n_p'n_q = 1 or 0 of the planes whose variables begin at `first`. */
-GPROJI_INTERNAL void gproji_add_plane_normals(gproj_form *form, int32_t group, int32_t planes, int32_t first,
-                                              int32_t vertex) {
-    int32_t p, q, k;
-    for (p = 0; p < planes; ++p) {
-        for (q = 0; q <= p; ++q) {
-            gproj_term term[3];
-            for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
-            gproj_system_add_row(form->system, group, 3, term, p == q ? -1 : 0, vertex);
-        }
-    }
-}
-
-/* The vertices from..part->count-1 of the part get their plane or planes: variables, and the rows n'(v - m) - d = 0.
-   Those of a set too small to leave a plane, or a line, get none. */
+/* Gives the vertices from..part->count-1 of the part a plane, or two for a line: variables n, d with n'n = 1, the
+   normals orthogonal, and the rows n'(v - m) - d = 0. A set too small to leave one gets none. */
 GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, int32_t from) {
     const int32_t *vertex = part->vertex + from;
-    int32_t count = part->count - from, first = -1, i, p, k;
+    int32_t count = part->count - from, first = -1, i, p, q, k;
     double plane[8], middle[3];
+    gproj_term term[7];
     if (count > (part->planes == 1 ? 3 : 2)) {
         gproji_fit_planes(form, part->planes, count, vertex, plane);
         gproji_original_mean(form, count, vertex, middle);
@@ -21084,10 +20986,14 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, i
     }
     for (i = 0; i < count; ++i) part->plane[from + i] = first;
     if (first < 0) return;
-    gproji_add_plane_normals(form, part->group, part->planes, first, vertex[0]);
+    for (p = 0; p < part->planes; ++p) {
+        for (q = 0; q <= p; ++q) {
+            for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
+            gproj_system_add_row(form->system, part->group, 3, term, p == q ? -1 : 0, vertex[0]);
+        }
+    }
     for (i = 0; i < count; ++i) {
         for (p = 0; p < part->planes; ++p) {
-            gproj_term term[7];
             for (k = 0; k < 3; ++k) {
                 gproji_set_term(&term[2 * k], 3 * vertex[i] + k, first + 4 * p + k, 1);
                 gproji_set_term(&term[2 * k + 1], first + 4 * p + k, -1, -middle[k]);
@@ -21098,7 +21004,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, i
     }
 }
 
-/* Planes and lines begin a solve where they fit the vertices best. */
+/* Puts planes and lines back to a best fit, before a solve. */
 GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
     gproji_part *part;
     int32_t from, to;
@@ -21142,22 +21048,15 @@ GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* The corners of a boundary loop; with any, *start becomes the half-edge that leaves one of them. */
-GPROJI_INTERNAL int32_t gproji_loop_corners(const gproj_form *form, int32_t loop, int32_t *start) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t h = mesh->loop_halfedge[loop], corners = 0;
-    *start = h;
-    do {
-        if (gproj_form_is_corner(form, mesh->origin[h])) *start = h, ++corners;
-        h = mesh->next[h];
-    } while (h != mesh->loop_halfedge[loop]);
-    return corners;
-}
-
-/* The sets of a boundary loop: from corner to corner, or the whole loop where there is none. */
+/* Adds the sets of a boundary loop: from corner to corner, or the whole loop if it has none. */
 GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, int32_t loop) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t start, corners = gproji_loop_corners(form, loop, &start), h = start, from = part->count;
+    int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
+    do {
+        if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
+        h = mesh->next[h];
+    } while (h != mesh->loop_halfedge[loop]);
+    h = start; /* the half-edge that leaves a corner, if there is one */
     if (part->planes == 2 && corners < 3) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
                     "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
@@ -21169,7 +21068,7 @@ GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, i
         part->vertex[part->count++] = mesh->origin[h];
         h = mesh->next[h];
         if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
-            part->vertex[part->count++] = mesh->origin[h];
+            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
             gproji_add_plane_set(form, part, from);
             from = part->count;
         }
@@ -21227,12 +21126,15 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_form_ready(form) ? group : -1;
 }
 
+/* (v_b - v)'(v_1 - v_2) = 0: the edge from v into the mesh is orthogonal to the boundary at v, v_1 and v_2 beside v on it;
+   written as products of coordinates. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
     int32_t group, v, k, ring[3];
     if (!gproji_form_ready(form)) return -1;
     group = gproji_new_group(form, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
-        gproj_term term[12]; /* ring: along the boundary the first and the last */
+        gproj_term term[12];
+        /* The ring of a boundary vertex begins and ends along the boundary. */
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
         for (k = 0; k < 3; ++k) {
             gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
@@ -21260,7 +21162,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
 
 /* -- shapes of faces, areas, volume -- */
 
-/* Where the axis points of circular faces start: the circumcentre at the system's x, else the mean. */
+/* Start of a circular face's axis point: the circumcentre at the system's x, else the mean. */
 GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -21272,141 +21174,122 @@ GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t fac
     gproji_circumcentre(mesh, x, face, mean, normal, out);
 }
 
-/* The row |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 of an edge, c the variables from `axis` on. */
-GPROJI_INTERNAL void gproji_add_axis_row(gproj_form *form, int32_t group, int32_t face, int32_t axis,
-                                         int32_t halfedge) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t i = 3 * mesh->origin[halfedge], j = 3 * mesh->origin[mesh->next[halfedge]], k;
-    gproj_term term[12];
-    for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[4 * k], j + k, j + k, 0.5);
-        gproji_set_term(&term[4 * k + 1], i + k, i + k, -0.5);
-        gproji_set_term(&term[4 * k + 2], axis + k, j + k, -1);
-        gproji_set_term(&term[4 * k + 3], axis + k, i + k, 1);
-    }
-    gproj_system_add_row(form->system, group, 12, term, 0, face);
+/* Makes a list of first variables, all -1, unless it is there; false without memory. */
+GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
+    if (*list) return true;
+    *list = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof **list);
+    if (*list)
+        gproji_fill(*list, count, -1);
+    else
+        gproji_fail_memory(&form->error);
+    return *list != NULL;
 }
 
+/* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for each edge of a face: c has the same distance from all vertices, so it is on
+   the axis of a circle through them. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
-    int32_t group, f, k, h;
-    if (!gproji_form_ready(form)) return -1;
-    if (!form->axis) {
-        form->axis = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->face_count, sizeof *form->axis);
-        if (!form->axis) {
-            gproji_fail_memory(&form->error);
-            return -1;
-        }
-        for (f = 0; f < form->mesh->face_count; ++f) form->axis[f] = -1;
-    }
+    const gproj_mesh *mesh;
+    int32_t group, f, k, c, h;
+    if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
+    mesh = form->mesh;
     group = gproji_new_group(form, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
-    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
+    for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
         double start[3];
-        if (form->mesh->face_degree[f] == 3) continue;
+        if (mesh->face_degree[f] == 3) continue;
         gproji_start_axis_point(form, f, start);
         if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
-        h = form->mesh->face_halfedge[f];
-        for (k = 0; k < form->mesh->face_degree[f] && gproji_form_ready(form); ++k, h = form->mesh->next[h])
-            gproji_add_axis_row(form, group, f, form->axis[f], h);
+        h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
+            int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
+            gproj_term term[12];
+            for (c = 0; c < 3; ++c) {
+                gproji_set_term(&term[4 * c], j + c, j + c, 0.5);
+                gproji_set_term(&term[4 * c + 1], i + c, i + c, -0.5);
+                gproji_set_term(&term[4 * c + 2], form->axis[f] + c, j + c, -1);
+                gproji_set_term(&term[4 * c + 3], form->axis[f] + c, i + c, 1);
+            }
+            gproj_system_add_row(form->system, group, 12, term, 0, f);
+        }
     }
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* How many faces meet at a vertex. */
-GPROJI_INTERNAL int32_t gproji_faces_at(const gproj_mesh *mesh, int32_t vertex) {
-    return gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
-}
-
-/* The row det(a, e, m) / (2 |e|) = 0 of a half-edge, linearised at x: a the axis of its origin, e = v_j - v_i, m = n_f
-   + n_g. Its derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
-GPROJI_INTERNAL void gproji_refresh_cone_row(const gproj_form *form, gproj_system *system, int32_t group, int32_t row,
-                                             int32_t halfedge) {
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system), *a = x + form->cone[mesh->origin[halfedge]];
-    double e[3], m[3], slope[5][3], scale;
-    int32_t count, k, c;
-    gproj_term *term = gproji_row_terms(system, group, row, &count);
-    gproji_sub3(x + 3 * (size_t)mesh->origin[halfedge ^ 1], x + 3 * (size_t)mesh->origin[halfedge], e);
-    gproji_copy3(x + form->normal[mesh->face[halfedge]], m);
-    gproji_add_scaled3(1, x + form->normal[mesh->face[halfedge ^ 1]], m);
-    gproji_cross3(e, m, slope[0]);
-    gproji_cross3(a, m, slope[1]);
-    gproji_cross3(m, a, slope[2]);
-    gproji_cross3(a, e, slope[3]);
-    gproji_copy3(slope[3], slope[4]);
-    scale = 0.5 / gproji_fmax(gproji_length3(e), 1e-6);
-    for (k = 0; k < 5; ++k)
-        for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[k][c];
-    gproj_system_set_row(system, group, row, NULL, -2 * scale * gproji_dot3(a, slope[0]));
-}
-
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge in part->vertex: a the axis of its origin,
+   e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        if (part->vertex[i] >= 0) gproji_refresh_cone_row(part->form, system, group, i, part->vertex[i]);
-}
-
-/* The rows of one vertex: a'a = 1, and one for each edge between two faces. */
-GPROJI_INTERNAL void gproji_add_cone_rows(gproj_form *form, gproji_part *part, int32_t vertex) {
+    const gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
-    int32_t axis = form->cone[vertex], start = mesh->vertex_halfedge[vertex], h = start, c;
-    gproj_term term[15];
-    for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
-    gproj_system_add_row(form->system, part->group, 3, term, -1, vertex);
-    part->vertex[part->count++] = -1;
-    do {
-        int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
-        for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
-            gproji_set_term(&term[c], axis + c, -1, 0);
-            gproji_set_term(&term[3 + c], 3 * vertex + c, -1, 0);
-            gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
-            gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
-            gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
-        }
-        if (face >= 0 && other >= 0) {
-            gproj_system_add_row(form->system, part->group, 15, term, 0, vertex);
-            part->vertex[part->count++] = h;
-        }
-        h = gproji_rotate(mesh, h);
-    } while (h != start && gproji_form_ready(form));
-}
-
-/* Gives the vertices where four or more faces meet the axes of their cones as variables, if they have none. Returns the
-   number of rows that they will have; -1 without memory. */
-GPROJI_INTERNAL int32_t gproji_add_cones(gproj_form *form) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t v, rows = 0;
-    if (!form->cone) {
-        form->cone = (int32_t *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *form->cone);
-        if (!form->cone) {
-            gproji_fail_memory(&form->error);
-            return -1;
-        }
-        for (v = 0; v < mesh->vertex_count; ++v) form->cone[v] = -1;
+    const double *x = gproj_system_values(system), *a;
+    double e[3], m[3], slope[5][3], scale;
+    int32_t i, count, k, c;
+    for (i = 0; i < part->count; ++i) {
+        int32_t h = part->vertex[i];
+        gproj_term *term = gproji_row_terms(system, group, i, &count);
+        if (h < 0) continue; /* a'a = 1 */
+        a = x + form->cone[mesh->origin[h]];
+        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], x + 3 * (size_t)mesh->origin[h], e);
+        gproji_copy3(x + form->normal[mesh->face[h]], m);
+        gproji_add_scaled3(1, x + form->normal[mesh->face[h ^ 1]], m);
+        gproji_cross3(e, m, slope[0]);
+        gproji_cross3(a, m, slope[1]);
+        gproji_cross3(m, a, slope[2]);
+        gproji_cross3(a, e, slope[3]);
+        gproji_copy3(slope[3], slope[4]);
+        scale = 0.5 / gproji_fmax(gproji_length3(e), 1e-6);
+        for (k = 0; k < 5; ++k)
+            for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[k][c];
+        gproj_system_set_row(system, group, i, NULL, -2 * scale * gproji_dot3(a, slope[0]));
     }
+}
+
+/* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
+   edge e between faces f and g: a is in the plane of e and n_f + n_g. */
+GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
+    const gproj_mesh *mesh;
+    gproji_part *part;
+    gproj_term term[15];
+    int32_t rows = 0, v, c;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
+    if (!gproji_take_firsts(form, form->mesh->vertex_count, &form->cone)) return -1;
+    /* 1. Axes as variables, and how many rows there can be. */
+    mesh = form->mesh;
     for (v = 0; v < mesh->vertex_count; ++v) {
         double start[3];
-        if (gproji_faces_at(mesh, v) < 4) continue;
+        if (gproj_mesh_valence(mesh, v) - gproj_mesh_is_boundary_vertex(mesh, v) < 4) continue;
         gproji_cone_axis(mesh, gproj_system_values(form->system), v, start);
         if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
-    return gproji_form_ready(form) ? rows : -1;
-}
-
-GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
-    gproji_part *part;
-    int32_t rows, v;
-    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
-    rows = gproji_add_cones(form);
-    part = rows < 0 ? NULL : gproji_new_part(form, rows);
+    part = gproji_new_part(form, rows);
     if (!part) return -1;
     part->count = 0;
     part->group =
         gproji_new_group(form, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_cones, part);
-    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
-        if (form->cone[v] >= 0) gproji_add_cone_rows(form, part, v);
+    /* 2. Rows: a'a = 1, then one for each edge between two faces. */
+    for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
+        int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
+        if (axis < 0) continue;
+        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
+        gproj_system_add_row(form->system, part->group, 3, term, -1, v);
+        part->vertex[part->count++] = -1;
+        do {
+            int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
+            for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
+                gproji_set_term(&term[c], axis + c, -1, 0);
+                gproji_set_term(&term[3 + c], 3 * v + c, -1, 0);
+                gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
+                gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
+                gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
+            }
+            if (face >= 0 && other >= 0) {
+                gproj_system_add_row(form->system, part->group, 15, term, 0, v);
+                part->vertex[part->count++] = h;
+            }
+            h = gproji_rotate(mesh, h);
+        } while (h != start && gproji_form_ready(form));
+    }
     return gproji_form_ready(form) ? part->group : -1;
 }
 
@@ -21427,7 +21310,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The gradient of a face's area by the vertex where half-edge h of it starts: (v_(i+1) - v_(i-1)) x a / (2 |a|). */
+/* The gradient of a face's area with respect to the origin of half-edge h: (v_(i+1) - v_(i-1)) x a / (2 |a|). */
 GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const double normal[3], double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -21438,7 +21321,7 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
 
-/* scale (|a(v)| + grad |a|'(v' - v)) of a face at form->area: 3 coefficients a corner; returns the constant. */
+/* Linearises scale |a(v)| of a face at form->area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
@@ -21457,7 +21340,7 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
     return constant;
 }
 
-/* The terms of gproji_linearise_area, for variables that are there; returns how many. */
+/* The terms that gproji_linearise_area fills in; returns their number. */
 GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t face, gproj_term *term) {
     int32_t h = mesh->face_halfedge[face], k, c;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
@@ -21465,7 +21348,7 @@ GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t fa
     return 3 * mesh->face_degree[face];
 }
 
-/* The row |a(v)| - A = 0 of each face. */
+/* Rows |a(v)| - A = 0 for each face, A an unknown. */
 GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
     gproj_form *form = ((const gproji_part *)user)->form;
     int32_t f, count;
@@ -21497,7 +21380,25 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* The row (V(v) + grad V'(v' - v) - volume) / area; the terms are those of all vertices in order. */
+/* Adds a group of `rows` equal rows for the whole mesh: terms for all coordinates in order, coefficients from the
+   refresh. */
+GPROJI_INTERNAL int32_t gproji_add_global_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
+                                               double weight, int32_t rows, gproj_refresh refresh) {
+    int32_t count = 3 * form->mesh->vertex_count, t;
+    gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
+    if (!term) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, part);
+    if (part->group >= 0) form->system->group[part->group].global = true;
+    for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
+    for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
+    gproji_give(&form->own, term, (size_t)count, sizeof *term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* The row (V(v) + grad V'(v' - v) - volume) / area. */
 GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     gproj_form *form = part->form;
@@ -21507,40 +21408,31 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     scale = 1 / gproji_fmax(area, 1e-12);
     for (k = 0; k < count; ++k) part->gradient[k] *= scale / 6;
-    /* summed up as the row's value is: their roundings are the same */
+    /* Summed up like the row's value, so that their roundings are the same. */
     constant = scale * constant - gproji_dot(part->gradient, x, count);
     gproj_system_set_row(system, group, 0, part->gradient, constant);
 }
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
     gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
-    size_t count;
-    gproj_term *term;
-    int32_t t;
     if (!part) return -1;
     if (!gproji_is_finite(volume)) {
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
         return -1;
     }
-    count = 3 * (size_t)form->mesh->vertex_count;
     part->target = volume * form->scale * form->scale * form->scale;
-    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
-    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
-    if (!term) {
+    part->gradient =
+        (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    if (!part->gradient) {
         gproji_fail_memory(&form->error);
         return -1;
     }
-    part->group = gproji_new_global_group(form, "volume", GPROJ_CONSTRAINT, weight, gproji_refresh_volume, part);
-    for (t = 0; t < (int32_t)count; ++t) gproji_set_term(&term[t], t, -1, 0);
-    gproj_system_add_row(form->system, part->group, (int32_t)count, term, 0, 0);
-    gproji_give(&form->own, term, count, sizeof *term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_add_global_rows(form, part, "volume", GPROJ_CONSTRAINT, weight, 1, gproji_refresh_volume);
 }
 
 /* -- bounds, total area, cost -- */
 
-/* bound = the caller's at least and at most, times `scale`, 0 and infinite where there is none; refuses those that make
-   no sense. */
+/* Refuses bounds that make no sense; bound = at least and at most, times `scale`, 0 and infinite without a bound. */
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
     if (max >= 0 && !(max > 0)) max = HUGE_VAL;
@@ -21554,11 +21446,12 @@ GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, doub
     return true;
 }
 
-/* Is there a bound: side 0 at least, side 1 at most? */
+/* Is there a bound? Side 0: at least, side 1: at most. */
 GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
+/* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
                                           double weight) {
     static const char name[] = "length bounds";
@@ -21580,7 +21473,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) of each face. */
+/* Rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) for each face. */
 GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t i, side, count, row = 0;
@@ -21603,7 +21496,7 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
-    if (!gproji_form_ready(form) || !gproji_faces_are_valid(form, name, count, faces)) return -1;
+    if (!gproji_form_ready(form) || !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces)) return -1;
     part = gproji_new_part(form, count);
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
     term = gproji_take_terms(form);
@@ -21621,58 +21514,42 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* gradient += price * grad |v_i - v_j| over all edges; returns the sum of the lengths. */
-GPROJI_INTERNAL double gproji_add_length_gradient(const gproj_form *form, double price, double *gradient) {
-    static const double none[3] = {0, 0, 0};
-    const int32_t *origin = form->mesh->origin;
-    const double *x = gproj_system_values(form->system);
-    gproji_sum sum = {0, 0};
-    int32_t e;
-    for (e = 0; e < form->mesh->edge_count; ++e, origin += 2) {
-        double d[3];
-        gproji_sub3(x + 3 * (size_t)origin[0], x + 3 * (size_t)origin[1], d);
-        gproji_sum_add(&sum, gproji_length3(d));
-        gproji_normalise3(d, none);
-        gproji_add_scaled3(price, d, gradient + 3 * (size_t)origin[0]);
-        gproji_add_scaled3(-price, d, gradient + 3 * (size_t)origin[1]);
-    }
-    return gproji_sum_value(&sum);
-}
-
-/* gradient += price * grad |a_k| over all faces at form->area; returns the sum of the areas. */
-GPROJI_INTERNAL double gproji_add_area_gradient(const gproj_form *form, double price, double *gradient) {
+/* The cost C = price[0] sum of lengths + price[1] sum of areas at the system's x, and its gradient. `size`: its growth
+   per mean edge length by which the whole mesh grows. */
+GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
-    gproji_sum sum = {0, 0};
-    int32_t f, k;
+    const double *x = gproj_system_values(form->system);
+    double length, area, d[3], slope[3], *gradient = part->gradient;
+    gproji_sum sum = {0, 0}, areas = {0, 0};
+    int32_t e, f, k;
+    memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
+        gproji_sub3(x + i, x + j, d);
+        gproji_sum_add(&sum, gproji_length3(d));
+        gproji_normalise3(d, none);
+        gproji_add_scaled3(part->price[0], d, gradient + i);
+        gproji_add_scaled3(-part->price[0], d, gradient + j);
+    }
+    gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
-        double normal[3];
-        gproji_copy3(form->area + 3 * (size_t)f, normal);
-        gproji_sum_add(&sum, gproji_length3(normal));
-        gproji_normalise3(normal, none);
+        gproji_copy3(form->area + 3 * (size_t)f, d);
+        gproji_sum_add(&areas, gproji_length3(d));
+        gproji_normalise3(d, none);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            double slope[3];
-            gproji_area_slope(form, h, normal, slope);
-            gproji_add_scaled3(price, slope, gradient + 3 * (size_t)mesh->origin[h]);
+            gproji_area_slope(form, h, d, slope);
+            gproji_add_scaled3(part->price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
         }
     }
-    return gproji_sum_value(&sum);
-}
-
-/* The cost and its gradient at the system's x. */
-GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
-    double length, area;
-    gproji_update_areas(form);
-    memset(part->gradient, 0, 3 * (size_t)form->mesh->vertex_count * sizeof *part->gradient);
-    length = part->price[0] * gproji_add_length_gradient(form, part->price[0], part->gradient);
-    area = gproji_add_area_gradient(form, part->price[1], part->gradient);
+    length = part->price[0] * gproji_sum_value(&sum);
+    area = gproji_sum_value(&areas);
     if (size) *size = (length + 2 * part->price[1] * area) / gproji_fmax(sqrt(area), 1e-6);
     return length + part->price[1] * area;
 }
 
-/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit; the terms are those of all vertices in order.
-   A prescribed cost has the first one only. */
+/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit. A prescribed cost has the first one only. */
 GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
@@ -21692,26 +21569,11 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
     }
 }
 
-/* The global rows of a cost whose part has its bounds and prices. `term`: room for all vertices. */
-GPROJI_INTERNAL int32_t gproji_add_cost_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
-                                             double weight, gproj_term *term) {
-    int32_t count = 3 * form->mesh->vertex_count, side, t;
-    gproji_cost(form, part, &part->unit);
-    part->unit = gproji_fmax(part->unit, 1e-12);
-    part->group = gproji_new_global_group(form, name, kind, weight, gproji_refresh_cost, part);
-    for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
-    for (side = 0; side < 2; ++side)
-        if (gproji_has_bound(part->bound, side)) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
-    return gproji_form_ready(form) ? part->group : -1;
-}
-
-/* The prices of lengths and areas as the caller gives them. */
+/* Adds the rows of a cost or total area, with prices and bounds in the caller's units. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, const double price[2],
                                          double min, double max, double weight) {
     gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
-    size_t count;
-    gproj_term *term;
-    int32_t group;
+    int32_t rows;
     if (!part) return -1;
     if (!(price[0] >= 0) || !(price[1] >= 0) || !(price[0] + price[1] > 0) || !gproji_is_finite(price[0] + price[1])) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -21719,21 +21581,21 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gpr
         return -1;
     }
     if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
-    count = 3 * (size_t)form->mesh->vertex_count;
     part->price[0] = price[0] / form->scale;
     part->price[1] = price[1] / form->scale / form->scale;
-    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
-    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
-    if (!term) {
+    part->gradient =
+        (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    if (!part->gradient) {
         gproji_fail_memory(&form->error);
         return -1;
     }
-    group = gproji_add_cost_rows(form, part, name, kind, weight, term);
-    gproji_give(&form->own, term, count, sizeof *term);
-    return group;
+    gproji_cost(form, part, &part->unit);
+    part->unit = gproji_fmax(part->unit, 1e-12);
+    rows = gproji_has_bound(part->bound, 0) + gproji_has_bound(part->bound, 1);
+    return gproji_add_global_rows(form, part, name, kind, weight, rows, gproji_refresh_cost);
 }
 
-/* What is prescribed is > 0: so "0 means no bound" does not apply to it. */
+/* Prescribes a value > 0: "0 means no bound" does not apply to it. */
 GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, const double price[2],
                                                     double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
