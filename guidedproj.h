@@ -19855,6 +19855,18 @@ typedef struct gproji_solve {
     int32_t default_last;       /* see gproj_system */
 } gproji_solve;
 
+/* Arrays that builders and refreshes fill in and use at once. */
+typedef struct gproji_form_work {
+    double *area;      /* the vectorial area of each face */
+    int32_t *ring;     /* the neighbours of a vertex or face */
+    int32_t ring_size; /* the largest valence or degree */
+} gproji_form_work;
+
+/* The groups that release a drag; -1: none yet. */
+typedef struct gproji_release {
+    int32_t fairness, handles;
+} gproji_release;
+
 struct gproj_form {
     gproji_heap own;
     gproj_error error;
@@ -19867,9 +19879,7 @@ struct gproj_form {
     int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
     int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
     int32_t *cone;    /* of each vertex, the first variable of its cone's axis; -1: none; NULL: no vertex has one */
-    double *area;     /* work: the vectorial area of each face */
-    int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
-    int32_t ring_size;
+    gproji_form_work work;
     int32_t closeness;       /* the group of the default guidance; -1: none yet */
     int32_t planarity;       /* the group of the planar faces; -1: none */
     gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
@@ -19880,80 +19890,54 @@ struct gproj_form {
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
     gproji_solve solve;
-    gproj_drag *drag;      /* under way; NULL: none */
-    int32_t drag_fairness; /* the groups of a drag's release; -1: none yet */
-    int32_t drag_handles;
+    gproj_drag *drag; /* under way; NULL: none */
+    gproji_release release;
 };
 
 /* -- life -- */
 
-GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
-    int32_t i;
-    for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
-    gproji_give(&form->own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
-    gproji_give(&form->own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
-    gproji_give(&form->own, part->gradient, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
-    gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
-    gproji_give(&form->own, part->factor, (size_t)part->capacity, sizeof *part->factor);
-    gproji_give(&form->own, part->plane, (size_t)part->capacity, sizeof *part->plane);
-    gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
-    gproji_give(&form->own, part, 1, sizeof *part);
-}
-
-GPROJI_INTERNAL void gproji_corners_give(gproj_form *form) {
-    gproji_corners *guard = form->corners;
-    size_t corners = 2 * (size_t)form->mesh->halfedge_count;
-    gproji_give(&form->own, guard->size, corners / 2, sizeof *guard->size);
-    gproji_give(&form->own, guard->axis, 3 * (size_t)form->mesh->face_count, sizeof *guard->axis);
-    gproji_give(&form->own, guard->row, corners, sizeof *guard->row);
-    gproji_give(&form->own, guard->marked, corners, 1);
-    gproji_give(&form->own, guard->corner, guard->capacity, sizeof *guard->corner);
-    gproji_give(&form->own, guard, 1, sizeof *guard);
-}
-
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
+    gproji_heap *own;
+    size_t vertices, faces, corners;
+    int32_t i;
     if (!form) return;
-    if (form->corners) gproji_corners_give(form);
-    if (form->statics) {
-        gproji_pool_give_all(&form->statics->pool);
-        gproji_give(&form->own, form->statics, 1, sizeof *form->statics);
+    own = &form->own;
+    vertices = form->mesh ? (size_t)form->mesh->vertex_count : 0;
+    faces = form->mesh ? (size_t)form->mesh->face_count : 0;
+    corners = form->mesh ? 2 * (size_t)form->mesh->halfedge_count : 0;
+    if (form->corners) {
+        gproji_give(own, form->corners->size, corners / 2, sizeof *form->corners->size);
+        gproji_give(own, form->corners->axis, 3 * faces, sizeof *form->corners->axis);
+        gproji_give(own, form->corners->row, corners, sizeof *form->corners->row);
+        gproji_give(own, form->corners->marked, corners, 1);
+        gproji_give(own, form->corners->corner, form->corners->capacity, sizeof *form->corners->corner);
+        gproji_give(own, form->corners, 1, sizeof *form->corners);
     }
-    if (form->guard)
-        gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
+    if (form->statics) gproji_pool_give_all(&form->statics->pool);
+    gproji_give(own, form->statics, 1, sizeof *form->statics);
+    if (form->guard) gproji_give(own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
     while (form->part) {
-        gproji_part *next = form->part->next;
-        gproji_part_give(form, form->part);
-        form->part = next;
+        gproji_part *part = form->part;
+        form->part = part->next;
+        for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
+        gproji_give(own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
+        gproji_give(own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
+        gproji_give(own, part->gradient, 3 * vertices, sizeof *part->gradient);
+        gproji_give(own, part->segment, (size_t)part->count, sizeof *part->segment);
+        gproji_give(own, part->factor, (size_t)part->capacity, sizeof *part->factor);
+        gproji_give(own, part->plane, (size_t)part->capacity, sizeof *part->plane);
+        gproji_give(own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
+        gproji_give(own, part, 1, sizeof *part);
     }
-    if (form->mesh) {
-        gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
-        gproji_give(&form->own, form->before, 3 * (size_t)form->mesh->vertex_count, sizeof *form->before);
-        gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
-        gproji_give(&form->own, form->axis, (size_t)form->mesh->face_count, sizeof *form->axis);
-        gproji_give(&form->own, form->cone, (size_t)form->mesh->vertex_count, sizeof *form->cone);
-        gproji_give(&form->own, form->area, 3 * (size_t)form->mesh->face_count, sizeof *form->area);
-        gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
-    }
+    gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
+    gproji_give(own, form->before, 3 * vertices, sizeof *form->before);
+    gproji_give(own, form->normal, faces, sizeof *form->normal);
+    gproji_give(own, form->axis, faces, sizeof *form->axis);
+    gproji_give(own, form->cone, vertices, sizeof *form->cone);
+    gproji_give(own, form->work.area, 3 * faces, sizeof *form->work.area);
+    gproji_give(own, form->work.ring, (size_t)form->work.ring_size, sizeof *form->work.ring);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
-}
-
-/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. Vertices without edges count only where
-   there are no others: one far away would take the digits of all coordinates. */
-GPROJI_INTERNAL void gproji_form_measure_units(gproj_form *form) {
-    const gproj_mesh *mesh = form->mesh;
-    double edge = gproj_mesh_mean_edge_length(mesh), low, high;
-    int32_t first = mesh->edge_count ? mesh->origin[0] : 0, v, k;
-    for (k = 0; k < 3; ++k) {
-        low = high = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0;
-        for (v = 0; v < mesh->vertex_count; ++v) {
-            if (mesh->edge_count && mesh->vertex_halfedge[v] < 0) continue;
-            low = gproji_fmin(low, mesh->position[3 * (size_t)v + (size_t)k]);
-            high = gproji_fmax(high, mesh->position[3 * (size_t)v + (size_t)k]);
-        }
-        form->centre[k] = low + (high - low) / 2;
-    }
-    form->scale = edge > 1e-305 ? 1 / edge : 1;
 }
 
 GPROJI_INTERNAL void gproji_to_internal(const gproj_form *form, const double position[3], double out[3]) {
@@ -19966,15 +19950,8 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
     for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
 }
 
-GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
-    int32_t largest = 1, i;
-    for (i = 0; i < mesh->vertex_count; ++i) largest = gproji_max(largest, gproj_mesh_valence(mesh, i));
-    for (i = 0; i < mesh->face_count; ++i) largest = gproji_max(largest, mesh->face_degree[i]);
-    return largest;
-}
-
-/* Refuses coordinates that are not finite, or so large that their products would not be, in the mesh's units or in the
-   form's: the caller may have written them. */
+/* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would not
+   be, in the mesh's units or in the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
     int32_t i, k;
     if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
@@ -19990,24 +19967,40 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
     return true;
 }
 
-/* The rest of gproj_form_create, when the form itself is there. */
+/* Gives a new form its arrays, units, originals and the system with the vertices. */
 GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     gproj_mesh *mesh = form->mesh;
-    int32_t i;
+    int32_t i, k, first, ring = 1;
+    double edge;
     if (!mesh)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "there is no mesh: reading or building it failed, see its error");
-    form->ring_size = gproji_largest_ring(mesh);
+    for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
+    for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
+    form->work.ring_size = ring;
     form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
     form->before = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->before);
     form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
-    form->area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->area);
-    form->ring = (int32_t *)gproji_take(&form->own, (size_t)form->ring_size, sizeof *form->ring);
+    form->work.area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->work.area);
+    form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->before || !form->normal || !form->area || !form->ring || !form->system)
+    if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
         return gproji_fail_memory(&form->error);
     if (!gproji_positions_are_finite(form)) return form->error.code;
-    gproji_form_measure_units(form);
+    /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
+       digits of all coordinates. */
+    first = mesh->edge_count ? mesh->origin[0] : 0;
+    for (k = 0; k < 3; ++k) {
+        double low = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0, high = low;
+        for (i = 0; i < mesh->vertex_count; ++i) {
+            if (mesh->edge_count && mesh->vertex_halfedge[i] < 0) continue;
+            low = gproji_fmin(low, mesh->position[3 * (size_t)i + (size_t)k]);
+            high = gproji_fmax(high, mesh->position[3 * (size_t)i + (size_t)k]);
+        }
+        form->centre[k] = low + (high - low) / 2;
+    }
+    edge = gproj_mesh_mean_edge_length(mesh);
+    form->scale = edge > 1e-305 ? 1 / edge : 1;
     if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
@@ -20023,12 +20016,11 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
-    form->closeness = form->smooth = form->planarity = form->drag_fairness = form->drag_handles = -1;
+    form->closeness = form->smooth = form->planarity = form->release.fairness = form->release.handles = -1;
     gproji_form_begin(form);
     return form;
 }
 
-/* The form's own error, or its system's. */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form) {
     if (!form) return gproji_no_object();
     if (form->error.code != GPROJ_OK || !form->system) return &form->error;
@@ -20076,7 +20068,7 @@ GPROJI_NOINLINE int32_t gproji_new_group(gproj_form *form, const char *name, gpr
     return gproj_system_add_group(form->system, &group);
 }
 
-/* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
+/* A part for `count` vertices or faces, which the caller then fills in; NULL after an error. */
 GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
@@ -20100,7 +20092,7 @@ GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, doubl
     term->a = a;
 }
 
-/* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
+/* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
 GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
                                          size_t locals) {
     gproj_system *s = form->system;
@@ -20148,8 +20140,7 @@ GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, gproji_s
     if (!gproji_form_ready(form)) return NULL;
     for (v = 0; v < form->mesh->vertex_count; ++v) count += select(form, v);
     part = gproji_new_part(form, count);
-    if (!part) return NULL;
-    for (v = 0, count = 0; v < form->mesh->vertex_count; ++v)
+    for (v = 0, count = 0; part && v < form->mesh->vertex_count; ++v)
         if (select(form, v)) part->vertex[count++] = v;
     return part;
 }
@@ -20253,30 +20244,30 @@ GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
 
 /* -- planar faces -- */
 
-/* form->area at the system's x. */
+/* form->work.area at the system's x. */
 GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
     int32_t f;
     for (f = 0; f < form->mesh->face_count; ++f)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->area + 3 * (size_t)f);
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->work.area + 3 * (size_t)f);
 }
 
-/* The unit sum of form->area over the faces around a vertex; e_z if that has no direction. */
+/* The unit sum of form->work.area over the faces around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     gproji_set3(0, 0, 0, out);
     do {
-        if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->area + 3 * (size_t)mesh->face[h], out);
+        if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->work.area + 3 * (size_t)mesh->face[h], out);
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
     gproji_normalise3(out, up);
 }
 
-/* The unit normal of a face by form->area; without a direction, the normal at its first vertex. */
+/* The unit normal of a face by form->work.area; without a direction, the normal at its first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
-    gproji_copy3(form->area + 3 * (size_t)face, out);
+    gproji_copy3(form->work.area + 3 * (size_t)face, out);
     if (gproji_length3(out) > 1e-12) {
         gproji_normalise3(out, none);
     } else {
@@ -20581,7 +20572,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
     }
 }
 
-/* Adds the differences between a point and its `count` cyclic neighbours form->ring: opposite pairs if there are four,
+/* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are four,
    else the mean of all (paper 3.2). */
 GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
                                                  int32_t centre, int32_t count, int32_t element, gproj_term *term) {
@@ -20590,9 +20581,10 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
     d.element = element;
     d.centre = centre;
     d.count = count;
-    d.neighbour = form->ring;
+    d.neighbour = form->work.ring;
     if (count == 4) {
-        pairs[0] = form->ring[0], pairs[1] = form->ring[2], pairs[2] = form->ring[1], pairs[3] = form->ring[3];
+        pairs[0] = form->work.ring[0], pairs[1] = form->work.ring[2], pairs[2] = form->work.ring[1],
+        pairs[3] = form->work.ring[3];
         d.count = 2;
         d.neighbour = pairs;
         gproji_add_difference(form, group, tangential, &d, term);
@@ -20603,22 +20595,22 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
 
 /* Room for the terms of the largest difference of this mesh. */
 GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
-    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
     if (!term) gproji_fail_memory(&form->error);
     return term;
 }
 
 GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
-    gproji_give(&form->own, term, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+    gproji_give(&form->own, term, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
 }
 
-/* Fills form->ring with an interior vertex's neighbours by their first variables, returns their number; 0 for other
+/* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for other
    vertices. */
 GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     int32_t count, i;
     if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
-    count = gproj_mesh_one_ring(form->mesh, vertex, form->ring, form->ring_size);
-    for (i = 0; i < count; ++i) form->ring[i] *= 3;
+    count = gproj_mesh_one_ring(form->mesh, vertex, form->work.ring, form->work.ring_size);
+    for (i = 0; i < count; ++i) form->work.ring[i] *= 3;
     return count;
 }
 
@@ -20765,7 +20757,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
         int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
         for (k = 0; k < degree; ++k, h = mesh->next[h]) {
             int32_t neighbour = mesh->face[mesh->twin[h]];
-            form->ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
+            form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
             count += neighbour >= 0;
         }
         if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f, term);
@@ -20773,8 +20765,8 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
         for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
             gproji_difference d;
             int32_t pair[2];
-            pair[0] = form->ring[k];
-            pair[1] = form->ring[k + 2];
+            pair[0] = form->work.ring[k];
+            pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
             d.element = f;
             d.centre = form->normal[f];
@@ -21321,14 +21313,14 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
 
-/* Linearises scale |a(v)| of a face at form->area: sets 3 coefficients a corner; returns the constant. */
+/* Linearises scale |a(v)| of a face at form->work.area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
     int32_t h = mesh->face_halfedge[face], k, c;
     double normal[3], slope[3], constant;
-    gproji_copy3(form->area + 3 * (size_t)face, normal);
+    gproji_copy3(form->work.area + 3 * (size_t)face, normal);
     constant = scale * gproji_length3(normal);
     gproji_normalise3(normal, none);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
@@ -21367,7 +21359,7 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     if (!term) return -1;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count; ++f)
-        area += gproji_length3(form->area + 3 * (size_t)f) / form->mesh->face_count;
+        area += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
     common = gproj_system_add_variables(form->system, 1, 1, &area);
     part->group =
         gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
@@ -21421,8 +21413,7 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
         return -1;
     }
     part->target = volume * form->scale * form->scale * form->scale;
-    part->gradient =
-        (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
     if (!part->gradient) {
         gproji_fail_memory(&form->error);
         return -1;
@@ -21496,7 +21487,9 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
-    if (!gproji_form_ready(form) || !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces)) return -1;
+    if (!gproji_form_ready(form) ||
+        !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces))
+        return -1;
     part = gproji_new_part(form, count);
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
     term = gproji_take_terms(form);
@@ -21535,7 +21528,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
-        gproji_copy3(form->area + 3 * (size_t)f, d);
+        gproji_copy3(form->work.area + 3 * (size_t)f, d);
         gproji_sum_add(&areas, gproji_length3(d));
         gproji_normalise3(d, none);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
@@ -21583,8 +21576,7 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gpr
     if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
     part->price[0] = price[0] / form->scale;
     part->price[1] = price[1] / form->scale / form->scale;
-    part->gradient =
-        (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
     if (!part->gradient) {
         gproji_fail_memory(&form->error);
         return -1;
@@ -21834,8 +21826,8 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
         int32_t *local;
         if (!(s->axes[vertex] >> c & 1)) continue;
         if (c == 2 && s->load_start[vertex] < s->load_start[vertex + 1]) break;
-        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term,
-                                       spokes > 0 ? 2 * spokes + 1 : 0, 0, vertex);
+        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term, spokes > 0 ? 2 * spokes + 1 : 0,
+                                       0, vertex);
         for (k = 0; k < spokes && local; ++k) {
             local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
             local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
@@ -22001,7 +21993,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     edge_terms = 12 * (size_t)form->mesh->edge_count;
     gproji_expect_group(form, s->group, 0, 3 * (size_t)v, edge_terms + 3 * (size_t)s->load_start[v],
                         edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
-    spokes = 2 * (size_t)form->ring_size;
+    spokes = 2 * (size_t)form->work.ring_size;
     count = spokes + 3 * most;
     spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
     term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
@@ -22026,13 +22018,13 @@ GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
 
 static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
 
-/* sign w >= 0, a lazy bound: rows without a chance to act stay dormant. */
+/* sign w >= 0. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
     if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
-    if (group >= 0) form->system->group[group].lazy = true;
+    if (group >= 0) form->system->group[group].lazy = true; /* a good step is not found again for them */
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
@@ -23935,18 +23927,17 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
    statics, guard, corners, solve.
 
-   One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
-   is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
-   (coefficients, constants, weights), one byte for these.
+   One description of the format (gproji_pass_state) counts, writes, checks and reads it, depending on the stream's mode.
+   All integers are little-endian; a double is its 64 bits, but coefficients, constants and weights, most of which are
+   small numbers of eighths, have one byte for these.
 
        8 bytes "gprojstD", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
 
-   The fingerprint is a hash of what a form is made of: mesh, variables, rows with their terms' variables, but none of the
-   numbers that the state has. A state is checked from its beginning to its end before any of it is read, so that what is
-   refused changes nothing.
+   The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that the state
+   has. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
 
-   Groups that the library adds itself, when they are first needed, may be missing in either: a form gets those of the
-   state, and those that the state does not have lose their weight. */
+   Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or in
+   the state: then they lose their weight. */
 
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
@@ -23977,8 +23968,8 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     case GPROJI_OWN_CLOSENESS: return form->closeness;
     case GPROJI_OWN_GUARD: return form->guard ? form->guard->group : -1;
     case GPROJI_OWN_FORCES: return form->statics ? form->statics->guidance : -1;
-    case GPROJI_OWN_DRAG_FAIRNESS: return form->drag_fairness;
-    case GPROJI_OWN_DRAG_HANDLES: return form->drag_handles;
+    case GPROJI_OWN_DRAG_FAIRNESS: return form->release.fairness;
+    case GPROJI_OWN_DRAG_HANDLES: return form->release.handles;
     case GPROJI_OWN_METRIC: return form->smooth;
     case GPROJI_OWN_CORNERS: return form->corners ? form->corners->group : -1;
     case GPROJI_OWN_BRAKE: return form->statics ? form->statics->brake : -1;
@@ -23986,7 +23977,7 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     }
 }
 
-/* Of which kind is a group? The caller's: none. */
+/* The kind of a group; none for the caller's. */
 GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t group) {
     int32_t own;
     for (own = 1; own < GPROJI_OWN_COUNT; ++own)
@@ -23994,7 +23985,7 @@ GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t 
     return GPROJI_OWN_NONE;
 }
 
-/* Adds it without a weight where it is missing. */
+/* Adds the group of this kind without a weight, if it is missing. */
 GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (!gproji_form_ready(form) || gproji_own_group(form, own) >= 0) return;
     switch (own) {
@@ -24007,12 +23998,13 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
     case GPROJI_OWN_BRAKE: gproji_add_force_metric(form); break;
     case GPROJI_OWN_DRAG_FAIRNESS:
-        form->drag_fairness = gproj_add_fairness(form, 0);
-        if (form->drag_fairness >= 0) gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
+        form->release.fairness = gproj_add_fairness(form, 0);
+        if (form->release.fairness >= 0)
+            gproji_set_group_name(&form->system->group[form->release.fairness], "drag fairness");
         break;
     case GPROJI_OWN_DRAG_HANDLES:
-        form->drag_handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all), "drag handles",
-                                               GPROJ_WISH, NULL, 0);
+        form->release.handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all),
+                                                  "drag handles", GPROJ_WISH, NULL, 0);
         break;
     default: break;
     }
@@ -24020,32 +24012,31 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 
 /* -- a stream of numbers -- */
 
-typedef enum gproji_way {
+typedef enum gproji_mode {
     GPROJI_COUNT,
     GPROJI_WRITE,
     GPROJI_CHECK,
     GPROJI_READ
-} gproji_way;
+} gproji_mode;
 
 typedef struct gproji_stream {
-    gproji_way way;
-    uint8_t *out;      /* what is written */
-    const uint8_t *in; /* what is checked or read */
+    gproji_mode mode;
+    uint8_t *out;      /* written */
+    const uint8_t *in; /* checked or read */
     size_t at, size;
-    const char *wrong; /* what is wrong with it; NULL: nothing */
+    const char *wrong; /* its error; NULL: none */
 } gproji_stream;
 
-GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->way >= GPROJI_CHECK; }
+GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
 
-/* Something is wrong with it. To be counted is all right for anything. */
+/* Notes an error of the stream. Counting takes no error: it has no numbers yet. */
 GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
-    if (stream->way != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
+    if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
 }
 
-/* The lowest `bytes` bytes of a number, the lowest first. */
-GPROJI_INLINE void gproji_put_bytes(uint8_t *out, uint64_t value, int32_t bytes) {
-    int32_t i;
-    for (i = 0; i < bytes; ++i) out[i] = (uint8_t)(value >> 8 * i);
+GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream, gproj_form *form) {
+    gproji_fail_memory(&form->error);
+    gproji_spoil(stream, "out of memory");
 }
 
 GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
@@ -24055,33 +24046,34 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
     return value;
 }
 
-/* Passes the lowest `bytes` bytes of a value: returns what stands there when it comes in, 0 behind the end. */
+/* Passes the lowest `bytes` bytes of a value, the lowest first; returns the value that comes in, 0 behind the end. */
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
-    if (stream->way != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
+    int32_t i;
+    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
         gproji_spoil(stream, "it ends too early");
         return 0;
     }
-    if (stream->way == GPROJI_WRITE) gproji_put_bytes(stream->out + at, value, bytes);
+    for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
     if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
     stream->at += (size_t)bytes;
     return value;
 }
 
-/* These pass a value, and set it when it is read. All return what has passed. */
+/* The following pass a value, set it when it is read, and return the passed one. */
 
 GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
     if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
     return (int32_t)passed;
 }
 
 GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
     if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed == 1;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
     return passed == 1;
 }
 
@@ -24093,7 +24085,7 @@ GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, 
     bits = gproji_pass_bytes(stream, bits, 8);
     memcpy(&passed, &bits, sizeof passed);
     if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed;
     return passed;
 }
 
@@ -24102,43 +24094,55 @@ GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, s
     for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
 }
 
-/* The byte of a small number of eighths; -0 is none, it has a sign. */
-GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
-    int32_t whole;
-    if (!(8 * fabs(value) <= (double)GPROJI_SMALL_MOST)) return GPROJI_SMALL_NONE;
-    whole = (int32_t)(8 * value);
-    if (whole != 8 * value || (whole == 0 && 1 / value < 0)) return GPROJI_SMALL_NONE;
-    return (uint64_t)(whole + GPROJI_SMALL_MOST);
-}
-
-/* A number that is often a small one of eighths. */
+/* Passes a number that often is a small one of eighths, in one byte; others have 8 bytes more. */
 GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
-    uint64_t small = gproji_pass_bytes(stream, gproji_comes_in(stream) ? 0 : gproji_small_byte(*value), 1);
-    double passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
+    uint64_t small = GPROJI_SMALL_NONE;
+    double passed;
+    if (!gproji_comes_in(stream) && 8 * fabs(*value) <= (double)GPROJI_SMALL_MOST) {
+        int32_t whole = (int32_t)(8 * *value);
+        /* -0 would lose its sign. */
+        if (whole == 8 * *value && !(whole == 0 && 1 / *value < 0)) small = (uint64_t)(whole + GPROJI_SMALL_MOST);
+    }
+    small = gproji_pass_bytes(stream, small, 1);
+    passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
         gproji_spoil(stream, "a number is out of its range");
-    } else if (stream->way == GPROJI_READ) {
+    } else if (stream->mode == GPROJI_READ) {
         *value = passed;
     }
 }
 
 /* -- the state -- */
 
-/* The rows' weights, and what they are the products of where elements have weights. */
-GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+/* Passes the rows' weights and, if `numbers`, their constants and coefficients. */
+GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_form *form, gproji_group *g, bool numbers) {
     bool shared = g->share != NULL;
+    uint32_t t;
     int32_t r;
+    for (r = 0; numbers && r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
+    for (r = 0; numbers && r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
+            double *a = &g->term[g->row[r].term + t].a, now = *a;
+            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
+            if (memcmp(&now, a, sizeof now) == 0) continue;
+            /* Terms that rows share stay shared until a different coefficient comes in. */
+            if (g->common && !gproji_own_terms(form->system, g)) {
+                gproji_spoil_memory(stream, form);
+                return;
+            }
+            gproji_set_coefficient(g, &g->row[r], t, now);
+        }
     for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_number(stream, &g->row[r].weight, 0, 1e100);
+    /* The factors of weights, if elements have weights. */
     if (!gproji_pass_bool(stream, &shared)) {
-        for (r = 0; stream->way == GPROJI_READ && g->share && r < g->row_count; ++r)
+        for (r = 0; stream->mode == GPROJI_READ && g->share && r < g->row_count; ++r)
             g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
         return;
     }
     if (gproji_comes_in(stream) && !gproji_share_weights(form->system, g)) {
-        gproji_fail_memory(&form->error);
-        gproji_spoil(stream, "out of memory");
+        gproji_spoil_memory(stream, form);
         return;
     }
     for (r = 0; r < g->row_count && !stream->wrong; ++r) {
@@ -24147,69 +24151,14 @@ GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form
     }
 }
 
-/* The constants and coefficients of a group's rows. Terms that rows have in common stay so if nothing else comes in. */
-GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproj_form *form, gproji_group *g) {
-    uint32_t t;
-    int32_t r;
-    for (r = 0; r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
-    for (r = 0; r < g->row_count; ++r)
-        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
-            double *a = &g->term[g->row[r].term + t].a, now = *a;
-            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
-            if (memcmp(&now, a, sizeof now) == 0) continue;
-            if (g->common && !gproji_own_terms(form->system, g)) {
-                gproji_fail_memory(&form->error);
-                gproji_spoil(stream, "out of memory");
-                return;
-            }
-            gproji_set_coefficient(g, &g->row[r], t, now);
-        }
-}
-
-/* What of a solve in frames is passed. */
+/* How much of a solve in frames is passed. */
 typedef enum gproji_passing {
     GPROJI_PASS_NONE,
     GPROJI_PASS_SOLVE,
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* What decides how steps are found: whether the group has ever counted (gproji_wake_groups), which rows close, and which
-   of the guard wait. */
-GPROJI_INTERNAL void gproji_pass_choice(gproji_stream *stream, gproj_form *form, gproji_group *g) {
-    int32_t closing = g->closing, r;
-    bool idle = g->idle, same;
-    gproji_pass_bool(stream, &idle);
-    gproji_pass_integer(stream, &closing, 0, g->row_count);
-    same = idle == g->idle && closing == g->closing;
-    if (stream->way == GPROJI_READ) g->idle = idle, g->closing = closing;
-    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
-    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
-        bool waits = g->row[r].waits;
-        gproji_pass_bool(stream, &waits);
-        same = same && waits == g->row[r].waits;
-        if (stream->way == GPROJI_READ) g->row[r].waits = waits;
-    }
-    if (stream->way == GPROJI_READ && !same) form->system->schur.stale = true; /* to be decided anew */
-}
-
-/* The corners that have rows, in their order. Those that come in get rows. */
-GPROJI_INTERNAL void gproji_pass_corners(gproji_stream *stream, gproj_form *form) {
-    const gproji_corners *guard = form->corners;
-    int32_t end = 2 * form->mesh->halfedge_count, r;
-    int32_t count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
-    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
-    for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r];
-        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
-        if (!gproji_comes_in(stream) || stream->wrong) continue;
-        if (form->mesh->face[corner / 2] < 0)
-            gproji_spoil(stream, "a corner is not one of a face");
-        else if (guard->row[corner] < 0)
-            gproji_add_corner(form, corner);
-    }
-}
-
-/* What the guard has during a solve: the corners as they were at its beginning, and the rows. */
+/* Passes the rows of corners during a solve, and the corners' sizes and axes at its beginning. */
 GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *form, gproji_group *g,
                                              gproji_passing passing) {
     gproji_corners *guard = form->corners;
@@ -24219,7 +24168,8 @@ GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *
     gproji_pass_doubles(stream, guard->axis, 3 * (size_t)form->mesh->face_count);
     gproji_pass_integer(stream, &guard->wakings, 0, INT32_MAX / 2);
     count = gproji_pass_integer(stream, &count, 0, g->row_count);
-    for (r = 0; stream->way == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
+    /* The form may have rows that the state does not have: they get no weight. */
+    for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
     for (r = 0; r < count && !stream->wrong; ++r) {
         int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r], row;
         corner = gproji_pass_integer(stream, &corner, 0, end - 1);
@@ -24233,29 +24183,42 @@ GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *
         if (passing == GPROJI_PASS_NEAREST)
             gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
     }
-    if (stream->way == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
+    if (stream->mode == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
 }
 
-/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
+/* Passes a group. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
    any of a group that the library has added (`own`): they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
+    bool idle = g->idle, reading = stream->mode == GPROJI_READ, same;
+    int32_t closing = g->closing, r;
     double none = 0;
-    int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
     gproji_pass_number(stream, &schedule.decay, 0, 1);
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
-    if (stream->way == GPROJI_READ) g->schedule = schedule;
+    if (reading) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
-    gproji_pass_choice(stream, form, g);
+    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows close, and which
+       rows of the guard are dormant: if they change, it is decided anew. */
+    gproji_pass_bool(stream, &idle);
+    gproji_pass_integer(stream, &closing, 0, g->row_count);
+    same = idle == g->idle && closing == g->closing;
+    if (reading) g->idle = idle, g->closing = closing;
+    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
+    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
+        bool waits = g->row[r].waits;
+        gproji_pass_bool(stream, &waits);
+        same = same && waits == g->row[r].waits;
+        if (reading) g->row[r].waits = waits;
+    }
+    if (reading && !same) form->system->schur.stale = true;
     if (own && !passing) return;
     if (g->safeguard) {
         gproji_pass_corner_rows(stream, form, g, passing);
         return;
     }
-    if (passing || !g->refresh) gproji_pass_numbers(stream, form, g);
-    gproji_pass_weights(stream, form, g);
+    gproji_pass_rows(stream, form, g, passing || !g->refresh);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
         if (passing == GPROJI_PASS_NEAREST)
@@ -24263,25 +24226,16 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     }
 }
 
-/* Multipliers for a solve for the nearest point that comes in. */
-GPROJI_INTERNAL void gproji_make_multipliers(gproji_stream *stream, gproj_form *form) {
-    gproj_system *s = form->system;
-    int32_t i;
-    bool all = s->compiled && s->sum;
-    for (i = 0; i < s->group_count; ++i) all = all && s->group[i].multiplier;
-    if (all || !gproji_comes_in(stream) || stream->wrong) return;
-    if (gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)) return;
-    gproji_fail_memory(&form->error);
-    gproji_spoil(stream, "out of memory");
-}
-
-/* A solve in frames, if one is on. */
+/* Passes a solve in frames, if one is on. */
 GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
     gproji_solve solve = form->solve;
     gproji_loop *loop = &solve.loop;
-    bool nearest, begun;
+    gproj_system *s = form->system;
+    gproji_passing passing;
+    bool nearest, begun, ready = s->compiled && s->sum;
+    int32_t i;
     if (!gproji_pass_bool(stream, &solve.on)) {
-        if (stream->way == GPROJI_READ) form->solve.on = form->solve.finished = false;
+        if (stream->mode == GPROJI_READ) form->solve.on = form->solve.finished = false;
         return GPROJI_PASS_NONE;
     }
     gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
@@ -24307,36 +24261,23 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     gproji_pass_bool(stream, &loop->options.smooth);
     gproji_pass_bool(stream, &loop->stiff);
     gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &form->system->stiffness, 0, DBL_MAX);
-    gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX / 2);
-    if (nearest && begun) gproji_make_multipliers(stream, form);
-    if (stream->way != GPROJI_READ) return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
+    gproji_pass_integer(stream, &s->late, 0, INT32_MAX / 2);
+    passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    /* Multipliers that are about to come in need their room. */
+    for (i = 0; i < s->group_count; ++i) ready = ready && s->group[i].multiplier;
+    if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
+        !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
+        gproji_spoil_memory(stream, form);
+    if (stream->mode != GPROJI_READ) return passing;
     if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
-    loop->system = form->system;
+    loop->system = s;
     loop->restored = loop->begun;
     loop->paused = solve.finished = false;
     memset(loop->result.seconds, 0, sizeof loop->result.seconds);
-    solve.structure = gproji_structure_of(form->system);
+    solve.structure = gproji_structure_of(s);
     form->solve = solve;
-    return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
-}
-
-/* The last segment that vertex i of a gliding part may be on; -1: it stays where it was. */
-GPROJI_INTERNAL int32_t gproji_last_segment(const gproji_part *part, int32_t i) {
-    if (part->curve) return part->curve->segment_count - 1;
-    return gproji_stays(part, i) ? -1 : part->own_curve[part->curve_of[i]]->segment_count - 1;
-}
-
-/* What the form and its parts remember. */
-GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) {
-    gproji_part *part;
-    int32_t i;
-    for (part = form->part; part; part = part->next)
-        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i)
-            gproji_pass_integer(stream, &part->segment[i], -1, gproji_last_segment(part, i));
-    if (!form->statics) return;
-    gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
-    gproji_pass_bool(stream, &form->statics->started);
+    return passing;
 }
 
 /* The groups, each after its kind; those of the form that do not come in lose their weight. */
@@ -24364,41 +24305,65 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
         }
     }
-    for (own = 1; stream->way == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
+    for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
             s->group[gproji_own_group(form, (gproji_own)own)].schedule.weight = 0;
 }
 
-/* The kinds of the groups that the library has added, in their order. Those that come in are added to the form. */
+/* Passes the kinds of the groups that the library has added, and the corners that have rows, in their order. The form
+   gets those that come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
-    int32_t list[GPROJI_OWN_COUNT], count = 0, k;
-    for (k = 0; !gproji_comes_in(stream) && k < form->system->group_count; ++k)
+    int32_t list[GPROJI_OWN_COUNT], end = 2 * form->mesh->halfedge_count, count = 0, k;
+    bool in = gproji_comes_in(stream);
+    const gproji_corners *guard;
+    for (k = 0; !in && k < form->system->group_count; ++k)
         if (gproji_kind_of_group(form, k)) list[count++] = (int32_t)gproji_kind_of_group(form, k);
     count = gproji_pass_integer(stream, &count, 0, GPROJI_OWN_COUNT - 1);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        bool of_forces;
-        if (gproji_comes_in(stream)) list[k] = 0;
-        list[k] = (int32_t)gproji_pass_bytes(stream, (uint64_t)list[k], 1);
-        of_forces = list[k] == GPROJI_OWN_FORCES || list[k] == GPROJI_OWN_BRAKE;
-        if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (form->statics || !of_forces))
-            gproji_add_own_group(form, (gproji_own)list[k]);
+        int32_t kind = (int32_t)gproji_pass_bytes(stream, in ? 0 : (uint64_t)list[k], 1);
+        bool of_forces = kind == GPROJI_OWN_FORCES || kind == GPROJI_OWN_BRAKE;
+        if (in && kind < GPROJI_OWN_COUNT && (form->statics || !of_forces))
+            gproji_add_own_group(form, (gproji_own)kind);
     }
-    gproji_pass_corners(stream, form);
+    guard = form->corners;
+    count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
+    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
+    for (k = 0; k < count && !stream->wrong; ++k) {
+        int32_t corner = in ? 0 : guard->corner[k];
+        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
+        if (!in || stream->wrong) continue;
+        if (form->mesh->face[corner / 2] < 0)
+            gproji_spoil(stream, "a corner is not one of a face");
+        else if (guard->row[corner] < 0)
+            gproji_add_corner(form, corner);
+    }
 }
 
+/* Passes the state between head and checksum. */
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
     gproji_passing passing;
+    gproji_part *part;
+    int32_t i;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
     passing = gproji_pass_solve(stream, form);
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
-    gproji_pass_parts(stream, form);
+    for (part = form->part; part; part = part->next)
+        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
+            const gproj_curve *curve = part->curve;
+            if (!curve && !gproji_stays(part, i)) curve = part->own_curve[part->curve_of[i]];
+            gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        }
+    if (form->statics) {
+        gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
+        gproji_pass_bool(stream, &form->statics->started);
+    }
     gproji_pass_groups(stream, form, passing);
 }
 
-/* -- what it belongs to -- */
+/* -- the form that it belongs to -- */
 
 /* A hash by 64 bits at once, with the numbers of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and in
    the hash: a change of one value never goes unnoticed. */
@@ -24432,44 +24397,45 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
     return hash;
 }
 
-/* The mesh, as the form was made from it. */
-GPROJI_INTERNAL uint64_t gproji_hash_mesh(uint64_t hash, const gproj_form *form) {
+/* Hashes all that a form is made of, without the groups that the library adds. */
+GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
+    const gproj_system *s = form->system;
+    const gproji_statics *statics = form->statics;
+    const gproji_part *part;
+    size_t vertices = (size_t)mesh->vertex_count;
+    uint64_t hash = gproji_hash_start(), terms;
+    int32_t i, r;
+    uint32_t t;
+    /* 1. The mesh with the positions that the form was made with, and the variables. */
     hash = gproji_hash_integers(hash, mesh->face_degree, (size_t)mesh->face_count);
     hash = gproji_hash_integers(hash, mesh->origin, (size_t)mesh->halfedge_count);
     hash = gproji_hash_integers(hash, mesh->face, (size_t)mesh->halfedge_count);
-    hash = gproji_hash_doubles(hash, form->original, 3 * (size_t)mesh->vertex_count);
+    hash = gproji_hash_doubles(hash, form->original, 3 * vertices);
     hash = gproji_hash_doubles(hash, form->centre, 3);
-    return gproji_hash_doubles(hash, &form->scale, 1);
-}
-
-/* A group's rows without their numbers. */
-GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
-    uint64_t terms = 0;
-    uint32_t t;
-    int32_t r;
-    hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
-    hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
-    hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
-    for (r = 0; r < g->row_count; ++r) {
-        terms += g->row[r].terms;
-        hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
-    }
-    for (r = 0; r < g->row_count; ++r)
-        for (t = 0; t < g->row[r].terms; ++t) {
-            const gproj_term *term = g->term + g->row[r].term + t;
-            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
-            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
-            hash = gproji_hash_step(hash, (uint64_t)i << 32 | j);
+    hash = gproji_hash_doubles(hash, &form->scale, 1);
+    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
+    /* 2. Groups: name, kind, rows with their terms' variables. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        if (gproji_kind_of_group(form, i)) continue;
+        hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
+        hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
+        hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+        for (r = 0, terms = 0; r < g->row_count; ++r) {
+            terms += g->row[r].terms;
+            hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
         }
-    return gproji_hash_step(hash, (uint64_t)g->row_count);
-}
-
-/* What refreshes go by: loads, and the parts' own numbers. */
-GPROJI_INTERNAL uint64_t gproji_hash_parts(uint64_t hash, const gproj_form *form) {
-    size_t vertices = (size_t)form->mesh->vertex_count;
-    const gproji_statics *s = form->statics;
-    const gproji_part *part;
+        for (r = 0; r < g->row_count; ++r)
+            for (t = 0; t < g->row[r].terms; ++t) {
+                const gproj_term *term = g->term + g->row[r].term + t;
+                uint32_t first = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
+                uint32_t second = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
+                hash = gproji_hash_step(hash, (uint64_t)first << 32 | second);
+            }
+        hash = gproji_hash_step(hash, (uint64_t)g->row_count);
+    }
+    /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
         if (gproji_kind_of_group(form, part->group)) continue;
         hash = gproji_hash_integers(hash, part->vertex, (size_t)part->count);
@@ -24478,35 +24444,24 @@ GPROJI_INTERNAL uint64_t gproji_hash_parts(uint64_t hash, const gproj_form *form
         hash = gproji_hash_doubles(hash, part->price, 2);
         hash = gproji_hash_doubles(hash, part->factor, (size_t)part->capacity);
     }
-    if (!s) return hash;
-    hash = gproji_hash_bytes(hash, s->axes, vertices);
-    hash = gproji_hash_doubles(hash, &s->loads.density, 1);
-    hash = gproji_hash_doubles(hash, &s->loads.area_load, 1);
-    hash = gproji_hash_doubles(hash, &s->loads.snow, 1);
-    hash = gproji_hash_doubles(hash, s->edge_density, (size_t)form->mesh->edge_count);
-    return gproji_hash_doubles(hash, s->point_load, 3 * vertices);
-}
-
-/* What a form is made of; not what the library adds to it. */
-GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
-    const gproj_system *s = form->system;
-    uint64_t hash = gproji_hash_mesh(gproji_hash_start(), form);
-    int32_t i;
-    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_kind_of_group(form, i)) hash = gproji_hash_group(hash, &s->group[i]);
-    return gproji_hash_parts(hash, form);
+    if (!statics) return hash;
+    hash = gproji_hash_bytes(hash, statics->axes, vertices);
+    hash = gproji_hash_doubles(hash, &statics->loads.density, 1);
+    hash = gproji_hash_doubles(hash, &statics->loads.area_load, 1);
+    hash = gproji_hash_doubles(hash, &statics->loads.snow, 1);
+    hash = gproji_hash_doubles(hash, statics->edge_density, (size_t)mesh->edge_count);
+    return gproji_hash_doubles(hash, statics->point_load, 3 * vertices);
 }
 
 /* -- the block -- */
 
 static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'D'};
 
-GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
+GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
     gproji_stream stream;
     memset(&stream, 0, sizeof stream);
-    stream.way = way, stream.out = out, stream.in = in, stream.at = at, stream.size = size;
+    stream.mode = mode, stream.out = out, stream.in = in, stream.at = at, stream.size = size;
     return stream;
 }
 
@@ -24517,7 +24472,7 @@ GPROJ_API size_t gproj_state_size(gproj_form *form) {
     return stream.at + GPROJI_STATE_TAIL;
 }
 
-/* Writes the state to as many bytes as it has. */
+/* Writes the state to `size` bytes, which must be its size. */
 GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, size_t size, gproj_error *error) {
     gproji_stream stream = gproji_make_stream(GPROJI_WRITE, out, NULL, sizeof gproji_state_magic, size);
     memcpy(out, gproji_state_magic, sizeof gproji_state_magic);
@@ -24540,44 +24495,38 @@ GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t siz
     return gproji_write_state(form, (uint8_t *)buffer, size, error);
 }
 
-/* Refuses blocks that are no state of this form, or damaged; `in` is then behind the head. */
-GPROJI_INTERNAL gproj_code gproji_open_state(gproji_stream *in, const gproj_form *form, gproj_error *error) {
-    gproji_stream tail = *in;
-    uint64_t size;
-    if (!in->in || in->size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
-        memcmp(in->in, gproji_state_magic, sizeof gproji_state_magic) != 0)
+/* Checks a block and reads it; a drag may be under way. */
+GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state, size_t size, gproj_error *error) {
+    gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, sizeof gproji_state_magic, size);
+    gproji_stream tail = in, check;
+    uint64_t stated;
+    /* 1. Refuse what is no state of this form, or damaged. */
+    if (!state || size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
+        memcmp(state, gproji_state_magic, sizeof gproji_state_magic) != 0)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: these bytes are no saved state of a form");
-    in->at = sizeof gproji_state_magic;
-    size = gproji_pass_bytes(in, 0, 8);
-    if (size != in->size)
+    stated = gproji_pass_bytes(&in, 0, 8);
+    if (stated != size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                           "state: it says that it has %l bytes, but there are %l", (int64_t)size, (int64_t)in->size);
-    tail.at = in->size - GPROJI_STATE_TAIL;
-    if (gproji_hash_bytes(gproji_hash_start(), in->in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
+                           "state: it says that it has %l bytes, but there are %l", (int64_t)stated, (int64_t)size);
+    tail.at = size - GPROJI_STATE_TAIL;
+    if (gproji_hash_bytes(gproji_hash_start(), in.in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
-    if (gproji_pass_bytes(in, 0, 8) != gproji_fingerprint(form))
+    if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
         return gproji_fail(
             error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
             "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
             "is not the same");
-    in->size -= GPROJI_STATE_TAIL;
-    return GPROJ_OK;
-}
-
-/* Checks a block and reads it; a drag may be under way. */
-GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state, size_t size, gproj_error *error) {
-    gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, 0, size), check;
-    gproj_code code = gproji_open_state(&in, form, error);
-    if (code) return code;
+    in.size -= GPROJI_STATE_TAIL;
+    /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
     gproji_pass_state(&check, form);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (check.wrong || check.at != in.size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "state: it is damaged: %s",
                            check.wrong ? check.wrong : "more follows than it should have");
-    in.way = GPROJI_READ;
+    in.mode = GPROJI_READ;
     gproji_pass_state(&in, form);
     form->system->changed = false;
     return GPROJ_OK;
@@ -24605,7 +24554,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    no harm.
    The responses of all handles' coordinates are made orthonormal in D (pivoted Gram and Schmidt, so that handles which
    depend on each other are found): Q = (q_1, ..., q_r), Q'DQ = I. What they do to the handles is L = S'Q, and a move of
-   the handles by e = (S'S) d takes dx = Q m with the m that makes |L m - e| smallest. */
+   the handles by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|. */
 
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
 static const double gproji_drag_light = 1e-2;   /* the root of what other variables count beside vertices */
@@ -24620,6 +24569,15 @@ enum {
     GPROJI_DRAG_GUIDED = 5
 };
 
+/* S has the entry weight[e] in column 3 k + c and row 3 vertex[e] + c, for e in start[k] .. start[k + 1] - 1. */
+typedef struct gproji_handle_list {
+    int64_t *start;
+    int32_t *vertex;
+    double *weight;
+    double *from; /* 3 numbers a handle: the caller's positions at the beginning */
+    double *gram; /* handles x handles: S'S for one axis */
+} gproji_handle_list;
+
 struct gproj_drag {
     gproji_heap own;
     gproj_error error;
@@ -24627,26 +24585,21 @@ struct gproj_drag {
     gproji_structure structure; /* of the system at the beginning */
     gproj_drag_options options;
     gproj_drag_info info;
-    int32_t columns;   /* 3 * handles */
-    int32_t variables; /* of the system */
-    int64_t *start;    /* the handles, in compressed columns */
-    int32_t *vertex;
-    double *weight;
-    double *from;             /* columns: the caller's positions of the handles at the beginning */
-    double *gram;             /* handles x handles: S'S */
+    gproji_handle_list handle;
+    int32_t columns;          /* 3 * handles */
+    int32_t variables;        /* of the system */
     double *first;            /* 3 * vertex_count: the vertices at the beginning */
     double *begun;            /* variables: x before the drag */
     double *last;             /* variables: x before a move */
-    double *base;             /* variables: x where the rows were linearised */
+    double *base;             /* variables: x at the last linearisation */
     double *held;             /* columns: S'v there */
-    double *wanted;           /* columns: S'v as the handles want it */
+    double *wanted;           /* columns: S'v wanted by the handles */
     double *motion;           /* columns x variables: Q */
     double *lift;             /* columns x columns: L by columns */
     double *pull;             /* columns x columns: (L'L)^-1 L', by rows */
-    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; what the handles lack */
-    double *amount;           /* columns: m */
+    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; e - L m, and m */
     int32_t *name;            /* columns: the handle's coordinate that each column of Q began with */
-    gproj_schedule *schedule; /* during the release: those of the form's wishes */
+    gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
     gproji_pool pool;
@@ -24656,58 +24609,19 @@ struct gproj_drag {
 
 /* out = S'v: 3 numbers a handle. */
 GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double *v, double *out) {
+    const gproji_handle_list *list = &drag->handle;
     int32_t k, c;
     int64_t e;
     for (k = 0; k < drag->info.handles; ++k) {
         gproji_set3(0, 0, 0, out + 3 * (size_t)k);
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
+        for (e = list->start[k]; e < list->start[k + 1]; ++e)
             for (c = 0; c < 3; ++c)
-                out[3 * (size_t)k + (size_t)c] += drag->weight[e] * v[3 * (size_t)drag->vertex[e] + (size_t)c];
+                out[3 * (size_t)k + (size_t)c] += list->weight[e] * v[3 * (size_t)list->vertex[e] + (size_t)c];
     }
 }
 
-/* Column 3 k + c of Q = the force of handle k along axis c. */
-GPROJI_INTERNAL void gproji_start_responses(gproj_drag *drag) {
-    size_t n = (size_t)drag->variables;
-    int32_t j;
-    int64_t e;
-    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
-    for (j = 0; j < drag->columns; ++j)
-        for (e = drag->start[j / 3]; e < drag->start[j / 3 + 1]; ++e)
-            drag->motion[n * (size_t)j + 3 * (size_t)drag->vertex[e] + (size_t)(j % 3)] += drag->weight[e];
-}
-
-/* Q = eps^2 D Q */
-GPROJI_INTERNAL void gproji_scale_responses(gproj_drag *drag, double epsilon) {
-    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
-    double heavy = epsilon * epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
-    int32_t j;
-    for (j = 0; j < drag->columns; ++j) {
-        double *column = drag->motion + n * (size_t)j;
-        for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
-    }
-}
-
-/* Q = (A + U U')^-1 Q for the columns from `first` on: see gproji_wide_correct. `wide`: columns of U. */
-GPROJI_INTERNAL void gproji_solve_responses(gproj_drag *drag, int32_t first, int32_t wide) {
-    gproj_system *s = drag->form->system;
-    gproj_cholesky *c = s->cholesky;
-    size_t n = (size_t)drag->variables;
-    double *column = drag->motion + n * (size_t)first;
-    int32_t j;
-    if (wide == 0) {
-        gproj_cholesky_solve(c, drag->columns - first, column, column);
-        return;
-    }
-    gproji_cholesky_forward(c, drag->columns - first, column, column);
-    for (j = first; j < drag->columns; ++j, column += n) {
-        memset(s->wide_vector, 0, (size_t)wide * sizeof *s->wide_vector);
-        gproji_wide_correct(s, wide, column);
-        gproji_cholesky_backward(c, column, column);
-    }
-}
-
-/* Rows, gradients and residual at x; what must hold has the weight 1 and nothing else acts. */
+/* Linearises at x, where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
+   Returns the residual. */
 GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
     gproj_system *s = drag->form->system;
     gproji_loop loop;
@@ -24729,94 +24643,98 @@ GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
     return loop.standing.residual;
 }
 
-/* A = G'G + eps^2 D, factored; the first responses go along as far as there is room for them. */
-GPROJI_INTERNAL bool gproji_factor_tangents(gproj_drag *drag, double epsilon, int32_t sides) {
-    gproji_loading loading;
-    gproj_system *s = drag->form->system;
-    loading.system = s, loading.epsilon = epsilon, loading.curved = false;
-    loading.light_from = 3 * drag->form->mesh->vertex_count, loading.light = gproji_drag_light * epsilon;
-    return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, drag->motion) == GPROJ_FACTORED;
-}
-
-/* Makes U ready, and a step that takes the residual off, where `base` is to move by it. Returns how many columns U has. */
-GPROJI_INTERNAL int32_t gproji_prepare_wide(gproj_drag *drag, bool restore) {
-    gproj_system *s = drag->form->system;
-    int32_t i, wide = 0;
-    if (s->wide_count == 0 && !restore) return 0;
-    gproji_merit_gradient(s);
-    wide = gproji_step_sides(s);
-    gproji_finish_step(s, wide, false);
-    for (i = 0; restore && i < drag->variables; ++i) drag->base[i] += s->step[i];
-    return wide;
-}
-
-/* The responses in Q: see (1). The first ones go along with the factorisation, unless rows are wide. False: the matrix
+/* Finds the responses Q by (1). restore: `base` moves by a step that takes the residual off, too. False: the matrix
    cannot be factored. */
 GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
-    int32_t round, wide, first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns);
-    gproji_start_responses(drag);
-    gproji_scale_responses(drag, gproji_drag_epsilon);
-    if (!gproji_factor_tangents(drag, gproji_drag_epsilon, first)) return false;
-    if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
-    wide = gproji_prepare_wide(drag, restore);
-    gproji_solve_responses(drag, first, wide);
-    for (round = 1; round < GPROJI_DRAG_ROUNDS; ++round) {
-        gproji_scale_responses(drag, gproji_drag_epsilon);
-        gproji_solve_responses(drag, 0, wide);
+    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
+    double heavy = gproji_drag_epsilon * gproji_drag_epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
+    int32_t first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns), wide = 0, round, j;
+    gproji_loading loading;
+    int64_t e;
+    /* 1. Column 3 k + c begins as the force of handle k along axis c. */
+    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
+    for (j = 0; j < drag->columns; ++j)
+        for (e = drag->handle.start[j / 3]; e < drag->handle.start[j / 3 + 1]; ++e)
+            drag->motion[n * (size_t)j + 3 * (size_t)drag->handle.vertex[e] + (size_t)(j % 3)] +=
+                drag->handle.weight[e];
+    for (round = 0; round < GPROJI_DRAG_ROUNDS; ++round, first = 0) {
+        double *column = drag->motion;
+        /* 2. Q = eps^2 D Q */
+        for (j = 0; j < drag->columns; ++j, column += n)
+            for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
+        /* 3. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the factorisation,
+           up to the batch's size. */
+        if (round == 0) {
+            loading.system = s, loading.epsilon = gproji_drag_epsilon, loading.curved = false;
+            loading.light_from = (int32_t)vertices, loading.light = gproji_drag_light * gproji_drag_epsilon;
+            if (gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, first, drag->motion) !=
+                GPROJ_FACTORED)
+                return false;
+            if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
+            if (s->wide_count > 0 || restore) {
+                gproji_merit_gradient(s);
+                wide = gproji_step_sides(s);
+                gproji_finish_step(s, wide, false);
+            }
+            for (i = 0; restore && i < n; ++i) drag->base[i] += s->step[i];
+        }
+        /* 4. Q = (A + U U')^-1 Q, the dense rows being the columns of U: see gproji_wide_correct. */
+        column = drag->motion + n * (size_t)first;
+        if (wide == 0) {
+            gproj_cholesky_solve(s->cholesky, drag->columns - first, column, column);
+            continue;
+        }
+        gproji_cholesky_forward(s->cholesky, drag->columns - first, column, column);
+        for (j = first; j < drag->columns; ++j, column += n) {
+            memset(s->wide_vector, 0, (size_t)wide * sizeof *s->wide_vector);
+            gproji_wide_correct(s, wide, column);
+            gproji_cholesky_backward(s->cholesky, column, column);
+        }
     }
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
     return true;
 }
 
-/* Swaps columns i and j of Q and of S'Q, and their names. */
-GPROJI_INTERNAL void gproji_swap_responses(gproj_drag *drag, int32_t i, int32_t j) {
-    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
-    double *a = drag->motion + n * (size_t)i, *b = drag->motion + n * (size_t)j;
-    double *c = drag->work + m * (size_t)i, *d = drag->work + m * (size_t)j, other;
-    int32_t named = drag->name[i];
-    for (k = 0; k < n; ++k) other = a[k], a[k] = b[k], b[k] = other;
-    for (k = 0; k < m; ++k) other = c[k], c[k] = d[k], d[k] = other;
-    drag->name[i] = drag->name[j];
-    drag->name[j] = named;
-}
-
-/* How far the response in column i moves its own handle, beside what it would without constraints. */
+/* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
 GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
     size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
-    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] / drag->gram[handle * (handles + 1)];
+    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] /
+           drag->handle.gram[handle * (handles + 1)];
 }
 
-/* Column r becomes orthonormal: q = q / |q|_D, and is taken off the columns after it. */
-GPROJI_INTERNAL void gproji_take_off_response(gproj_drag *drag, int32_t r) {
-    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
-    double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
-    double scale = 1 / sqrt(work[drag->name[r]]);
-    int32_t i;
-    for (k = 0; k < n; ++k) q[k] *= scale;
-    for (k = 0; k < m; ++k) l[k] = work[k] * scale;
-    for (i = r + 1; i < drag->columns; ++i) {
-        double part = l[drag->name[i]], *other = drag->motion + n * (size_t)i;
-        work = drag->work + m * (size_t)i;
-        for (k = 0; k < n; ++k) other[k] -= part * q[k];
-        for (k = 0; k < m; ++k) work[k] -= part * l[k];
-    }
-}
-
-/* Makes the responses orthonormal, the one that yields most first, until the rest does not yield. */
+/* Makes the responses orthonormal in D by pivoted Gram and Schmidt, the one that yields most first, until the rest does
+   not yield. Column i of S'Q is in `work`; entry name[i] there is q'D q, q being the projection of that force. */
 GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
     int32_t i, r, best;
-    size_t m = (size_t)drag->columns;
     for (i = 0; i < drag->columns; ++i) {
         drag->name[i] = i;
-        gproji_gather_handles(drag, drag->motion + (size_t)drag->variables * (size_t)i, drag->work + m * (size_t)i);
+        gproji_gather_handles(drag, drag->motion + n * (size_t)i, drag->work + m * (size_t)i);
     }
     for (r = 0; r < drag->columns; ++r) {
+        double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
+        double *other, *beside, scale, part;
+        int32_t name;
+        /* 1. The pivot. */
         for (best = r, i = r + 1; i < drag->columns; ++i)
             if (gproji_yield(drag, i) > gproji_yield(drag, best)) best = i;
         if (!(gproji_yield(drag, best) > gproji_drag_stiff)) break;
-        gproji_swap_responses(drag, r, best);
-        gproji_take_off_response(drag, r);
+        other = drag->motion + n * (size_t)best, beside = drag->work + m * (size_t)best;
+        for (k = 0; k < n; ++k) part = q[k], q[k] = other[k], other[k] = part;
+        for (k = 0; k < m; ++k) part = work[k], work[k] = beside[k], beside[k] = part;
+        name = drag->name[best], drag->name[best] = drag->name[r], drag->name[r] = name;
+        /* 2. q = q / |q|, l = S'q. */
+        scale = 1 / sqrt(work[name]);
+        for (k = 0; k < n; ++k) q[k] *= scale;
+        for (k = 0; k < m; ++k) l[k] = work[k] * scale;
+        /* 3. The columns behind lose their part along q. */
+        for (i = r + 1; i < drag->columns; ++i) {
+            part = l[drag->name[i]];
+            other = drag->motion + n * (size_t)i, beside = drag->work + m * (size_t)i;
+            for (k = 0; k < n; ++k) other[k] -= part * q[k];
+            for (k = 0; k < m; ++k) beside[k] -= part * l[k];
+        }
     }
     drag->info.freedom = r;
 }
@@ -24837,8 +24755,8 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     }
 }
 
-/* Linearises at x, and finds what the handles can do there. restore: a step takes the residual off, too. False: that
-   could not be done, and what was found before is lost. */
+/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
+   False: that could not be done, and earlier responses are lost. */
 GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
     int32_t batch = s->cholesky->batch;
@@ -24857,7 +24775,7 @@ GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     return true;
 }
 
-/* Says why that failed. */
+/* Says why gproji_linearise_drag failed. */
 GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
@@ -24873,34 +24791,24 @@ GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const 
     return code;
 }
 
-/* x = base + Q m with the m for which the handles come nearest to where they should be. */
+/* x = base + Q m, with the m that brings the handles closest to their wanted places. */
 GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
-    double *x = drag->form->system->x, *lack = drag->work;
+    double *x = drag->form->system->x, *lack = drag->work, *amount = drag->work + m;
     for (k = 0; k < m; ++k) lack[k] = drag->wanted[k] - drag->held[k];
-    for (p = 0; p < (size_t)drag->info.freedom; ++p) drag->amount[p] = gproji_dot(drag->pull + m * p, lack, m);
+    for (p = 0; p < (size_t)drag->info.freedom; ++p) amount[p] = gproji_dot(drag->pull + m * p, lack, m);
     memcpy(x, drag->base, n * sizeof *x);
     for (p = 0; p < (size_t)drag->info.freedom; ++p) {
         const double *q = drag->motion + n * p;
-        double amount = drag->amount[p];
-        for (i = 0; i < n; ++i) x[i] += amount * q[i];
-        for (k = 0; k < m; ++k) lack[k] -= amount * drag->lift[m * p + k];
+        double a = amount[p];
+        for (i = 0; i < n; ++i) x[i] += a * q[i];
+        for (k = 0; k < m; ++k) lack[k] -= a * drag->lift[m * p + k];
     }
     drag->info.behind = 0;
     for (k = 0; k < handles; ++k)
-        drag->info.behind = gproji_fmax(drag->info.behind, gproji_length3(lack + 3 * k) /
-                                                               (drag->gram[k * (handles + 1)] * drag->form->scale));
-}
-
-/* wanted = S'v at the beginning + (S'S) d. */
-GPROJI_INTERNAL void gproji_set_wanted(gproj_drag *drag, const double *positions) {
-    int32_t k, j, c, handles = drag->info.handles;
-    gproji_gather_handles(drag, drag->first, drag->wanted);
-    for (k = 0; k < handles; ++k)
-        for (j = 0; j < handles; ++j)
-            for (c = 0; c < 3; ++c)
-                drag->wanted[3 * k + c] += drag->gram[(size_t)k * (size_t)handles + (size_t)j] *
-                                           (positions[3 * j + c] - drag->from[3 * j + c]) * drag->form->scale;
+        drag->info.behind =
+            gproji_fmax(drag->info.behind,
+                        gproji_length3(lack + 3 * k) / (drag->handle.gram[k * (handles + 1)] * drag->form->scale));
 }
 
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
@@ -24913,21 +24821,9 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     return drag->error.code == GPROJ_OK;
 }
 
-/* Linearises anew where the move has led, and goes on from there to the handles. Where that cannot be done, the move has
-   not been: everything is linearised anew where it began. Without freedom nothing moves any more. */
-GPROJI_INTERNAL bool gproji_renew_drag(gproj_drag *drag) {
-    if (gproji_linearise_drag(drag, true)) {
-        gproji_follow_handles(drag);
-        return true;
-    }
-    gproji_fail_linearising(drag, &drag->error);
-    memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
-    if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
-    return false;
-}
-
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
     double behind, bound;
+    int32_t k, j, c, handles;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
@@ -24936,11 +24832,26 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     behind = drag->info.behind;
     bound = drag->options.residual_bound;
     memcpy(drag->last, drag->form->system->x, (size_t)drag->variables * sizeof *drag->last);
-    gproji_set_wanted(drag, positions);
+    /* 1. wanted = S'v at the beginning + (S'S) d. */
+    handles = drag->info.handles;
+    gproji_gather_handles(drag, drag->first, drag->wanted);
+    for (k = 0; k < handles; ++k)
+        for (j = 0; j < handles; ++j)
+            for (c = 0; c < 3; ++c)
+                drag->wanted[3 * k + c] += drag->handle.gram[(size_t)k * (size_t)handles + (size_t)j] *
+                                           (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
-    if (bound > 0 && !(gproji_see_constraints(drag) <= bound) && !gproji_renew_drag(drag)) {
-        drag->info.behind = behind;
-        return drag->error.code;
+    /* 2. Beyond the bound: linearise where the move has led, and go on to the handles from there. */
+    if (bound > 0 && !(gproji_see_constraints(drag) <= bound)) {
+        if (!gproji_linearise_drag(drag, true)) {
+            /* Undo the move; without responses where it began, nothing moves any more. */
+            gproji_fail_linearising(drag, &drag->error);
+            memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
+            if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+            drag->info.behind = behind;
+            return drag->error.code;
+        }
+        gproji_follow_handles(drag);
     }
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
@@ -24966,82 +24877,22 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) { return gproji
 
 /* -- begin -- */
 
-/* Refuses handles that are none. */
-GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gproj_handles *h, gproj_error *error) {
-    int64_t e, end;
-    int32_t k;
-    if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
-        return false;
-    }
-    for (k = 0; k < h->count; ++k) {
-        double size = 0;
-        e = h->start ? h->start[k] : k;
-        end = h->start ? h->start[k + 1] : k + 1;
-        if (e < 0 || e > end) {
-            gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k, "drag: the list of handle %d is no list", k);
-            return false;
-        }
-        for (; e < end; ++e) {
-            double weight = h->weight ? h->weight[e] : 1;
-            if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count) {
-                gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, h->vertex[e],
-                            "drag: handle %d: there is no vertex %d (the mesh has %d, counted from 0)", k, h->vertex[e],
-                            form->mesh->vertex_count);
-                return false;
-            }
-            size += weight * weight;
-        }
-        if (!(size > 1e-100 && size < 1e100)) {
-            gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
-                        "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
-            return false;
-        }
-    }
-    return !h->position || gproji_check_handle_positions(h->count, h->position, error) == GPROJ_OK;
-}
-
-/* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
-GPROJI_INTERNAL void gproji_copy_handles(gproj_drag *drag, const gproj_handles *h, double *column) {
-    int32_t k, j, c, handles = h->count;
-    int64_t e, first = h->start ? h->start[0] : 0;
-    for (k = 0; k <= handles; ++k) drag->start[k] = h->start ? h->start[k] - first : k;
-    memcpy(drag->vertex, h->vertex + first, (size_t)drag->start[handles] * sizeof *drag->vertex);
-    for (e = 0; e < drag->start[handles]; ++e) drag->weight[e] = h->weight ? h->weight[first + e] : 1;
-    memset(column, 0, (size_t)drag->form->mesh->vertex_count * sizeof *column);
-    for (k = 0; k < handles; ++k) {
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] += drag->weight[e];
-        for (j = 0; j < handles; ++j) {
-            double *product = &drag->gram[(size_t)j * (size_t)handles + (size_t)k];
-            for (*product = 0, e = drag->start[j]; e < drag->start[j + 1]; ++e)
-                *product += drag->weight[e] * column[drag->vertex[e]];
-        }
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] = 0;
-    }
-    gproji_gather_handles(drag, drag->form->mesh->position, drag->from);
-    for (k = 0; k < handles; ++k) {
-        double sum = 0;
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) sum += drag->weight[e];
-        for (c = 0; c < 3; ++c)
-            drag->from[3 * k + c] = h->position ? h->position[3 * k + c] : sum != 0 ? drag->from[3 * k + c] / sum : 0;
-    }
-}
-
 /* Takes all memory of a drag; false: there is not enough. */
 GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) {
     gproj_form *form = drag->form;
     gproji_pool *pool = &drag->pool;
+    gproji_handle_list *list = &drag->handle;
     int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count,
             entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
     drag->state_size = gproj_state_size(form);
-    drag->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *drag->start);
-    drag->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *drag->vertex);
-    drag->weight = (double *)gproji_pool_take(pool, entries, sizeof *drag->weight);
-    drag->from = (double *)gproji_pool_take(pool, m, sizeof *drag->from);
-    drag->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *drag->gram);
+    list->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *list->start);
+    list->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *list->vertex);
+    list->weight = (double *)gproji_pool_take(pool, entries, sizeof *list->weight);
+    list->from = (double *)gproji_pool_take(pool, m, sizeof *list->from);
+    list->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *list->gram);
     drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
     drag->begun = (double *)gproji_pool_take(pool, n, sizeof *drag->begun);
     drag->last = (double *)gproji_pool_take(pool, n, sizeof *drag->last);
@@ -25052,13 +24903,12 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->lift = (double *)gproji_pool_take(pool, m * m, sizeof *drag->lift);
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
-    drag->amount = (double *)gproji_pool_take(pool, m, sizeof *drag->amount);
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
     drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->begun &&
+    return list->start && list->vertex && list->weight && list->from && list->gram && drag->first && drag->begun &&
            drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
-           drag->work && drag->amount && drag->name && drag->schedule && drag->state;
+           drag->work && drag->name && drag->schedule && drag->state;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
@@ -25067,19 +24917,45 @@ GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
     gproji_destroy_object(drag, sizeof *drag);
 }
 
-/* Loads the positions as a solve does, and linearises. */
-GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handles *handles, gproj_error *error) {
+/* Copies the handles, loads the positions as a solve does, and linearises. */
+GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handles *h, gproj_error *error) {
     gproj_form *form = drag->form;
     gproj_system *s = form->system;
-    gproji_copy_handles(drag, handles, drag->first);
+    gproji_handle_list *list = &drag->handle;
+    int32_t k, j, c, handles = h->count, vertices = form->mesh->vertex_count;
+    int64_t e, first = h->start ? h->start[0] : 0;
+    double *column = drag->first; /* work: one number a vertex */
+    /* 1. Lists, and S'S. */
+    for (k = 0; k <= handles; ++k) list->start[k] = h->start ? h->start[k] - first : k;
+    memcpy(list->vertex, h->vertex + first, (size_t)list->start[handles] * sizeof *list->vertex);
+    for (e = 0; e < list->start[handles]; ++e) list->weight[e] = h->weight ? h->weight[first + e] : 1;
+    memset(column, 0, (size_t)vertices * sizeof *column);
+    for (k = 0; k < handles; ++k) {
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) column[list->vertex[e]] += list->weight[e];
+        for (j = 0; j < handles; ++j) {
+            double *product = &list->gram[(size_t)j * (size_t)handles + (size_t)k];
+            for (*product = 0, e = list->start[j]; e < list->start[j + 1]; ++e)
+                *product += list->weight[e] * column[list->vertex[e]];
+        }
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) column[list->vertex[e]] = 0;
+    }
+    /* 2. Positions of the handles: the caller's, or weighted means. */
+    gproji_gather_handles(drag, form->mesh->position, list->from);
+    for (k = 0; k < handles; ++k) {
+        double sum = 0;
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) sum += list->weight[e];
+        for (c = 0; c < 3; ++c)
+            list->from[3 * k + c] = h->position ? h->position[3 * k + c] : sum != 0 ? list->from[3 * k + c] / sum : 0;
+    }
+    /* 3. The form as at the beginning of a solve. */
     form->solve.on = form->solve.finished = false;
     s->late = 0;
-    memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(form->before, form->mesh->position, 3 * (size_t)vertices * sizeof *form->before);
     memcpy(drag->begun, s->x, (size_t)drag->variables * sizeof *drag->begun);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_restart_planes(form);
-    memcpy(drag->first, s->x, 3 * (size_t)form->mesh->vertex_count * sizeof *drag->first);
+    memcpy(drag->first, s->x, 3 * (size_t)vertices * sizeof *drag->first);
     drag->structure = gproji_structure_of(s);
     if (!gproji_form_ready(form) || gproji_compile(s, true) != GPROJ_OK ||
         !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
@@ -25087,28 +24963,44 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
 }
 
-/* Is there anything that forbids a drag now? */
-GPROJI_INTERNAL bool gproji_may_drag(gproj_form *form, const gproj_handles *handles, const gproj_drag_options *options,
-                                     gproj_error *error) {
+/* Refuses a drag that cannot be now, bad options, handles that are none. */
+GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handles *h,
+                                             const gproj_drag_options *options, gproj_error *error) {
     const gproji_statics *statics;
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) {
-        gproji_pass_on(error, gproj_form_error(form));
-        return false;
-    }
+    int32_t k;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
+        return gproji_pass_on(error, gproj_form_error(form));
     statics = form->statics;
-    if (form->drag || form->system->solving) {
-        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "drag: a solve or another drag is under way, which must end before");
-    } else if (statics && gproji_is_on(form, statics->group) && !statics->started) {
-        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "drag: the forces have no values yet, solve the form before or set them");
-    } else if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
-                    options->residual_bound);
-    } else {
-        return gproji_handles_are_valid(form, handles, error);
+    if (form->drag || form->system->solving)
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "drag: a solve or another drag is under way, which must end before");
+    if (statics && gproji_is_on(form, statics->group) && !statics->started)
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "drag: the forces have no values yet, solve the form before or set them");
+    if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
+                           options->residual_bound);
+    if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
+    for (k = 0; k < h->count; ++k) {
+        int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
+        double size = 0;
+        if (e < 0 || e > end)
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k,
+                               "drag: the list of handle %d is no list", k);
+        for (; e < end; ++e) {
+            double weight = h->weight ? h->weight[e] : 1;
+            if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count)
+                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, h->vertex[e],
+                                   "drag: handle %d: there is no vertex %d (the mesh has %d, counted from 0)", k,
+                                   h->vertex[e], form->mesh->vertex_count);
+            size += weight * weight;
+        }
+        if (!(size > 1e-100 && size < 1e100))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
+                               "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
-    return false;
+    return h->position ? gproji_check_handle_positions(h->count, h->position, error) : GPROJ_OK;
 }
 
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
@@ -25116,7 +25008,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     gproj_drag *drag;
     gproj_code code;
     gproji_error_clear(error);
-    if (!gproji_may_drag(form, handles, options, error)) return NULL;
+    if (gproji_check_drag(form, handles, options, error) != GPROJ_OK) return NULL;
     drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag);
     if (!drag) {
         gproji_fail_memory(error);
@@ -25140,7 +25032,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
-/* The mesh is what it was before the drag. */
+/* Puts the mesh back to its positions before the drag. */
 GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
@@ -25157,35 +25049,7 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
 
 /* -- release -- */
 
-/* The release's wishes: the handles where x says, fairness as it was at the beginning, all vertices where they were. */
-GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
-    gproj_form *form = drag->form;
-    gproj_system *s = form->system;
-    gproji_group *fairness = &s->group[form->drag_fairness], *handles = &s->group[form->drag_handles];
-    int32_t r, k, c;
-    int64_t e;
-    for (r = 0; r < fairness->row_count; ++r) {
-        fairness->row[r].constant = 0;
-        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
-    }
-    for (r = 0; r < handles->row_count; ++r) {
-        gproj_system_set_row(s, form->drag_handles, r, NULL, -drag->first[r]);
-        gproj_system_set_row_weight(s, form->drag_handles, r, gproji_drag_rest);
-    }
-    for (k = 0; k < drag->info.handles; ++k) {
-        double most = 0;
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) most = gproji_fmax(most, fabs(drag->weight[e]));
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
-            for (c = 0; c < 3; ++c) {
-                int32_t row = 3 * drag->vertex[e] + c;
-                double weight = gproji_fmax(fabs(drag->weight[e]) / most, handles->row[row].weight);
-                gproj_system_set_row_weight(s, form->drag_handles, row, weight);
-                gproj_system_set_row(s, form->drag_handles, row, NULL, -s->x[row]);
-            }
-    }
-}
-
-/* Sets the schedules of the release, or puts back those of before. */
+/* Sets the schedules of the release, or puts back the earlier ones. */
 GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_form *form = drag->form;
     gproj_schedule fairness = {0, 0, 0}, handles = {0, 0, 0};
@@ -25201,27 +25065,58 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     handles.weight = on ? 1 : 0;
     fairness.decay = handles.decay = gproji_drag_decay;
     fairness.last = handles.last = GPROJI_DRAG_GUIDED;
-    gproj_system_set_schedule(form->system, form->drag_fairness, fairness);
-    gproj_system_set_schedule(form->system, form->drag_handles, handles);
+    gproj_system_set_schedule(form->system, form->release.fairness, fairness);
+    gproj_system_set_schedule(form->system, form->release.handles, handles);
 }
 
+/* Releases the form: solves it from the mesh before the drag, guided to where the handles have led. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     gproj_result result;
+    gproj_system *s;
     gproj_form *form;
+    gproji_group *fairness, *at;
+    int32_t group, r, k, c;
+    int64_t e;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
     form = drag->form;
     form->drag = NULL;
     gproji_reset_mesh(form);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (gproji_form_ready(form)) {
-        gproji_set_release(drag);
-        gproji_schedule_release(drag, true);
-        result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
-        gproji_schedule_release(drag, false);
-    } else {
+    if (!gproji_form_ready(form)) {
         result = gproji_failed_result(gproj_form_error(form));
+        gproji_destroy_drag(drag);
+        return result;
     }
+    s = form->system;
+    group = form->release.handles;
+    fairness = &s->group[form->release.fairness], at = &s->group[group];
+    /* 1. Fairness as at the beginning. */
+    for (r = 0; r < fairness->row_count; ++r) {
+        fairness->row[r].constant = 0;
+        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
+    }
+    /* 2. All vertices stay, with a little weight; */
+    for (r = 0; r < at->row_count; ++r) {
+        gproj_system_set_row(s, group, r, NULL, -drag->first[r]);
+        gproj_system_set_row_weight(s, group, r, gproji_drag_rest);
+    }
+    /* those of handles go to their dragged places, with weights relative to the handle's largest. */
+    for (k = 0; k < drag->info.handles; ++k) {
+        int64_t end = drag->handle.start[k + 1];
+        double most = 0;
+        for (e = drag->handle.start[k]; e < end; ++e) most = gproji_fmax(most, fabs(drag->handle.weight[e]));
+        for (e = drag->handle.start[k]; e < end; ++e)
+            for (c = 0; c < 3; ++c) {
+                int32_t row = 3 * drag->handle.vertex[e] + c;
+                double weight = gproji_fmax(fabs(drag->handle.weight[e]) / most, at->row[row].weight);
+                gproj_system_set_row_weight(s, group, row, weight);
+                gproj_system_set_row(s, group, row, NULL, -s->x[row]);
+            }
+    }
+    gproji_schedule_release(drag, true);
+    result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+    gproji_schedule_release(drag, false);
     gproji_destroy_drag(drag);
     return result;
 }
