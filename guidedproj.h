@@ -19784,72 +19784,71 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
-   The form works in its own units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the
-   variables 3i..3i+2; face normals come behind them when a group asks for them. Groups whose rows change from
-   iteration to iteration have a gproji_part with what their refresh needs; a part never moves, so that the system
-   may keep pointers to it. */
+   A form has internal units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the variables
+   3i..3i+2; others, such as face normals, come behind when a builder needs them. A group whose rows change between
+   iterations has a gproji_part with all that the refresh needs. Parts never move: the system points to them. */
 
 typedef struct gproji_part {
     struct gproji_part *next;
     struct gproj_form *form;
     int32_t group;
-    int32_t count;                /* of `vertex` and, for curves, of `curve_of` */
-    int32_t capacity;             /* of `vertex` */
-    int32_t *vertex;              /* the vertices (Gauss image: faces) that its rows belong to */
+    int32_t count;                /* entries in use, in `vertex` and the lists below */
+    int32_t capacity;             /* entries that `vertex` has room for */
+    int32_t *vertex;              /* the elements with rows: vertices, edges, faces, for cones half-edges */
     const gproj_surface *surface; /* the caller's, in the mesh's units */
     const gproj_curve *curve;     /* the caller's, in the mesh's units; or NULL: */
-    int32_t curve_count;          /* curves of its own, in internal units */
+    int32_t curve_count;          /* or own curves, in internal units */
     gproj_curve **own_curve;
-    int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
+    int32_t *curve_of; /* per vertex: an own curve; -1: it stays */
     double target;     /* the volume, internal units */
-    double *gradient;  /* of the volume or cost: 3 numbers a vertex of the mesh */
+    double *gradient;  /* volume, cost: 3 numbers a vertex of the mesh */
     double bound[2];   /* at least and at most, internal units (stresses: the caller's); 0 and infinite: none */
-    double price[2];   /* of lengths and areas in internal units */
-    double unit;       /* of the cost: by how much it changes per mean edge length of the mesh's size */
-    int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
-    double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
-    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: none of it */
-    int32_t *plane;    /* of each vertex (`capacity`), the first variable of its plane or planes; -1: none */
+    double price[2];   /* for lengths and areas in internal units */
+    double unit;       /* the cost's change when the mesh grows by a mean edge length */
+    int32_t *segment;  /* per vertex: the segment it glides on; -1: to be found */
+    double *factor;    /* per row (`capacity`) of stress bounds: +A or -A, A the cross-section */
+    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: neither */
+    int32_t *plane;    /* per vertex (`capacity`): the first variable of the plane or planes; -1: none */
 } gproji_part;
 
-/* What the section statics keeps for a form. */
+/* A form's forces and loads: see statics. */
 typedef struct gproji_statics {
     gproji_pool pool;  /* has all arrays */
     gproj_loads loads; /* with the next two arrays */
     double *edge_density, *point_load;
-    uint8_t *axes;      /* of each vertex: the axes along which it is in equilibrium; 0: pinned */
-    int32_t *force;     /* of each edge, the variable of its force; -1: none */
-    int32_t *first_row; /* of each vertex, in the group of equilibrium */
+    uint8_t *axes;      /* per vertex: the axes along which it is in equilibrium; 0: pinned */
+    int32_t *force;     /* per edge: the force's variable; -1: none */
+    int32_t *first_row; /* per vertex: in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
-    double *face_load; /* work: 4 numbers a face; NULL where areas have no weight */
-    double *work;      /* 3 numbers a vertex */
+    double *face_load; /* work: 4 numbers a face; NULL: faces weigh nothing */
+    double *work;      /* work: 3 numbers a vertex */
     int32_t *queue;    /* work: 2 numbers a vertex */
-    double load_scale; /* loads inside = loads in internal lengths * load_scale */
-    int32_t group;     /* of equilibrium */
+    double load_scale; /* internal loads = loads in internal lengths * load_scale */
+    int32_t group;     /* equilibrium */
     int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
     int32_t brake;     /* the group that measures how forces change; -1: none yet */
     bool started;      /* the forces have values */
-    double lost[2];    /* the part of the loads that the best first forces left, and those of the other sign */
+    double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
 } gproji_statics;
 
-/* What the section corners keeps for a form. Corner 2 h + k is the one behind half-edge h, seen along its face's normal (k = 0)
-   or the first one (k = 1). */
+/* Corners that are kept: see corners. Corner 2 h + k is the one behind half-edge h, seen along the face's normal (k =
+   0) or the first one (k = 1). */
 typedef struct gproji_corners {
     int32_t group;
-    double *size;    /* of each half-edge: the corner's area when the solve began; 0: it is let go */
-    double *axis;    /* of each face: its unit normal then */
-    int32_t *row;    /* of each corner; -1: none */
+    double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
+    double *axis;    /* per face: the unit normal then */
+    int32_t *row;    /* per corner; -1: none */
     uint8_t *marked; /* corners that are to act */
-    int32_t *corner; /* of each row */
-    size_t capacity; /* of `corner` */
+    int32_t *corner; /* per row */
+    size_t capacity; /* entries that `corner` has room for */
     int32_t wakings; /* in this solve */
 } gproji_corners;
 
-/* A solve of a form, from one frame to the next (gproj_step). */
+/* A solve in frames (gproj_step). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
-    bool finished; /* it has ended, and the loop's result is its verdict */
+    bool finished; /* it has ended: the loop's result is the verdict */
     gproji_loop loop;
     gproji_structure structure; /* of the system at the beginning */
     int32_t default_last;       /* see gproj_system */
@@ -19876,16 +19875,16 @@ struct gproj_form {
     double centre[3], scale;
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
     double *before;   /* 3 * vertex_count: the mesh's positions when the solve or the drag began */
-    int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
-    int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
-    int32_t *cone;    /* of each vertex, the first variable of its cone's axis; -1: none; NULL: no vertex has one */
+    int32_t *normal;  /* per face: the normal's first variable; -1: none */
+    int32_t *axis;    /* per face: the axis point's first variable; -1: none; NULL: no face has one */
+    int32_t *cone;    /* per vertex: the cone axis' first variable; -1: none; NULL: no vertex has one */
     gproji_form_work work;
-    int32_t closeness;       /* the group of the default guidance; -1: none yet */
-    int32_t planarity;       /* the group of the planar faces; -1: none */
+    int32_t closeness;       /* the default guidance's group; -1: none yet */
+    int32_t planarity;       /* the planar faces' group; -1: none */
     gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
-    double *guard_area;      /* of each of them, its vectorial area when the solve began: 3 numbers */
+    double *guard_area;      /* their vectorial areas when the solve began */
     bool guard_on;           /* in this solve */
-    int32_t smooth;          /* the group of the metric of steps; -1: none yet */
+    int32_t smooth;          /* the group that measures steps by smoothness; -1: none yet */
     gproji_corners *corners; /* keeps corners of faces; NULL: none yet */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
@@ -19950,8 +19949,8 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
     for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
 }
 
-/* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would not
-   be, in the mesh's units or in the form's. */
+/* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would
+   not be, in the mesh's units or in the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
     int32_t i, k;
     if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
@@ -20167,8 +20166,10 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
    system, loop, mesh, curve, surface, measure, form.
 
-   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system;
-   those whose rows change with x have a refresh beside them. */
+   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
+   for equations phi = 0 that are at most quadratic; others a refresh beside the builder linearises at x before each
+   iteration, to phi(x) + grad phi'(x' - x) = 0. Most are scaled so that phi is about a length in internal units, which
+   makes weights comparable. The variables in a row's terms never change; a refresh sets numbers only. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
@@ -20251,7 +20252,7 @@ GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
         gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->work.area + 3 * (size_t)f);
 }
 
-/* The unit sum of form->work.area over the faces around a vertex; e_z if that has no direction. */
+/* The unit sum of form->work.area around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
@@ -20264,19 +20265,19 @@ GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex
     gproji_normalise3(out, up);
 }
 
-/* The unit normal of a face by form->work.area; without a direction, the normal at its first vertex. */
+/* A face's unit normal by form->work.area; without a direction, the normal at the first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
     gproji_copy3(form->work.area + 3 * (size_t)face, out);
-    if (gproji_length3(out) > 1e-12) {
+    if (gproji_length3(out) > 1e-12)
         gproji_normalise3(out, none);
-    } else {
+    else
         gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
-    }
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). A group
-   has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by pairs, then v_j. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). A
+   group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by pairs, then
+   v_j. */
 GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
@@ -20324,14 +20325,14 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f)
         if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
-    /* The edges of a face close: the gradients of its rows sum to zero. */
+    /* Zero-sum rows: their gradients sum to zero over each face. */
     if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
     return gproji_form_ready(form) ? group : -1;
 }
 
 /* -- curves and surfaces -- */
 
-/* The distance from the start of a segment to p along it; from_end: minus the segment's length. */
+/* The distance from a segment's start to p along it; from_end: from the end, negative before it. */
 GPROJI_INTERNAL double gproji_along(const gproj_curve *curve, int32_t segment, const double p[3], bool from_end) {
     double d[3];
     gproji_sub3(p, curve->point + 3 * ((size_t)segment + from_end), d);
@@ -20349,7 +20350,7 @@ GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, c
         if (closed && next < 0) next = last;
         if (closed && next > last) next = 0;
         if ((forward ? beyond <= 0 : beyond >= 0) || next < 0 || next > last) break;
-        /* In the wedge outside a vertex of the polyline p has its foot on neither side: it stays. */
+        /* In the wedge outside a corner between two segments p has a foot on neither: it stays. */
         beyond = gproji_along(curve, next, p, !forward);
         if (forward ? beyond < 0 : beyond > 0) break;
         segment = next;
@@ -20357,15 +20358,14 @@ GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, c
     return segment;
 }
 
-/* Sets the three rows of a gliding vertex: t1'(v - end) = t2'(v - end) = 0 keep it on the line of its segment (t1, t2
-   orthogonal to the tangent), and tangent'(v - end) = 0, with weight only when it is pinned, at `end`. Everything in
-   internal units. */
+/* Sets a gliding vertex's rows, in internal units: t1'(v - end) = t2'(v - end) = 0, t1 and t2 orthogonal to the
+   segment's tangent, keep it on this line; tangent'(v - end) = 0 has weight only when it is pinned, at `end`. */
 GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int32_t first, const double tangent[3],
                                         const double end[3], bool pinned) {
     const gproj_term *old;
     double basis[3][3];
     int32_t k, count;
-    /* t1 keeps its direction as nearly as it can: else values before and after a step could not be compared. */
+    /* t1 turns as little as possible: else values before and after a step could not be compared. */
     old = gproji_row_terms(system, group, first, &count);
     for (k = 0; k < 3; ++k) basis[0][k] = old[k].a;
     gproji_copy3(tangent, basis[2]);
@@ -20380,7 +20380,7 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Does vertex i of a gliding part stay in its place? */
+/* Does vertex i of a gliding part stay? */
 GPROJI_INTERNAL bool gproji_stays(const gproji_part *part, int32_t i) {
     return part->curve_of && part->curve_of[i] < 0;
 }
@@ -20399,8 +20399,8 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         if (!curve) curve = part->own_curve[part->curve_of[i]];
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
         if (part->curve) gproji_from_internal(part->form, p, p);
-        /* Late in a solve it stays on its segment, and is pinned to an end that it would leave: so it cannot hop between
-           two segments for ever. */
+        /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
+           between two segments for ever. */
         if (part->segment[i] < 0) {
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
@@ -20446,6 +20446,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *p
         part->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+        /* Vertices that stay are pinned to their places for good; others get a line from the refresh. */
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
     }
@@ -20494,7 +20495,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
         if (!part->own_curve[l] && error.code != GPROJ_ERROR_DEGENERATE)
             gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
     }
-    /* 2. Vertices glide on their loop; corners stay, and those on a loop without extent. */
+    /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
     for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
         l = loop_of[part->vertex[i]];
         part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->own_curve[l] ? -1 : l;
@@ -20504,7 +20505,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
 }
 
-/* Rows n'(v - p) = 0: p the point of the surface closest to v, n the surface's normal there. */
+/* Rows n'(v - p) = 0: p the closest point to v on the surface, n the normal there. */
 GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
@@ -20512,6 +20513,7 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
     for (i = 0; i < part->count; ++i) {
         double point[3];
         gproj_surface_hit hit;
+        /* The surface is in the mesh's units. */
         gproji_from_internal(part->form, x + 3 * (size_t)part->vertex[i], point);
         hit = gproj_surface_closest(part->surface, point);
         gproji_to_internal(part->form, hit.point, point);
@@ -20543,13 +20545,13 @@ GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *sur
 /* One second difference: centre - sum of `neighbour` / count, for points (vertices or normals) given by their first
    variables. */
 typedef struct gproji_difference {
-    int32_t element; /* the vertex or face that its rows belong to */
+    int32_t element; /* the vertex or face that rows name as theirs */
     int32_t centre, count;
     const int32_t *neighbour;
 } gproji_difference;
 
-/* Adds the rows of a difference: one for each coordinate; in a tangent plane two, whose coefficients the refresh of the
-   part `tangential` fills in for the element that it notes. `term`: room for 3 (count + 1). */
+/* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
+   the element, so that a refresh can fill in their coefficients. `term`: room for 3 (count + 1). */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
                                            const gproji_difference *d, gproj_term *term) {
     int32_t points = d->count + 1, last, k, i, *local;
@@ -20562,7 +20564,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
         return;
     }
     if (!gproji_system_has_group(form->system, group)) return;
-    /* Rows that follow each other share their terms if they have the same number of points. */
+    /* Successive rows share their terms if they have equally many points. */
     last = form->system->group[group].row_count - 1;
     for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, d->element);
@@ -20572,16 +20574,13 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
     }
 }
 
-/* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are four,
-   else the mean of all (paper 3.2). */
+/* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
+   four, else the mean of all (paper 3.2). */
 GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
                                                  int32_t centre, int32_t count, int32_t element, gproj_term *term) {
     gproji_difference d;
     int32_t pairs[4];
-    d.element = element;
-    d.centre = centre;
-    d.count = count;
-    d.neighbour = form->work.ring;
+    d.element = element, d.centre = centre, d.count = count, d.neighbour = form->work.ring;
     if (count == 4) {
         pairs[0] = form->work.ring[0], pairs[1] = form->work.ring[2], pairs[2] = form->work.ring[1],
         pairs[3] = form->work.ring[3];
@@ -20593,7 +20592,7 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
     gproji_add_difference(form, group, tangential, &d, term);
 }
 
-/* Room for the terms of the largest difference of this mesh. */
+/* Room for the largest difference, or face, in this mesh. */
 GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
     gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
     if (!term) gproji_fail_memory(&form->error);
@@ -20604,8 +20603,8 @@ GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
     gproji_give(&form->own, term, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
 }
 
-/* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for other
-   vertices. */
+/* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
+   other vertices. */
 GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     int32_t count, i;
     if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
@@ -20625,10 +20624,7 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
         h = mesh->vertex_halfedge[v];
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
-        d.element = v;
-        d.centre = 3 * v;
-        d.count = 2;
-        d.neighbour = pair;
+        d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
         gproji_add_difference(form, group, NULL, &d, term);
     }
 }
@@ -20664,7 +20660,7 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* Fills in rows `row` and `row` + 1: u'd and w'd for a difference d, u, w spanning the plane orthogonal to `normal`. */
+/* Fills in rows `row` and `row` + 1, u'd and w'd for a difference d: u, w span the plane orthogonal to `normal`. */
 GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
                                                const double normal[3]) {
     double basis[2][3];
@@ -20685,6 +20681,7 @@ GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system,
     int32_t i;
     gproji_update_areas(part->form);
     for (i = 0; i < part->count; ++i) {
+        /* The differences at one vertex follow each other. */
         if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
         gproji_refresh_difference(system, group, 2 * i, normal);
     }
@@ -20768,10 +20765,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             pair[0] = form->work.ring[k];
             pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
-            d.element = f;
-            d.centre = form->normal[f];
-            d.count = 2;
-            d.neighbour = pair;
+            d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
             gproji_add_difference(form, part->group, part, &d, term);
         }
     }
@@ -20793,7 +20787,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                                                const double *weights) {
     gproj_group_info info;
     gproji_group *g;
-    double *of; /* the new weight of each element; -1: unchanged */
+    double *of; /* per element: the new weight; -1: unchanged */
     int32_t have, k;
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
@@ -20821,7 +20815,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                                "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
                                gproji_place_word(info.place), element, info.name);
     }
-    /* 2. Set them. A row's weight is the product of a share by its element and one that a refresh may set. */
+    /* 2. A row's weight is own x factor: own by builder or refresh, the factor by this function. */
     g = &form->system->group[group];
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
     if (!of || !gproji_share_weights(form->system, g)) {
@@ -20843,7 +20837,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists of elements (edges, faces) that the mesh does not have; it has `have`. */
+/* Refuses lists with elements (edges, faces) that the mesh does not have: there are `have`. */
 GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
                                                int32_t count, const int32_t *elements) {
     const char *word = gproji_place_word(place);
@@ -20866,7 +20860,7 @@ GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, 
     return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
 }
 
-/* The 9 terms of scale |v_i - v_j|^2 for the ends of an edge. */
+/* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
     int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
     for (k = 0; k < 3; ++k) {
@@ -20876,7 +20870,7 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     }
 }
 
-/* The original length of an edge, in internal units. */
+/* An edge's original length, in internal units. */
 GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t edge) {
     const int32_t *origin = form->mesh->origin + 2 * (size_t)edge;
     return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
@@ -20913,6 +20907,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term[10];
+        /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l, at first the mean length. */
         gproji_set_length_terms(form->mesh, edge, 0.5, term);
         gproji_set_term(&term[9], common, common, -0.5);
         gproj_system_add_row(form->system, group, 10, term, 0, edge);
@@ -20922,7 +20917,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean of the originals of `count` vertices. */
+/* The mean original place of `count` vertices. */
 GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
                                           double mean[3]) {
     int32_t k;
@@ -20930,8 +20925,8 @@ GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count,
     for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
 }
 
-/* Fits planes n'(v - m) = d to the points x[3 v] of these vertices, 4 numbers each: n, d; m is the mean of their
-   originals. One plane, or two at right angles whose line fits best. */
+/* Fits planes n'(v - m) = d to these vertices at the system's x, 4 numbers each: n, d; m is their mean original place.
+   One plane, or two at right angles that intersect in the line of best fit. */
 GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
                                        double plane[8]) {
     const double *x = gproj_system_values(form->system);
@@ -20964,8 +20959,8 @@ GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, i
     for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
 }
 
-/* Gives the vertices from..part->count-1 of the part a plane, or two for a line: variables n, d with n'n = 1, the
-   normals orthogonal, and the rows n'(v - m) - d = 0. A set too small to leave one gets none. */
+/* Gives the part's vertices from..count-1 a plane, or two for a line: variables n, d with n'n = 1, orthogonal normals,
+   and the rows n'(v - m) - d = 0. A set too small to leave one gets none. */
 GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, int32_t from) {
     const int32_t *vertex = part->vertex + from;
     int32_t count = part->count - from, first = -1, i, p, q, k;
@@ -21012,7 +21007,7 @@ GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
     }
 }
 
-/* Makes a part one of planes (1) or lines (2) with a group that has no rows yet. */
+/* Makes a part one with planes (1) or lines (2), its group without rows. */
 GPROJI_INTERNAL bool gproji_begin_planes(gproj_form *form, gproji_part *part, int32_t planes, const char *name,
                                          double weight) {
     if (!part) return false;
@@ -21040,7 +21035,7 @@ GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* Adds the sets of a boundary loop: from corner to corner, or the whole loop if it has none. */
+/* Adds a boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
 GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, int32_t loop) {
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
@@ -21072,7 +21067,7 @@ GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, int32_t plane
     gproji_part *part;
     int32_t v, most = 0, loop;
     if (!gproji_form_ready(form)) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
+    for (v = 0; v < form->mesh->vertex_count; ++v) /* corners are in two sets */
         most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
     part = gproji_new_part(form, most);
     if (!gproji_begin_planes(form, part, planes, name, weight)) return -1;
@@ -21104,6 +21099,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
                     "orthogonal edges: the normal has no direction");
         return -1;
     }
+    /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
     group = gproji_new_group(form, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
     for (i = 0; i < 2 * count && gproji_form_ready(form); ++i) {
@@ -21118,15 +21114,15 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* (v_b - v)'(v_1 - v_2) = 0: the edge from v into the mesh is orthogonal to the boundary at v, v_1 and v_2 beside v on it;
-   written as products of coordinates. */
+/* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
+   and v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
     int32_t group, v, k, ring[3];
     if (!gproji_form_ready(form)) return -1;
     group = gproji_new_group(form, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
         gproj_term term[12];
-        /* The ring of a boundary vertex begins and ends along the boundary. */
+        /* A boundary vertex's ring begins and ends along the boundary. */
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
         for (k = 0; k < 3; ++k) {
             gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
@@ -21145,7 +21141,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     group = gproji_new_group(form, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
         gproj_term term;
-        if (i % 3 == 2) continue;
+        if (i % 3 == 2) continue; /* z is free */
         gproji_set_term(&term, i, -1, 1);
         gproj_system_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
     }
@@ -21154,7 +21150,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
 
 /* -- shapes of faces, areas, volume -- */
 
-/* Start of a circular face's axis point: the circumcentre at the system's x, else the mean. */
+/* Start for a circular face's axis point: the circumcentre at the system's x, else the mean. */
 GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -21166,7 +21162,7 @@ GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t fac
     gproji_circumcentre(mesh, x, face, mean, normal, out);
 }
 
-/* Makes a list of first variables, all -1, unless it is there; false without memory. */
+/* Makes a list for first variables, all -1, unless it is there; false without memory. */
 GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
     if (*list) return true;
     *list = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof **list);
@@ -21177,8 +21173,8 @@ GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t
     return *list != NULL;
 }
 
-/* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for each edge of a face: c has the same distance from all vertices, so it is on
-   the axis of a circle through them. */
+/* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
+   the axis of their circle. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
     int32_t group, f, k, c, h;
@@ -21207,8 +21203,8 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge in part->vertex: a the axis of its origin,
-   e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge in part->vertex: a the axis at v_i, e = v_j -
+   v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const gproj_form *form = part->form;
@@ -21292,6 +21288,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term term[4];
         if (form->mesh->face_degree[f] != 4) continue;
+        /* v_0 - v_1 + v_2 - v_3 = 0 in each coordinate. */
         for (k = 0; k < 3; ++k) {
             int32_t h = form->mesh->face_halfedge[f];
             for (c = 0; c < 4; ++c, h = form->mesh->next[h])
@@ -21302,7 +21299,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The gradient of a face's area with respect to the origin of half-edge h: (v_(i+1) - v_(i-1)) x a / (2 |a|). */
+/* A face's area has, by the vertex v_i at which half-edge h begins, the gradient (v_(i+1) - v_(i-1)) x a / (2 |a|). */
 GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const double normal[3], double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -21313,7 +21310,7 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
 
-/* Linearises scale |a(v)| of a face at form->work.area: sets 3 coefficients a corner; returns the constant. */
+/* Linearises a face's scale |a(v)| at form->work.area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
@@ -21352,7 +21349,7 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
 }
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    gproji_part *part = gproji_new_part(form, 0);
     gproj_term *term = part ? gproji_take_terms(form) : NULL;
     int32_t common, f, count;
     double area = 0;
@@ -21365,14 +21362,23 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
         gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
-        gproji_set_term(&term[count], common, -1, -1);
+        gproji_set_term(&term[count], common, -1, -1); /* A, at first the mean area */
         gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* Adds a group of `rows` equal rows for the whole mesh: terms for all coordinates in order, coefficients from the
+/* A part for a sum over the whole mesh, with room for the gradient; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_gradient_part(gproj_form *form) {
+    gproji_part *part = gproji_new_part(form, 0);
+    if (!part) return NULL;
+    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    if (!part->gradient) gproji_fail_memory(&form->error);
+    return part->gradient ? part : NULL;
+}
+
+/* Adds a group with `rows` rows for the whole mesh: terms for all coordinates in order, coefficients from the
    refresh. */
 GPROJI_INTERNAL int32_t gproji_add_global_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
                                                double weight, int32_t rows, gproj_refresh refresh) {
@@ -21406,18 +21412,13 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
 }
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    gproji_part *part = gproji_new_gradient_part(form);
     if (!part) return -1;
     if (!gproji_is_finite(volume)) {
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
         return -1;
     }
     part->target = volume * form->scale * form->scale * form->scale;
-    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
-    if (!part->gradient) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
     return gproji_add_global_rows(form, part, "volume", GPROJ_CONSTRAINT, weight, 1, gproji_refresh_volume);
 }
 
@@ -21507,8 +21508,8 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* The cost C = price[0] sum of lengths + price[1] sum of areas at the system's x, and its gradient. `size`: its growth
-   per mean edge length by which the whole mesh grows. */
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, with part->gradient. `size`:
+   by how much C changes when the mesh grows by a mean edge length. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
@@ -21517,6 +21518,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
     gproji_sum sum = {0, 0}, areas = {0, 0};
     int32_t e, f, k;
     memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    /* 1. Lengths: the gradient by each end is the unit vector away from the other one. */
     for (e = 0; e < mesh->edge_count; ++e) {
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         gproji_sub3(x + i, x + j, d);
@@ -21525,6 +21527,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         gproji_add_scaled3(part->price[0], d, gradient + i);
         gproji_add_scaled3(-part->price[0], d, gradient + j);
     }
+    /* 2. Areas. */
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
@@ -21549,6 +21552,7 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
     gproji_sum ahead = {0, 0};
     double scale = 1 / part->unit;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
+    /* C - grad C'v cancels: it is summed up with compensation. */
     ahead.high = gproji_cost(part->form, part, NULL);
     for (t = 0; t < count; ++t) {
         gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
@@ -21562,25 +21566,21 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
     }
 }
 
-/* Adds the rows of a cost or total area, with prices and bounds in the caller's units. */
-GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, const double price[2],
-                                         double min, double max, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+/* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
+GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, double length_price,
+                                         double area_price, double min, double max, double weight) {
+    gproji_part *part = gproji_new_gradient_part(form);
+    double prices = length_price + area_price;
     int32_t rows;
     if (!part) return -1;
-    if (!(price[0] >= 0) || !(price[1] >= 0) || !(price[0] + price[1] > 0) || !gproji_is_finite(price[0] + price[1])) {
+    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: the prices %g and %g must be >= 0 and not both 0", name, price[0], price[1]);
+                    "%s: the prices %g and %g must be >= 0 and not both 0", name, length_price, area_price);
         return -1;
     }
     if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
-    part->price[0] = price[0] / form->scale;
-    part->price[1] = price[1] / form->scale / form->scale;
-    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
-    if (!part->gradient) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
+    part->price[0] = length_price / form->scale;
+    part->price[1] = area_price / form->scale / form->scale;
     gproji_cost(form, part, &part->unit);
     part->unit = gproji_fmax(part->unit, 1e-12);
     rows = gproji_has_bound(part->bound, 0) + gproji_has_bound(part->bound, 1);
@@ -21588,50 +21588,41 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gpr
 }
 
 /* Prescribes a value > 0: "0 means no bound" does not apply to it. */
-GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, const double price[2],
-                                                    double value, double weight) {
+GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, double length_price,
+                                                    double area_price, double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
     if (!(value > 0) || !gproji_is_finite(value)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", name, value);
         return -1;
     }
-    return gproji_add_total(form, name, GPROJ_CONSTRAINT, price, value, HUGE_VAL, weight);
+    return gproji_add_total(form, name, GPROJ_CONSTRAINT, length_price, area_price, value, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
-    static const double price[2] = {0, 1};
-    return gproji_add_prescribed_total(form, "total area", price, area, weight);
+    return gproji_add_prescribed_total(form, "total area", 0, 1, area, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
-    static const double price[2] = {0, 1};
-    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, price, min, max, weight);
+    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, 0, 1, min, max, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
-    double price[2];
-    price[0] = length_price;
-    price[1] = area_price;
-    return gproji_add_prescribed_total(form, "cost", price, cost, weight);
+    return gproji_add_prescribed_total(form, "cost", length_price, area_price, cost, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
                                         double max, double weight) {
-    double price[2];
-    price[0] = length_price;
-    price[1] = area_price;
-    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, price, min, max, weight);
+    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, length_price, area_price, min, max, weight);
 }
 
 /* ============================================================================================================
    >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses platform, memory,
    error, vector, least-squares, system, loop, mesh, form, catalogue.
 
-   Edge ij has a force density w_ij, its force divided by its length, positive if it pushes. Vertex i is in equilibrium
-   along an axis when there
-       sum over edges ij of w_ij (v_i - v_j) + load_i = 0,                                                     (1)
-   which is quadratic. Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method
-   for form finding and computation of general networks (1974).
+   Edge ij has a force density w_ij, force by length, positive if it pushes. Vertex i is in equilibrium along an axis if
+       sum over edges ij of w_ij (v_i - v_j) + load_i = 0                                                      (1)
+   there, which is quadratic. Based on Tang et al. (2014), sections 3.1 and 3.5; for force densities on Schek, The force
+   density method for form finding and computation of general networks (1974).
 
    Edge e has the variable force[e] = w_e load_scale / scale; rows are in internal lengths, and loads times load_scale,
    chosen at the start so that these variables have mean square 1. Weights depend on the shape. That on vertex i is
@@ -21641,15 +21632,16 @@ enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* First forces. A density of `thrust` times the mean load, for each edge between the middle and the supports, is that of
-   a shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A
-   solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that balance a shape best are
-   damped towards three quarters of this, and more with signs, which keeps them off zero. A shape carries nothing if its
-   best forces, damped by `faint`, leave more than `lost` of its loads: it starts from uniform forces, kept at first. */
+/* First forces. A density of `thrust` times the mean load, for each edge between the middle and the supports, is that
+   of a shallow dome, rising by less than a tenth of the radius: the larger the forces, the less a shape has to move. (A
+   solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that balance a shape best
+   are damped towards three quarters of this, and more with signs, which keeps them off zero. A shape carries nothing if
+   its best forces, damped by `faint`, leave more than `lost` of the loads: it starts from uniform forces, kept at
+   first. */
 static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
                     gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
-/* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
+/* Given forces are scaled to 1 if they are at least this part of those that the loads ask for. */
 static const double gproji_least_force = 1e-4;
 
 /* The factors from the caller's loads to other units. */
@@ -21714,21 +21706,14 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
 
 /* -- the rows of equilibrium -- */
 
-/* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: the end of its rows. */
+/* A vertex's row for an axis (0, 1, 2) along which it is in equilibrium; axis 3: the end of these rows. */
 GPROJI_INLINE int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
     int32_t row = s->first_row[vertex], c;
     for (c = 0; c < axis; ++c) row += s->axes[vertex] >> c & 1;
     return row;
 }
 
-/* Where the z row of a vertex has its weight: a constant, and three terms for each vertex that it depends on. */
-typedef struct gproji_weight_row {
-    double *constant;
-    const int32_t *vertex;
-    gproj_term *term;
-} gproji_weight_row;
-
-/* Adds s d to the coefficients of vertex `other`; `term` has three for each entry of the list `vertex`. */
+/* Adds s d to the coefficients for vertex `other`; `term` has three for each entry in the list `vertex`. */
 GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *term, int32_t other, double s,
                                            const double d[3]) {
     int32_t k;
@@ -21736,7 +21721,7 @@ GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *te
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
-/* Linearises the weight on a vertex: adds to the constant of its z row, fills in the row's last terms. */
+/* Linearises the weight on a vertex: adds to the z row's constant, fills in the row's last terms. */
 GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                              int32_t vertex) {
     static const double none[3] = {0, 0, 0};
@@ -21761,7 +21746,7 @@ GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const doubl
             gproji_add_weight_terms(list, term, other, half, d);
         }
         /* A face's weight is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j: linearised it is
-           this gradient times x, minus its value. */
+           this gradient times x, minus the value. */
         if (s->face_load && mesh->face[h] >= 0) {
             const double *load = s->face_load + 4 * (size_t)mesh->face[h];
             *constant += load[3];
@@ -21786,7 +21771,7 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     const double *x = gproj_system_values(system), *point = s->loads.point_load;
     gproji_load_units units = gproji_internal_loads(form);
     int32_t f, v, c, row = 0;
-    /* Each corner of a face has the same share: load[0..3) is -h / 2, load[3] the value. */
+    /* A face's corners have equal shares: load[0..3) is -h / 2, load[3] the value. */
     for (f = 0; s->face_load && f < mesh->face_count; ++f) {
         double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
         load[3] = scale * gproji_face_load(mesh, &s->loads, x, f, h);
@@ -21801,7 +21786,7 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     }
 }
 
-/* Adds the rows (1) of one vertex. `spoke` has 2 numbers for each of its edges, `term` all terms; both are work. */
+/* Adds a vertex's rows (1). `spoke`: work, 2 numbers for each edge there; `term`: work for a row. */
 GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
@@ -21815,8 +21800,8 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
         }
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for the
-       first spoke, y_e and x_j for others: so rows with equally many spokes share them. */
+    /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for
+       the first spoke, y_e and x_j for others: so rows with equally many spokes share them. */
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
@@ -22007,7 +21992,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
 
 /* -- bounds and fairness of forces -- */
 
-/* Refuses what needs equilibrium and has none. */
+/* Refuses a call that needs equilibrium before. */
 GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     if (!gproji_form_ready(form)) return false;
     if (!form->statics)
@@ -22060,14 +22045,11 @@ GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t 
     int32_t k;
     gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], u);
     gproji_normalise3(u, none);
-    for (k = 0; k < 3; ++k) {
-        term[k].a = s * u[k];
-        term[3 + k].a = -s * u[k];
-    }
+    for (k = 0; k < 3; ++k) term[k].a = s * u[k], term[3 + k].a = -s * u[k];
 }
 
-/* Rows of forces: y l - load_scale A min >= 0 where part->factor is A, and load_scale A max - y l >= 0 where it is -A;
-   part->bound holds min and max. */
+/* Rows y l - load_scale A min >= 0 (part->factor is A) and load_scale A max - y l >= 0 (-A); part->bound holds min and
+   max. */
 GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     double load_scale = part->form->statics->load_scale;
@@ -22182,10 +22164,7 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
 GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
     double sign;
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        lower[e] = -HUGE_VAL;
-        upper[e] = HUGE_VAL;
-    }
+    for (e = 0; e < form->mesh->edge_count; ++e) lower[e] = -HUGE_VAL, upper[e] = HUGE_VAL;
     for (g = 0; g < form->system->group_count; ++g) {
         const gproji_group *group = &form->system->group[g];
         if (group->kind != GPROJ_BOUND || group->place != GPROJ_PLACE_EDGE || !(group->schedule.weight > 0)) continue;
@@ -22251,8 +22230,8 @@ GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units unit
     return -1;
 }
 
-/* Finds p->force, the best forces y for the loads p->load at x: the least (1), with y damped towards `mean`. False after
-   an error. */
+/* Finds p->force, the best forces y for the loads p->load at x: those with the least residual in (1), damped towards
+   `mean`. False after an error. */
 GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
                                           gproji_balance *p) {
     const gproj_mesh *mesh = form->mesh;
@@ -22262,7 +22241,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     gproj_error error;
     int32_t e, v, side, c;
     int64_t t, count = 0;
-    /* 1. The matrix, a column an edge: x_i - x_j in the rows of i, the opposite in those of j. */
+    /* 1. The matrix, a column for each edge: x_i - x_j in i's rows, the opposite in j's. */
     for (e = 0; e < mesh->edge_count; ++e) {
         p->start[e] = count;
         for (side = 0; s->force[e] >= 0 && side < 2; ++side) {
@@ -22305,7 +22284,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     return true;
 }
 
-/* Adds the forces of an edge with density w to those on its ends. */
+/* Adds an edge's forces, with density w, to the sums in both ends. */
 GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, int32_t edge, double w, double *out) {
     size_t i = 3 * (size_t)mesh->origin[2 * edge], j = 3 * (size_t)mesh->origin[2 * edge + 1], c;
     for (c = 0; c < 3; ++c) {
@@ -22314,7 +22293,7 @@ GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, i
     }
 }
 
-/* out = load + the sum of forces (NULL: none) in each vertex at x, 0 along the axes of supports. */
+/* out = load + the sum of forces (NULL: none) in each vertex at x, 0 along supported axes. */
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
@@ -22334,7 +22313,7 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
         !gproji_take_balance(form, &p))
         return gproj_form_error(form)->code;
-    /* With loads in parts of their mean the problem does not depend on units. */
+    /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
     x = form->statics->work;
@@ -22399,8 +22378,8 @@ GPROJI_INTERNAL double gproji_lost_load(gproj_form *form, double damping, double
     return all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
 }
 
-/* Gives the forces their first values: those that balance the shape best, or uniform ones if it carries nothing. Returns
-   whether they are uniform. */
+/* Gives the forces their first values: those that balance the shape best, or uniform ones if it carries nothing.
+   Returns whether they are uniform. */
 GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_balance *p) {
     gproji_statics *s = form->statics;
     double *x = gproj_system_values(form->system), lost, damping, typical, drawn, size;
@@ -22412,7 +22391,7 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     if (size < 0) return false;
     if (size > 0) s->load_scale = 1 / size;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
-    /* 2. The sign of a typical force: tension if most edges are bound to it, else compression. */
+    /* 2. A typical force: tension if most edges are bound to it, else compression. */
     gproji_force_limits(form, p->lower, p->upper);
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
@@ -23927,17 +23906,17 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
    statics, guard, corners, solve.
 
-   One description of the format (gproji_pass_state) counts, writes, checks and reads it, depending on the stream's mode.
-   All integers are little-endian; a double is its 64 bits, but coefficients, constants and weights, most of which are
-   small numbers of eighths, have one byte for these.
+   One description of the format, gproji_pass_state, counts, writes, checks and reads it, by the stream's mode. Integers
+   are little-endian; a double is its 64 bits, but coefficients, constants and weights, which mostly are small numbers of
+   eighths, have one byte for these.
 
-       8 bytes "gprojstD", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
+       8 bytes "gprojstD", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
-   The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that the state
-   has. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
+   The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
+   have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
 
-   Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or in
-   the state: then they lose their weight. */
+   Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or
+   in the state: then they lose their weight. */
 
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
@@ -23948,7 +23927,7 @@ enum {
 
 /* -- the groups that the library adds to a form -- */
 
-/* Their numbers stand in saved states. */
+/* These numbers stand in saved states. */
 typedef enum gproji_own {
     GPROJI_OWN_NONE, /* the caller's */
     GPROJI_OWN_CLOSENESS,
@@ -23985,7 +23964,7 @@ GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t 
     return GPROJI_OWN_NONE;
 }
 
-/* Adds the group of this kind without a weight, if it is missing. */
+/* Adds a group of this kind without a weight, if it is missing. */
 GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (!gproji_form_ready(form) || gproji_own_group(form, own) >= 0) return;
     switch (own) {
@@ -24024,12 +24003,12 @@ typedef struct gproji_stream {
     uint8_t *out;      /* written */
     const uint8_t *in; /* checked or read */
     size_t at, size;
-    const char *wrong; /* its error; NULL: none */
+    const char *wrong; /* an error; NULL: none */
 } gproji_stream;
 
 GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
 
-/* Notes an error of the stream. Counting takes no error: it has no numbers yet. */
+/* Notes an error, except while counting, which must go on to the end. */
 GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
     if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
 }
@@ -24046,7 +24025,7 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
     return value;
 }
 
-/* Passes the lowest `bytes` bytes of a value, the lowest first; returns the value that comes in, 0 behind the end. */
+/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 behind the end. */
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
     int32_t i;
@@ -24100,7 +24079,7 @@ GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, do
     double passed;
     if (!gproji_comes_in(stream) && 8 * fabs(*value) <= (double)GPROJI_SMALL_MOST) {
         int32_t whole = (int32_t)(8 * *value);
-        /* -0 would lose its sign. */
+        /* -0 has 8 bytes: as eighths it would lose the sign. */
         if (whole == 8 * *value && !(whole == 0 && 1 / *value < 0)) small = (uint64_t)(whole + GPROJI_SMALL_MOST);
     }
     small = gproji_pass_bytes(stream, small, 1);
@@ -24151,14 +24130,14 @@ GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_form *form, g
     }
 }
 
-/* How much of a solve in frames is passed. */
+/* The part of a solve in frames that is passed. */
 typedef enum gproji_passing {
     GPROJI_PASS_NONE,
     GPROJI_PASS_SOLVE,
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* Passes the rows of corners during a solve, and the corners' sizes and axes at its beginning. */
+/* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
 GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *form, gproji_group *g,
                                              gproji_passing passing) {
     gproji_corners *guard = form->corners;
@@ -24186,8 +24165,8 @@ GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *
     if (stream->mode == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
 }
 
-/* Passes a group. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
-   any of a group that the library has added (`own`): they are set when a solve begins. */
+/* Passes a group: during a solve all numbers; else neither those in rows that a refresh makes anew, nor any in a group
+   that the library has added (`own`), as they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
@@ -24199,8 +24178,8 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
     if (reading) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
-    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows close, and which
-       rows of the guard are dormant: if they change, it is decided anew. */
+    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows close, and
+       which rows of the guard are dormant: if they change, it is decided anew. */
     gproji_pass_bool(stream, &idle);
     gproji_pass_integer(stream, &closing, 0, g->row_count);
     same = idle == g->idle && closing == g->closing;
@@ -24280,7 +24259,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     return passing;
 }
 
-/* The groups, each after its kind; those of the form that do not come in lose their weight. */
+/* Passes the groups, each behind a byte for the kind; groups that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     gproj_system *s = form->system;
     int32_t count = s->group_count, k, theirs = -1, own;
@@ -24365,8 +24344,8 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
 
 /* -- the form that it belongs to -- */
 
-/* A hash by 64 bits at once, with the numbers of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and in
-   the hash: a change of one value never goes unnoticed. */
+/* A hash by 64 bits at once, with the constants of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and
+   in the hash: a change in one value never goes unnoticed. */
 GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
 
 GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
@@ -24472,7 +24451,7 @@ GPROJ_API size_t gproj_state_size(gproj_form *form) {
     return stream.at + GPROJI_STATE_TAIL;
 }
 
-/* Writes the state to `size` bytes, which must be its size. */
+/* Writes the state; `size` must be gproj_state_size. */
 GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, size_t size, gproj_error *error) {
     gproji_stream stream = gproji_make_stream(GPROJI_WRITE, out, NULL, sizeof gproji_state_magic, size);
     memcpy(out, gproji_state_magic, sizeof gproji_state_magic);
@@ -24545,28 +24524,28 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
    vector, dense, cholesky, system, schur, loop, mesh, form, catalogue, guard, solve, state.
 
-   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
-   in the tangent space that a force f at the handles' vertices brings about is its projection,
+   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables), a force f at
+   the handles' vertices brings about the smallest dx in the tangent space, a projection,
        min 1/2 dx'D dx - f'dx,    G dx = 0.                                                                    (1)
-   It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f: each round is one solve with the same factor
-   (the method of multipliers, or a proximal iteration: Hestenes 1969, Rockafellar 1976), and takes eps^2 / (sigma^2 +
-   eps^2) of what G with the singular value sigma leaves. So G dx = 0 holds far better than eps says, and dependent rows do
-   no harm.
-   The responses of all handles' coordinates are made orthonormal in D (pivoted Gram and Schmidt, so that handles which
-   depend on each other are found): Q = (q_1, ..., q_r), Q'DQ = I. What they do to the handles is L = S'Q, and a move of
-   the handles by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|. */
+   It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f (the method of multipliers, or a proximal
+   iteration: Hestenes 1969, Rockafellar 1976). Each round is one solve with the same factor, and multiplies G dx, in the
+   direction with the singular value sigma, by eps^2 / (sigma^2 + eps^2). So G dx = 0 holds far better than eps says, and
+   dependent rows do no harm.
+   S has a column for each coordinate of each handle. The responses to all are made orthonormal in D (pivoted Gram and
+   Schmidt, which finds handles that depend on each other): Q = (q_1, ..., q_r), Q'DQ = I. They move the handles by
+   L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|. */
 
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
-static const double gproji_drag_light = 1e-2;   /* the root of what other variables count beside vertices */
-static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, beside a free one, does not move */
+static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
+static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, relative to a free one, does not move */
 static const double gproji_drag_touch = 1e-6;   /* bounds so near to their limit stay there */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
-static const double gproji_drag_rest = 1e-3; /* of staying where it was before the drag, beside where the handles are */
+static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
-    GPROJI_DRAG_ITERATIONS = 10, /* of the release */
-    GPROJI_DRAG_GUIDED = 5
+    GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
+    GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
 };
 
 /* S has the entry weight[e] in column 3 k + c and row 3 vertex[e] + c, for e in start[k] .. start[k + 1] - 1. */
@@ -24598,7 +24577,7 @@ struct gproj_drag {
     double *lift;             /* columns x columns: L by columns */
     double *pull;             /* columns x columns: (L'L)^-1 L', by rows */
     double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; e - L m, and m */
-    int32_t *name;            /* columns: the handle's coordinate that each column of Q began with */
+    int32_t *name;            /* columns: the handle's coordinate that began each column of Q */
     gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
@@ -24663,8 +24642,8 @@ GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
         /* 2. Q = eps^2 D Q */
         for (j = 0; j < drag->columns; ++j, column += n)
             for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
-        /* 3. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the factorisation,
-           up to the batch's size. */
+        /* 3. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the
+           factorisation, up to the batch's size. */
         if (round == 0) {
             loading.system = s, loading.epsilon = gproji_drag_epsilon, loading.curved = false;
             loading.light_from = (int32_t)vertices, loading.light = gproji_drag_light * gproji_drag_epsilon;
@@ -24841,10 +24820,10 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
                 drag->wanted[3 * k + c] += drag->handle.gram[(size_t)k * (size_t)handles + (size_t)j] *
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
-    /* 2. Beyond the bound: linearise where the move has led, and go on to the handles from there. */
+    /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
     if (bound > 0 && !(gproji_see_constraints(drag) <= bound)) {
         if (!gproji_linearise_drag(drag, true)) {
-            /* Undo the move; without responses where it began, nothing moves any more. */
+            /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
             gproji_fail_linearising(drag, &drag->error);
             memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
             if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
@@ -24963,7 +24942,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
 }
 
-/* Refuses a drag that cannot be now, bad options, handles that are none. */
+/* Refuses a drag beside a solve or another drag, forces without values, bad options, handles that are none. */
 GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handles *h,
                                              const gproj_drag_options *options, gproj_error *error) {
     const gproji_statics *statics;
@@ -25043,7 +25022,7 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     form = drag->form;
     gproji_reset_mesh(form);
     memcpy(form->system->x, drag->begun, (size_t)drag->variables * sizeof *drag->begun);
-    gproji_read_state(form, drag->state, drag->state_size, NULL); /* not where rows were added, or after an error */
+    gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
     gproji_destroy_drag(drag);
 }
 
@@ -25069,7 +25048,7 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, form->release.handles, handles);
 }
 
-/* Releases the form: solves it from the mesh before the drag, guided to where the handles have led. */
+/* Releases the form: solves it from the mesh before the drag, guided to x. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     gproj_result result;
     gproj_system *s;
