@@ -20578,12 +20578,12 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
    four, else the mean of all (paper 3.2). */
 GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
                                                  int32_t centre, int32_t count, int32_t element, gproj_term *term) {
+    const int32_t *ring = form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
-    d.element = element, d.centre = centre, d.count = count, d.neighbour = form->work.ring;
+    d.element = element, d.centre = centre, d.count = count, d.neighbour = ring;
     if (count == 4) {
-        pairs[0] = form->work.ring[0], pairs[1] = form->work.ring[2], pairs[2] = form->work.ring[1],
-        pairs[3] = form->work.ring[3];
+        pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
         gproji_add_difference(form, group, tangential, &d, term);
