@@ -18438,75 +18438,87 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
-   The form works in its own units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the
-   variables 3i..3i+2; face normals come behind them when a group asks for them. Groups whose rows change from
-   iteration to iteration have a gproji_part with what their refresh needs; a part never moves, so that the system
-   may keep pointers to it. */
+   A form has internal units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the variables
+   3i..3i+2; others, such as face normals, come behind when a builder needs them. A group whose rows change between
+   iterations has a gproji_part with all that the refresh needs. Parts never move: the system points to them. */
 
 typedef struct gproji_part {
     struct gproji_part *next;
     struct gproj_form *form;
     int32_t group;
-    int32_t count;                /* of `vertex` and, for curves, of `curve_of` */
-    int32_t capacity;             /* of `vertex` */
-    int32_t *vertex;              /* the vertices (Gauss image: faces) that its rows belong to */
+    int32_t count;                /* entries in use, in `vertex` and the lists below */
+    int32_t capacity;             /* entries that `vertex` has room for */
+    int32_t *vertex;              /* the elements with rows: vertices, edges, faces, for cones half-edges */
     const gproj_surface *surface; /* the caller's, in the mesh's units */
     const gproj_curve *curve;     /* the caller's, in the mesh's units; or NULL: */
-    int32_t curve_count;          /* curves of its own, in internal units */
+    int32_t curve_count;          /* or own curves, in internal units */
     gproj_curve **own_curve;
-    int32_t *curve_of; /* of each vertex, its own curve; -1: it stays where it was */
+    int32_t *curve_of; /* per vertex: an own curve; -1: it stays */
     double target;     /* the volume, internal units */
-    double *gradient;  /* of the volume or cost: 3 numbers a vertex of the mesh */
+    double *gradient;  /* volume, cost: 3 numbers a vertex of the mesh */
     double bound[2];   /* at least and at most, internal units (stresses: the caller's); 0 and infinite: none */
-    double price[2];   /* of lengths and areas in internal units */
-    double unit;       /* of the cost: by how much it changes per mean edge length of the mesh's size */
-    int32_t *segment;  /* of each vertex, the segment it glides on; -1: to be found */
-    double *factor;    /* capacity numbers: of each row of stress bounds, +A or -A */
-    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: none of it */
-    int32_t *plane;    /* of each vertex (`capacity`), the first variable of its plane or planes; -1: none */
+    double price[2];   /* for lengths and areas in internal units */
+    double unit;       /* the cost's change when the mesh grows by a mean edge length */
+    int32_t *segment;  /* per vertex: the segment it glides on; -1: to be found */
+    double *factor;    /* per row (`capacity`) of stress bounds: +A or -A, A the cross-section */
+    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: neither */
+    int32_t *plane;    /* per vertex (`capacity`): the first variable of the plane or planes; -1: none */
 } gproji_part;
 
-/* What the section statics keeps for a form. */
+/* A form's forces and loads: see statics. */
 typedef struct gproji_statics {
-    gproj_loads loads; /* its arrays are the two below */
+    gproji_pool pool;  /* has all arrays */
+    gproj_loads loads; /* with the next two arrays */
     double *edge_density, *point_load;
-    uint8_t *axes;      /* of each vertex: the axes along which it is in equilibrium; 0: pinned */
-    int32_t *force;     /* of each edge, the variable of its force; -1: none */
-    int32_t *first_row; /* of each vertex, in the group of equilibrium */
+    uint8_t *axes;      /* per vertex: the axes along which it is in equilibrium; 0: pinned */
+    int32_t *force;     /* per edge: the force's variable; -1: none */
+    int32_t *first_row; /* per vertex: in the group of equilibrium */
     int64_t *load_start;
     int32_t *load_vertex;
-    double *face_load; /* work: 4 numbers a face; NULL where areas have no weight */
-    double *work;      /* 3 numbers a vertex */
+    double *face_load; /* work: 4 numbers a face; NULL: faces weigh nothing */
+    double *work;      /* work: 3 numbers a vertex */
     int32_t *queue;    /* work: 2 numbers a vertex */
-    double load_scale; /* loads inside = loads in internal lengths * load_scale */
-    int32_t group;     /* of equilibrium */
+    double load_scale; /* internal loads = loads in internal lengths * load_scale */
+    int32_t group;     /* equilibrium */
     int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
     int32_t brake;     /* the group that measures how forces change; -1: none yet */
     bool started;      /* the forces have values */
-    double lost[2];    /* the part of the loads that the best first forces left, and those of the other sign */
+    double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
 } gproji_statics;
 
-/* What the section corners keeps for a form. Corner 2 h + k is the one behind half-edge h, seen along its face's normal (k = 0)
-   or the first one (k = 1). */
+/* Corners that are kept: see corners. Corner 2 h + k is the one behind half-edge h, seen along the face's normal (k =
+   0) or the first one (k = 1). */
 typedef struct gproji_corners {
     int32_t group;
-    double *size;    /* of each half-edge: the corner's area when the solve began; 0: it is let go */
-    double *axis;    /* of each face: its unit normal then */
-    int32_t *row;    /* of each corner; -1: none */
+    double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
+    double *axis;    /* per face: the unit normal then */
+    int32_t *row;    /* per corner; -1: none */
     uint8_t *marked; /* corners that are to act */
-    int32_t *corner; /* of each row */
-    size_t capacity; /* of `corner` */
+    int32_t *corner; /* per row */
+    size_t capacity; /* entries that `corner` has room for */
     int32_t wakings; /* in this solve */
 } gproji_corners;
 
-/* A solve of a form, from one frame to the next (gproj_step). */
+/* A solve in frames (gproj_step). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
-    bool finished; /* it has ended, and the loop's result is its verdict */
+    bool finished; /* it has ended: the loop's result is the verdict */
     gproji_loop loop;
     gproji_structure structure; /* of the system at the beginning */
     int32_t default_last;       /* see gproj_system */
 } gproji_solve;
+
+/* Arrays that builders and refreshes fill in and use at once. */
+typedef struct gproji_form_work {
+    double *area;      /* the vectorial area of each face */
+    int32_t *ring;     /* the neighbours of a vertex or face */
+    int32_t ring_size; /* the largest valence or degree */
+} gproji_form_work;
+
+/* The groups that release a drag; -1: none yet. */
+typedef struct gproji_release {
+    int32_t fairness, handles;
+} gproji_release;
 
 struct gproj_form {
     gproji_heap own;
@@ -18517,110 +18529,68 @@ struct gproj_form {
     double centre[3], scale;
     double *original; /* 3 * vertex_count, internal units, at gproj_form_create */
     double *before;   /* 3 * vertex_count: the mesh's positions when the solve or the drag began */
-    int32_t *normal;  /* of each face, the first of the 3 variables of its normal; -1: none */
-    int32_t *axis;    /* of each face, the first variable of its axis point; -1: none; NULL: no face has one */
-    int32_t *cone;    /* of each vertex, the first variable of its cone's axis; -1: none; NULL: no vertex has one */
-    double *area;     /* work: the vectorial area of each face */
-    int32_t *ring;    /* work: the neighbours of one vertex or face, as many as the largest valence or degree */
-    int32_t ring_size;
-    int32_t closeness;       /* the group of the default guidance; -1: none yet */
-    int32_t planarity;       /* the group of the planar faces; -1: none */
+    int32_t *normal;  /* per face: the normal's first variable; -1: none */
+    int32_t *axis;    /* per face: the axis point's first variable; -1: none; NULL: no face has one */
+    int32_t *cone;    /* per vertex: the cone axis' first variable; -1: none; NULL: no vertex has one */
+    gproji_form_work work;
+    int32_t closeness;       /* the default guidance's group; -1: none yet */
+    int32_t planarity;       /* the planar faces' group; -1: none */
     gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
-    double *guard_area;      /* of each of them, its vectorial area when the solve began: 3 numbers */
+    double *guard_area;      /* their vectorial areas when the solve began */
     bool guard_on;           /* in this solve */
-    int32_t smooth;          /* the group of the metric of steps; -1: none yet */
+    int32_t smooth;          /* the group that measures steps by smoothness; -1: none yet */
     gproji_corners *corners; /* keeps corners of faces; NULL: none yet */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;
     gproji_solve solve;
-    gproj_drag *drag;      /* under way; NULL: none */
-    int32_t drag_fairness; /* the groups of a drag's release; -1: none yet */
-    int32_t drag_handles;
+    gproj_drag *drag; /* under way; NULL: none */
+    gproji_release release;
 };
 
 /* -- life -- */
 
-GPROJI_INTERNAL void gproji_part_give(gproj_form *form, gproji_part *part) {
-    int32_t i;
-    for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
-    gproji_give(&form->own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
-    gproji_give(&form->own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
-    gproji_give(&form->own, part->gradient, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
-    gproji_give(&form->own, part->segment, (size_t)part->count, sizeof *part->segment);
-    gproji_give(&form->own, part->factor, (size_t)part->capacity, sizeof *part->factor);
-    gproji_give(&form->own, part->plane, (size_t)part->capacity, sizeof *part->plane);
-    gproji_give(&form->own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
-    gproji_give(&form->own, part, 1, sizeof *part);
-}
-
-GPROJI_INTERNAL void gproji_statics_give(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
-    gproji_give(&form->own, s->edge_density, edges, sizeof *s->edge_density);
-    gproji_give(&form->own, s->point_load, 3 * vertices, sizeof *s->point_load);
-    gproji_give(&form->own, s->load_vertex, s->load_start ? (size_t)s->load_start[vertices] : 0,
-                sizeof *s->load_vertex);
-    gproji_give(&form->own, s->face_load, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
-    gproji_give(&form->own, s->axes, vertices, sizeof *s->axes);
-    gproji_give(&form->own, s->force, edges, sizeof *s->force);
-    gproji_give(&form->own, s->first_row, vertices, sizeof *s->first_row);
-    gproji_give(&form->own, s->load_start, vertices + 1, sizeof *s->load_start);
-    gproji_give(&form->own, s->work, 3 * vertices, sizeof *s->work);
-    gproji_give(&form->own, s->queue, 2 * vertices, sizeof *s->queue);
-    gproji_give(&form->own, s, 1, sizeof *s);
-}
-
-GPROJI_INTERNAL void gproji_corners_give(gproj_form *form) {
-    gproji_corners *guard = form->corners;
-    size_t corners = 2 * (size_t)form->mesh->halfedge_count;
-    gproji_give(&form->own, guard->size, corners / 2, sizeof *guard->size);
-    gproji_give(&form->own, guard->axis, 3 * (size_t)form->mesh->face_count, sizeof *guard->axis);
-    gproji_give(&form->own, guard->row, corners, sizeof *guard->row);
-    gproji_give(&form->own, guard->marked, corners, 1);
-    gproji_give(&form->own, guard->corner, guard->capacity, sizeof *guard->corner);
-    gproji_give(&form->own, guard, 1, sizeof *guard);
-}
-
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
+    gproji_heap *own;
+    size_t vertices, faces, corners;
+    int32_t i;
     if (!form) return;
-    if (form->corners) gproji_corners_give(form);
-    if (form->statics) gproji_statics_give(form);
-    if (form->guard)
-        gproji_give(&form->own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
+    own = &form->own;
+    vertices = form->mesh ? (size_t)form->mesh->vertex_count : 0;
+    faces = form->mesh ? (size_t)form->mesh->face_count : 0;
+    corners = form->mesh ? 2 * (size_t)form->mesh->halfedge_count : 0;
+    if (form->corners) {
+        gproji_give(own, form->corners->size, corners / 2, sizeof *form->corners->size);
+        gproji_give(own, form->corners->axis, 3 * faces, sizeof *form->corners->axis);
+        gproji_give(own, form->corners->row, corners, sizeof *form->corners->row);
+        gproji_give(own, form->corners->marked, corners, 1);
+        gproji_give(own, form->corners->corner, form->corners->capacity, sizeof *form->corners->corner);
+        gproji_give(own, form->corners, 1, sizeof *form->corners);
+    }
+    if (form->statics) gproji_pool_give_all(&form->statics->pool);
+    gproji_give(own, form->statics, 1, sizeof *form->statics);
+    if (form->guard) gproji_give(own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
     while (form->part) {
-        gproji_part *next = form->part->next;
-        gproji_part_give(form, form->part);
-        form->part = next;
+        gproji_part *part = form->part;
+        form->part = part->next;
+        for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
+        gproji_give(own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
+        gproji_give(own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
+        gproji_give(own, part->gradient, 3 * vertices, sizeof *part->gradient);
+        gproji_give(own, part->segment, (size_t)part->count, sizeof *part->segment);
+        gproji_give(own, part->factor, (size_t)part->capacity, sizeof *part->factor);
+        gproji_give(own, part->plane, (size_t)part->capacity, sizeof *part->plane);
+        gproji_give(own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
+        gproji_give(own, part, 1, sizeof *part);
     }
-    if (form->mesh) {
-        gproji_give(&form->own, form->original, 3 * (size_t)form->mesh->vertex_count, sizeof *form->original);
-        gproji_give(&form->own, form->before, 3 * (size_t)form->mesh->vertex_count, sizeof *form->before);
-        gproji_give(&form->own, form->normal, (size_t)form->mesh->face_count, sizeof *form->normal);
-        gproji_give(&form->own, form->axis, (size_t)form->mesh->face_count, sizeof *form->axis);
-        gproji_give(&form->own, form->cone, (size_t)form->mesh->vertex_count, sizeof *form->cone);
-        gproji_give(&form->own, form->area, 3 * (size_t)form->mesh->face_count, sizeof *form->area);
-        gproji_give(&form->own, form->ring, (size_t)form->ring_size, sizeof *form->ring);
-    }
+    gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
+    gproji_give(own, form->before, 3 * vertices, sizeof *form->before);
+    gproji_give(own, form->normal, faces, sizeof *form->normal);
+    gproji_give(own, form->axis, faces, sizeof *form->axis);
+    gproji_give(own, form->cone, vertices, sizeof *form->cone);
+    gproji_give(own, form->work.area, 3 * faces, sizeof *form->work.area);
+    gproji_give(own, form->work.ring, (size_t)form->work.ring_size, sizeof *form->work.ring);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
-}
-
-/* The mean of the bounding box's corners, and the scale that makes the mean edge 1. Vertices without edges count only where
-   there are no others: one far away would take the digits of all coordinates. */
-GPROJI_INTERNAL void gproji_form_measure_units(gproj_form *form) {
-    const gproj_mesh *mesh = form->mesh;
-    double edge = gproj_mesh_mean_edge_length(mesh), low, high;
-    int32_t first = mesh->edge_count ? mesh->origin[0] : 0, v, k;
-    for (k = 0; k < 3; ++k) {
-        low = high = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0;
-        for (v = 0; v < mesh->vertex_count; ++v) {
-            if (mesh->edge_count && mesh->vertex_halfedge[v] < 0) continue;
-            low = gproji_fmin(low, mesh->position[3 * (size_t)v + (size_t)k]);
-            high = gproji_fmax(high, mesh->position[3 * (size_t)v + (size_t)k]);
-        }
-        form->centre[k] = low + (high - low) / 2;
-    }
-    form->scale = edge > 1e-305 ? 1 / edge : 1;
 }
 
 GPROJI_INTERNAL void gproji_to_internal(const gproj_form *form, const double position[3], double out[3]) {
@@ -18633,15 +18603,8 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
     for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
 }
 
-GPROJI_INTERNAL int32_t gproji_largest_ring(const gproj_mesh *mesh) {
-    int32_t largest = 1, i;
-    for (i = 0; i < mesh->vertex_count; ++i) largest = gproji_max(largest, gproj_mesh_valence(mesh, i));
-    for (i = 0; i < mesh->face_count; ++i) largest = gproji_max(largest, mesh->face_degree[i]);
-    return largest;
-}
-
-/* Refuses coordinates that are not finite, or so large that their products would not be, in the mesh's units or in the
-   form's: the caller may have written them. */
+/* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would
+   not be, in the mesh's units or in the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
     int32_t i, k;
     if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
@@ -18657,24 +18620,40 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
     return true;
 }
 
-/* The rest of gproj_form_create, when the form itself is there. */
+/* Gives a new form its arrays, units, originals and the system with the vertices. */
 GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     gproj_mesh *mesh = form->mesh;
-    int32_t i;
+    int32_t i, k, first, ring = 1;
+    double edge;
     if (!mesh)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                            "there is no mesh: reading or building it failed, see its error");
-    form->ring_size = gproji_largest_ring(mesh);
+    for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
+    for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
+    form->work.ring_size = ring;
     form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
     form->before = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->before);
     form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
-    form->area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->area);
-    form->ring = (int32_t *)gproji_take(&form->own, (size_t)form->ring_size, sizeof *form->ring);
+    form->work.area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->work.area);
+    form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->before || !form->normal || !form->area || !form->ring || !form->system)
+    if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
         return gproji_fail_memory(&form->error);
     if (!gproji_positions_are_finite(form)) return form->error.code;
-    gproji_form_measure_units(form);
+    /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
+       digits of all coordinates. */
+    first = mesh->edge_count ? mesh->origin[0] : 0;
+    for (k = 0; k < 3; ++k) {
+        double low = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0, high = low;
+        for (i = 0; i < mesh->vertex_count; ++i) {
+            if (mesh->edge_count && mesh->vertex_halfedge[i] < 0) continue;
+            low = gproji_fmin(low, mesh->position[3 * (size_t)i + (size_t)k]);
+            high = gproji_fmax(high, mesh->position[3 * (size_t)i + (size_t)k]);
+        }
+        form->centre[k] = low + (high - low) / 2;
+    }
+    edge = gproj_mesh_mean_edge_length(mesh);
+    form->scale = edge > 1e-305 ? 1 / edge : 1;
     if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
@@ -18690,12 +18669,11 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
-    form->closeness = form->smooth = form->planarity = form->drag_fairness = form->drag_handles = -1;
+    form->closeness = form->smooth = form->planarity = form->release.fairness = form->release.handles = -1;
     gproji_form_begin(form);
     return form;
 }
 
-/* The form's own error, or its system's. */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form) {
     if (!form) return gproji_no_object();
     if (form->error.code != GPROJ_OK || !form->system) return &form->error;
@@ -18741,15 +18719,7 @@ GPROJI_NOINLINE int32_t gproji_new_group(gproj_form *form, const char *name, gpr
     return gproj_system_add_group(form->system, &group);
 }
 
-/* The same for global rows, which belong to the whole mesh. */
-GPROJI_INTERNAL int32_t gproji_new_global_group(gproj_form *form, const char *name, gproj_kind kind, double weight,
-                                                gproj_refresh refresh, void *user) {
-    int32_t group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, user);
-    if (group >= 0) form->system->group[group].global = true;
-    return group;
-}
-
-/* A part for `count` vertices or faces that the caller then fills in; NULL after an error. */
+/* A part for `count` vertices or faces, which the caller then fills in; NULL after an error. */
 GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
@@ -18773,7 +18743,7 @@ GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, doubl
     term->a = a;
 }
 
-/* Room for what a builder is about to add, or for a little more: a group that grows row by row is moved many times. */
+/* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
 GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
                                          size_t locals) {
     gproj_system *s = form->system;
@@ -18821,8 +18791,7 @@ GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, gproji_s
     if (!gproji_form_ready(form)) return NULL;
     for (v = 0; v < form->mesh->vertex_count; ++v) count += select(form, v);
     part = gproji_new_part(form, count);
-    if (!part) return NULL;
-    for (v = 0, count = 0; v < form->mesh->vertex_count; ++v)
+    for (v = 0, count = 0; part && v < form->mesh->vertex_count; ++v)
         if (select(form, v)) part->vertex[count++] = v;
     return part;
 }
@@ -18841,10 +18810,6 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex) {
     return form && form->mesh && form->original && gproji_is_corner(form->mesh, form->original, vertex);
 }
 
-GPROJI_INTERNAL bool gproji_select_corner(const gproj_form *form, int32_t vertex) {
-    return gproj_form_is_corner(form, vertex);
-}
-
 GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t vertex) {
     return gproji_select_boundary(form, vertex) && !gproj_form_is_corner(form, vertex);
 }
@@ -18853,13 +18818,15 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
    system, loop, mesh, curve, surface, measure, form.
 
-   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system;
-   those whose rows change with x have a refresh beside them. */
+   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
+   for equations phi = 0 that are at most quadratic; others a refresh beside the builder linearises at x before each
+   iteration, to phi(x) + grad phi'(x' - x) = 0. Most are scaled so that phi is about a length in internal units, which
+   makes weights comparable. The variables in a row's terms never change; a refresh sets numbers only. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
-/* Rows x - p = 0 for the three coordinates of each vertex of the part; p = targets[3k..] in the mesh's units, or NULL:
-   the original place. */
+/* Rows v - p = 0, one a coordinate, for each vertex of the part; p = targets[3 k..] in the mesh's units, or NULL: the
+   original places. */
 GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
                                           const double *targets, double weight) {
     int32_t i, k, group;
@@ -18890,7 +18857,7 @@ GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight) {
 }
 
 GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
-    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_corner), "fixed corners",
+    return gproji_add_points(form, gproji_new_selected_part(form, gproj_form_is_corner), "fixed corners",
                              GPROJ_CONSTRAINT, NULL, weight);
 }
 
@@ -18930,39 +18897,39 @@ GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
 
 /* -- planar faces -- */
 
-/* form->area at the system's x. */
+/* form->work.area at the system's x. */
 GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
     int32_t f;
     for (f = 0; f < form->mesh->face_count; ++f)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->area + 3 * (size_t)f);
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), f, form->work.area + 3 * (size_t)f);
 }
 
-/* The unit sum of form->area over the faces around a vertex; e_z where that has no direction. */
+/* The unit sum of form->work.area around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     gproji_set3(0, 0, 0, out);
     do {
-        if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->area + 3 * (size_t)mesh->face[h], out);
+        if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->work.area + 3 * (size_t)mesh->face[h], out);
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
     gproji_normalise3(out, up);
 }
 
-/* The unit vector of form->area of a face; where it has none, the normal at its first vertex. */
+/* A face's unit normal by form->work.area; without a direction, the normal at the first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
     static const double none[3] = {0, 0, 0};
-    gproji_copy3(form->area + 3 * (size_t)face, out);
-    if (gproji_length3(out) > 1e-12) {
+    gproji_copy3(form->work.area + 3 * (size_t)face, out);
+    if (gproji_length3(out) > 1e-12)
         gproji_normalise3(out, none);
-    } else {
+    else
         gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
-    }
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge. All rows of the group
-   are such ones, and have their terms in common: places among n, or among n and v_i by pairs and behind them v_j. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). A
+   group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by pairs, then
+   v_j. */
 GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
@@ -18991,61 +18958,51 @@ GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t 
     }
 }
 
-/* Room for the normals of all faces that have none yet. */
-GPROJI_INTERNAL void gproji_expect_normals(gproj_form *form, int32_t group) {
-    size_t faces = 0, corners = 0;
-    int32_t f;
-    for (f = 0; f < form->mesh->face_count; ++f)
-        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0)
-            ++faces, corners += (size_t)form->mesh->face_degree[f];
-    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
-}
-
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
+    const gproj_mesh *mesh;
+    size_t faces = 0, corners = 0;
     int32_t group, f;
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
         gproj_system_set_schedule(form->system, form->planarity, schedule);
         return gproji_form_ready(form) ? form->planarity : -1;
     }
+    mesh = form->mesh;
     group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
-    gproji_expect_normals(form, group);
-    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f)
-        if (form->mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
+    for (f = 0; f < mesh->face_count; ++f)
+        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
+    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
+    for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f)
+        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
     form->planarity = group;
+    /* Zero-sum rows: their gradients sum to zero over each face. */
     if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
     return gproji_form_ready(form) ? group : -1;
 }
 
 /* -- curves and surfaces -- */
 
-/* How far p is along segment `segment` from its start, minus the segment's length if `from_end`. */
+/* The distance from a segment's start to p along it; from_end: from the end, negative before it. */
 GPROJI_INTERNAL double gproji_along(const gproj_curve *curve, int32_t segment, const double p[3], bool from_end) {
     double d[3];
     gproji_sub3(p, curve->point + 3 * ((size_t)segment + from_end), d);
     return gproji_dot3(d, curve->tangent + 3 * (size_t)segment);
 }
 
-/* The segment after or before; -1 at an open end. */
-GPROJI_INTERNAL int32_t gproji_next_segment(const gproj_curve *curve, int32_t segment, int32_t direction) {
-    bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
-    segment += direction;
-    if (segment >= 0 && segment < curve->segment_count) return segment;
-    if (!closed) return -1;
-    return segment < 0 ? curve->segment_count - 1 : 0;
-}
-
-/* Walks from a segment to the one on which p has its foot. Where p is in the wedge outside a vertex of the polyline,
-   with its foot on neither side, it stays. */
+/* Walks from a segment to the one on which p has its foot. */
 GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, const double p[3]) {
-    int32_t direction = gproji_along(curve, segment, p, true) > 0 ? 1 : -1, steps;
-    for (steps = 0; steps < curve->segment_count; ++steps) {
-        bool forward = direction > 0;
+    bool forward = gproji_along(curve, segment, p, true) > 0;
+    bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
+    int32_t last = curve->segment_count - 1, steps;
+    for (steps = 0; steps <= last; ++steps) {
         double beyond = gproji_along(curve, segment, p, forward);
-        int32_t next = gproji_next_segment(curve, segment, direction);
-        if ((forward ? beyond <= 0 : beyond >= 0) || next < 0) break;
+        int32_t next = segment + (forward ? 1 : -1);
+        if (closed && next < 0) next = last;
+        if (closed && next > last) next = 0;
+        if ((forward ? beyond <= 0 : beyond >= 0) || next < 0 || next > last) break;
+        /* In the wedge outside a corner between two segments p has a foot on neither: it stays. */
         beyond = gproji_along(curve, next, p, !forward);
         if (forward ? beyond < 0 : beyond > 0) break;
         segment = next;
@@ -19053,14 +19010,14 @@ GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, c
     return segment;
 }
 
-/* The three rows of a gliding vertex: it is on the line of its segment (2 rows orthogonal to the tangent), and, with
-   weight only when it is pinned, at `end`. The first row keeps its direction as nearly as it can, so that values before and
-   after a step are of one kind. Everything in internal units. */
+/* Sets a gliding vertex's rows, in internal units: t1'(v - end) = t2'(v - end) = 0, t1 and t2 orthogonal to the
+   segment's tangent, keep it on this line; tangent'(v - end) = 0 has weight only when it is pinned, at `end`. */
 GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int32_t first, const double tangent[3],
                                         const double end[3], bool pinned) {
     const gproj_term *old;
     double basis[3][3];
     int32_t k, count;
+    /* t1 turns as little as possible: else values before and after a step could not be compared. */
     old = gproji_row_terms(system, group, first, &count);
     for (k = 0; k < 3; ++k) basis[0][k] = old[k].a;
     gproji_copy3(tangent, basis[2]);
@@ -19075,13 +19032,12 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Does vertex i of a gliding part stay where it was? */
+/* Does vertex i of a gliding part stay? */
 GPROJI_INTERNAL bool gproji_stays(const gproji_part *part, int32_t i) {
     return part->curve_of && part->curve_of[i] < 0;
 }
 
-/* Each vertex keeps to the line of a segment and walks to its neighbours. Late in the solve it stays on its segment,
-   and is pinned to an end that it would leave: so it cannot hop between two segments for ever. */
+/* Keeps each vertex to the line of a segment, from which it walks to neighbouring segments. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     bool settled = system->late >= 2;
@@ -19095,6 +19051,8 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         if (!curve) curve = part->own_curve[part->curve_of[i]];
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
         if (part->curve) gproji_from_internal(part->form, p, p);
+        /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
+           between two segments for ever. */
         if (part->segment[i] < 0) {
             part->segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
@@ -19111,7 +19069,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     }
 }
 
-/* All vertices look for their segments anew. */
+/* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
     gproji_part *part;
     int32_t i;
@@ -19140,6 +19098,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *p
         part->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+        /* Vertices that stay are pinned to their places for good; others get a line from the refresh. */
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
     }
@@ -19158,69 +19117,47 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
     return gproji_add_gliding_part(form, part, "gliding", weight);
 }
 
-/* The boundary loops of the original as curves in internal units. A loop without extent gives NULL. `points`: work, 3
-   numbers a vertex of the mesh. */
-GPROJI_INTERNAL bool gproji_take_loop_curves(gproj_form *form, gproji_part *part, double *points) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t l;
-    for (l = 0; l < mesh->loop_count; ++l) {
-        int32_t h = mesh->loop_halfedge[l], count = 0;
-        gproj_error error;
-        gproji_error_clear(&error);
-        do {
-            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
-            h = mesh->next[h];
-        } while (h != mesh->loop_halfedge[l]);
-        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
-        if (part->own_curve[l] || error.code == GPROJ_ERROR_DEGENERATE) continue;
-        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
-        return false;
-    }
-    return true;
-}
-
-/* The curve of each vertex of the part, -1 for those that stay: corners, and loops without extent. `loop_of`: work, one
-   entry a vertex of the mesh. */
-GPROJI_INTERNAL void gproji_assign_loops(const gproj_form *form, gproji_part *part, int32_t *loop_of) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t l, i;
-    for (l = 0; l < mesh->loop_count; ++l) {
-        int32_t h = mesh->loop_halfedge[l];
-        do {
-            loop_of[mesh->origin[h]] = part->own_curve[l] ? l : -1;
-            h = mesh->next[h];
-        } while (h != mesh->loop_halfedge[l]);
-    }
-    for (i = 0; i < part->count; ++i)
-        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) ? -1 : loop_of[part->vertex[i]];
-}
-
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_selected_part(form, gproji_select_boundary);
+    const gproj_mesh *mesh;
     size_t vertices;
-    int32_t *loop_of;
+    int32_t *loop_of, l, i;
     double *points;
-    bool done = false;
     if (!part) return -1;
-    vertices = (size_t)form->mesh->vertex_count;
-    part->curve_count = form->mesh->loop_count;
+    mesh = form->mesh;
+    vertices = (size_t)mesh->vertex_count;
+    part->curve_count = mesh->loop_count;
     part->own_curve =
         (gproj_curve **)gproji_take_zeroed(&form->own, (size_t)part->curve_count, sizeof *part->own_curve);
     part->curve_of = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->curve_of);
     loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
-    if (part->own_curve && part->curve_of && loop_of && points) {
-        done = gproji_take_loop_curves(form, part, points);
-        if (done) gproji_assign_loops(form, part, loop_of);
-    } else {
-        gproji_fail_memory(&form->error);
+    if (!part->own_curve || !part->curve_of || !loop_of || !points) gproji_fail_memory(&form->error);
+    /* 1. Each boundary loop of the original as a curve in internal units; NULL for one without extent. */
+    for (l = 0; l < mesh->loop_count && gproji_form_ready(form); ++l) {
+        int32_t h = mesh->loop_halfedge[l], count = 0;
+        gproj_error error;
+        gproji_error_clear(&error);
+        do {
+            loop_of[mesh->origin[h]] = l;
+            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[l]);
+        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
+        if (!part->own_curve[l] && error.code != GPROJ_ERROR_DEGENERATE)
+            gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+    }
+    /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
+    for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
+        l = loop_of[part->vertex[i]];
+        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->own_curve[l] ? -1 : l;
     }
     gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->own, points, 3 * vertices, sizeof *points);
-    return done ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
+    return gproji_form_ready(form) ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
 }
 
-/* The row n'(v - p) = 0 for each vertex: p the closest point of the surface, n its normal there. */
+/* Rows n'(v - p) = 0: p the closest point to v on the surface, n the normal there. */
 GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
@@ -19228,6 +19165,7 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
     for (i = 0; i < part->count; ++i) {
         double point[3];
         gproj_surface_hit hit;
+        /* The surface is in the mesh's units. */
         gproji_from_internal(part->form, x + 3 * (size_t)part->vertex[i], point);
         hit = gproj_surface_closest(part->surface, point);
         gproji_to_internal(part->form, hit.point, point);
@@ -19256,83 +19194,78 @@ GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *sur
 
 /* -- fairness -- */
 
-/* One second difference: centre - sum of `neighbour` / count, of points (vertices or normals) given by their first
+/* One second difference: centre - sum of `neighbour` / count, for points (vertices or normals) given by their first
    variables. */
 typedef struct gproji_difference {
-    int32_t centre;
-    int32_t count;
+    int32_t element; /* the vertex or face that rows name as theirs */
+    int32_t centre, count;
     const int32_t *neighbour;
 } gproji_difference;
 
-/* The three rows of a difference, one a coordinate. Its points are different ones. Their number makes the terms: rows with
-   as many have them in common, where they follow each other. `term`: room for count + 1 terms. */
-GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
-                                           gproj_term *term) {
+/* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
+   the element, so that a refresh can fill in their coefficients. `term`: room for 3 (count + 1). */
+GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
+                                           const gproji_difference *d, gproj_term *term) {
     int32_t points = d->count + 1, last, k, i, *local;
+    if (tangential) {
+        for (i = 0; i < points; ++i)
+            for (k = 0; k < 3; ++k)
+                gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
+        for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
+        tangential->vertex[tangential->count++] = d->element;
+        return;
+    }
     if (!gproji_system_has_group(form->system, group)) return;
+    /* Successive rows share their terms if they have equally many points. */
     last = form->system->group[group].row_count - 1;
     for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
-    local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, element);
+    local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, d->element);
     for (k = 0; k < 3 && local; ++k, local += points) {
         local[0] = d->centre + k;
         for (i = 0; i < d->count; ++i) local[i + 1] = d->neighbour[i] + k;
     }
 }
 
-/* The same seen in a tangent plane: two rows whose coefficients the refresh fills in. `term`: 3 (count + 1). */
-GPROJI_INTERNAL void gproji_add_tangential_difference(gproj_form *form, int32_t group, const gproji_difference *d,
-                                                      int32_t element, gproj_term *term) {
-    int32_t k, i;
-    for (i = 0; i <= d->count; ++i)
-        for (k = 0; k < 3; ++k)
-            gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
-    for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * (d->count + 1), term, 0, element);
-}
-
-typedef void (*gproji_add_one_difference)(gproj_form *form, int32_t group, const gproji_difference *d, int32_t element,
-                                          gproj_term *term);
-
-/* The differences of a point with its cyclic neighbours: opposite pairs where there are four, else the mean of all
-   (paper 3.2). Returns how many differences there are. */
-GPROJI_INTERNAL int32_t gproji_add_ring_differences(gproj_form *form, int32_t group, int32_t centre, int32_t *ring,
-                                                    int32_t count, int32_t element, gproj_term *term,
-                                                    gproji_add_one_difference add) {
+/* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
+   four, else the mean of all (paper 3.2). */
+GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
+                                                 int32_t centre, int32_t count, int32_t element, gproj_term *term) {
+    const int32_t *ring = form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
-    d.centre = centre;
-    d.count = count;
-    d.neighbour = ring;
+    d.element = element, d.centre = centre, d.count = count, d.neighbour = ring;
     if (count == 4) {
         pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        add(form, group, &d, element, term);
+        gproji_add_difference(form, group, tangential, &d, term);
         d.neighbour = pairs + 2;
     }
-    add(form, group, &d, element, term);
-    return count == 4 ? 2 : 1;
+    gproji_add_difference(form, group, tangential, &d, term);
 }
 
-/* Room for the terms of the largest difference of this mesh. */
+/* Room for the largest difference, or face, in this mesh. */
 GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
-    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
     if (!term) gproji_fail_memory(&form->error);
     return term;
 }
 
 GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
-    gproji_give(&form->own, term, 3 * ((size_t)form->ring_size + 1), sizeof *term);
+    gproji_give(&form->own, term, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
 }
 
-/* The neighbours of an interior vertex by their first variables; 0 for other vertices. */
+/* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
+   other vertices. */
 GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     int32_t count, i;
     if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
-    count = gproj_mesh_one_ring(form->mesh, vertex, form->ring, form->ring_size);
-    for (i = 0; i < count; ++i) form->ring[i] *= 3;
+    count = gproj_mesh_one_ring(form->mesh, vertex, form->work.ring, form->work.ring_size);
+    for (i = 0; i < count; ++i) form->work.ring[i] *= 3;
     return count;
 }
 
+/* Adds the differences along the boundary, except at corners. */
 GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group, gproj_term *term) {
     const gproj_mesh *mesh = form->mesh;
     int32_t v;
@@ -19343,10 +19276,8 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
         h = mesh->vertex_halfedge[v];
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
-        d.centre = 3 * v;
-        d.count = 2;
-        d.neighbour = pair;
-        gproji_add_difference(form, group, &d, v, term);
+        d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
+        gproji_add_difference(form, group, NULL, &d, term);
     }
 }
 
@@ -19374,14 +19305,14 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, 3 * v, form->ring, count, v, term, gproji_add_difference);
+        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v, term);
     }
     gproji_add_boundary_differences(form, group, term);
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* Fills in rows `row` and `row` + 1: u' and w' of a difference, u, w spanning the plane orthogonal to `normal`. */
+/* Fills in rows `row` and `row` + 1, u'd and w'd for a difference d: u, w span the plane orthogonal to `normal`. */
 GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
                                                const double normal[3]) {
     double basis[2][3];
@@ -19396,17 +19327,13 @@ GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t gro
     }
 }
 
-/* One part for differences in tangent planes: part->vertex names the vertex or face of each. */
-GPROJI_INTERNAL void gproji_note_differences(gproji_part *part, int32_t element, int32_t count) {
-    while (count-- > 0) part->vertex[part->count++] = element;
-}
-
 GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     double normal[3] = {0, 0, 1};
     int32_t i;
     gproji_update_areas(part->form);
     for (i = 0; i < part->count; ++i) {
+        /* The differences at one vertex follow each other. */
         if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
         gproji_refresh_difference(system, group, 2 * i, normal);
     }
@@ -19425,10 +19352,7 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
                                    gproji_refresh_tangential, part);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count == 0) continue;
-        count = gproji_add_ring_differences(form, part->group, 3 * v, form->ring, count, v, term,
-                                            gproji_add_tangential_difference);
-        gproji_note_differences(part, v, count);
+        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
     }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
@@ -19446,35 +19370,8 @@ GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int3
     }
 }
 
-/* The differences of face `face` in the Gauss image: with all its neighbours where they all exist, else with opposite
-   neighbours of a quad. Returns how many there are. */
-GPROJI_INTERNAL int32_t gproji_add_gauss_differences(gproj_form *form, int32_t group, int32_t face, gproj_term *term) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], count = 0, k, added = 0;
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        int32_t neighbour = mesh->face[mesh->twin[h]];
-        form->ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
-        count += neighbour >= 0;
-    }
-    if (count == degree)
-        return gproji_add_ring_differences(form, group, form->normal[face], form->ring, degree, face, term,
-                                           gproji_add_tangential_difference);
-    for (k = 0; degree == 4 && k < 2; ++k) {
-        gproji_difference d;
-        int32_t pair[2];
-        pair[0] = form->ring[k];
-        pair[1] = form->ring[k + 2];
-        if (pair[0] < 0 || pair[1] < 0) continue;
-        d.centre = form->normal[face];
-        d.count = 2;
-        d.neighbour = pair;
-        gproji_add_tangential_difference(form, group, &d, face, term);
-        added++;
-    }
-    return added;
-}
-
-/* Triangles have no normals as variables until something needs them. Other faces get theirs from the planarity. */
+/* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
+   planarity. */
 GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *name) {
     int32_t f, group = -1;
     gproji_update_areas(form);
@@ -19493,18 +19390,37 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *na
 }
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
+    const gproj_mesh *mesh;
     gproji_part *part;
     gproj_term *term;
-    int32_t f;
+    int32_t f, k;
     if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form, "Gauss image fairness")) return -1;
-    part = gproji_new_part(form, 2 * form->mesh->face_count);
+    mesh = form->mesh;
+    part = gproji_new_part(form, 2 * mesh->face_count);
     term = part ? gproji_take_terms(form) : NULL;
     if (!term) return -1;
     part->count = 0;
     part->group = gproji_new_group(form, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
                                    gproji_refresh_gauss, part);
-    for (f = 0; f < form->mesh->face_count; ++f)
-        gproji_note_differences(part, f, gproji_add_gauss_differences(form, part->group, f, term));
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
+        for (k = 0; k < degree; ++k, h = mesh->next[h]) {
+            int32_t neighbour = mesh->face[mesh->twin[h]];
+            form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
+            count += neighbour >= 0;
+        }
+        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f, term);
+        /* A quad at the boundary still has a difference if it has two opposite neighbours. */
+        for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
+            gproji_difference d;
+            int32_t pair[2];
+            pair[0] = form->work.ring[k];
+            pair[1] = form->work.ring[k + 2];
+            if (pair[0] < 0 || pair[1] < 0) continue;
+            d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
+            gproji_add_difference(form, part->group, part, &d, term);
+        }
+    }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
 }
@@ -19519,56 +19435,40 @@ GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t
     return gproj_system_group_info(form ? form->system : NULL, group);
 }
 
-/* How many elements of this kind the mesh has; 0 for what is no part of a mesh. */
-GPROJI_INTERNAL int32_t gproji_element_count(const gproj_mesh *mesh, gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return mesh->vertex_count;
-    case GPROJ_PLACE_EDGE: return mesh->edge_count;
-    case GPROJ_PLACE_FACE: return mesh->face_count;
-    default: return 0;
-    }
-}
-
-/* Refuses lists of elements and weights that do not fit the group. */
-GPROJI_INTERNAL bool gproji_element_weights_are_valid(gproj_form *form, int32_t group, int32_t count,
-                                                      const int32_t *elements, const double *weights) {
-    gproj_group_info info = gproj_system_group_info(form->system, group);
-    int32_t have = gproji_element_count(form->mesh, info.place), k;
-    if (!gproji_system_has_group(form->system, group)) {
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                    "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
-        return false;
-    }
-    if (count < 0 || (count > 0 && !weights) || (!elements && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                    "element weights: %d of the %d elements of group '%s', or no weights", count, have, info.name);
-        return false;
-    }
+GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
+                                               const double *weights) {
+    gproj_group_info info;
+    gproji_group *g;
+    double *of; /* per element: the new weight; -1: unchanged */
+    int32_t have, k;
+    if (!form) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    /* 1. Refuse lists that do not fit the group. */
+    if (!gproji_system_has_group(form->system, group))
+        return gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                           "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
+    info = gproj_system_group_info(form->system, group);
+    have = info.place == GPROJ_PLACE_VERTEX ? form->mesh->vertex_count
+           : info.place == GPROJ_PLACE_EDGE ? form->mesh->edge_count
+           : info.place == GPROJ_PLACE_FACE ? form->mesh->face_count
+                                            : 0;
+    if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                           "element weights: %d of the %d elements of group '%s', or no weights", count, have,
+                           info.name);
     for (k = 0; k < count; ++k) {
         int32_t element = elements ? elements[k] : k;
         if (element < 0 || element >= have)
-            gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
-                        "element weights: there is no %s %d (the mesh has %d, counted from 0)",
-                        gproji_place_word(info.place), element, have);
-        else if (!(weights[k] >= 0 && weights[k] <= 1e50))
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
-                        "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
-                        gproji_place_word(info.place), element, info.name);
-        if (form->error.code != GPROJ_OK) return false;
+            return gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
+                               "element weights: there is no %s %d (the mesh has %d, counted from 0)",
+                               gproji_place_word(info.place), element, have);
+        if (!(weights[k] >= 0 && weights[k] <= 1e50))
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
+                               "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
+                               gproji_place_word(info.place), element, info.name);
     }
-    return true;
-}
-
-GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
-                                               const double *weights) {
-    int32_t have, k;
-    double *of; /* of each element the new weight; -1: as it was */
-    gproji_group *g;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    if (!gproji_element_weights_are_valid(form, group, count, elements, weights)) return form->error.code;
+    /* 2. A row's weight is own x factor: own by builder or refresh, the factor by this function. */
     g = &form->system->group[group];
-    have = gproji_element_count(form->mesh, g->place);
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
     if (!of || !gproji_share_weights(form->system, g)) {
         gproji_give(&form->own, of, (size_t)have, sizeof *of);
@@ -19589,7 +19489,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists that are no elements (edges, faces) of the mesh, which has `have` of them. */
+/* Refuses lists with elements (edges, faces) that the mesh does not have: there are `have`. */
 GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
                                                int32_t count, const int32_t *elements) {
     const char *word = gproji_place_word(place);
@@ -19612,11 +19512,7 @@ GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, 
     return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
 }
 
-GPROJI_INTERNAL bool gproji_faces_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *faces) {
-    return gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces);
-}
-
-/* The terms of scale |v_i - v_j|^2 for the ends of an edge: 9 of them. */
+/* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
     int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
     for (k = 0; k < 3; ++k) {
@@ -19626,12 +19522,13 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     }
 }
 
-/* The length of an edge of the original, in internal units. */
+/* An edge's original length, in internal units. */
 GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t edge) {
     const int32_t *origin = form->mesh->origin + 2 * (size_t)edge;
     return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
 }
 
+/* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight) {
     int32_t group, k;
@@ -19662,6 +19559,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term[10];
+        /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l, at first the mean length. */
         gproji_set_length_terms(form->mesh, edge, 0.5, term);
         gproji_set_term(&term[9], common, common, -0.5);
         gproj_system_add_row(form->system, group, 10, term, 0, edge);
@@ -19671,13 +19569,23 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean of points x[3 v] for `count` vertices v, and unit vectors along, across, flat in the directions in which
-   they scatter most, less and least. */
-GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int32_t *vertices, double mean[3],
-                                       double along[3], double across[3], double flat[3]) {
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    int32_t k, i, j;
+/* The mean original place of `count` vertices. */
+GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
+                                          double mean[3]) {
+    int32_t k;
     gproji_set3(0, 0, 0, mean);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
+}
+
+/* Fits planes n'(v - m) = d to these vertices at the system's x, 4 numbers each: n, d; m is their mean original place.
+   One plane, or two at right angles that intersect in the line of best fit. */
+GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
+                                       double plane[8]) {
+    const double *x = gproj_system_values(form->system);
+    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, mean[3] = {0, 0, 0}, middle[3], along[3], d[3], u[3],
+           v[3], uu = 0, uv = 0, vv = 0, angle;
+    int32_t k, i, j;
+    /* 1. The direction in which they scatter most. */
     for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, x + 3 * (size_t)vertices[k], mean);
     for (k = 0; k < count; ++k) {
         gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
@@ -19685,6 +19593,7 @@ GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
     gproji_largest_eigenvector3(scatter, along);
+    /* 2. Across it, the direction with the least scatter, which is the first plane's normal, and the other one. */
     gproji_tangents3(along, u, v);
     for (k = 0; k < count; ++k) {
         gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
@@ -19694,54 +19603,21 @@ GPROJI_INTERNAL void gproji_fit_points(const double *x, int32_t count, const int
     }
     angle = 0.5 * atan2(2 * uv, uu - vv);
     for (k = 0; k < 3; ++k) {
-        across[k] = cos(angle) * u[k] + sin(angle) * v[k];
-        flat[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        plane[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        if (planes == 2) plane[4 + k] = cos(angle) * u[k] + sin(angle) * v[k];
     }
-}
-
-/* The mean of the originals of `count` vertices. */
-GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
-                                          double mean[3]) {
-    int32_t k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
-}
-
-/* The planes n'(v - m) = d through the points x[3 v] of these vertices that fit best, 4 numbers each: n, d; m is the
-   mean of their originals. One plane, or two at right angles whose line fits best. */
-GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
-                                       double plane[8]) {
-    const double *x = gproj_system_values(form->system);
-    double mean[3], middle[3], along[3], across[3], flat[3];
-    int32_t p;
-    gproji_fit_points(x, count, vertices, mean, along, across, flat);
     gproji_original_mean(form, count, vertices, middle);
     gproji_sub3(mean, middle, mean);
-    for (p = 0; p < planes; ++p) {
-        gproji_copy3(p ? across : flat, plane + 4 * p);
-        plane[4 * p + 3] = gproji_dot3(plane + 4 * p, mean);
-    }
+    for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
 }
 
-/* The rows n_p'n_q = 1 or 0 of the planes whose variables begin at `first`. */
-GPROJI_INTERNAL void gproji_add_plane_normals(gproj_form *form, int32_t group, int32_t planes, int32_t first,
-                                              int32_t vertex) {
-    int32_t p, q, k;
-    for (p = 0; p < planes; ++p) {
-        for (q = 0; q <= p; ++q) {
-            gproj_term term[3];
-            for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
-            gproj_system_add_row(form->system, group, 3, term, p == q ? -1 : 0, vertex);
-        }
-    }
-}
-
-/* The vertices from..part->count-1 of the part get their plane or planes: variables, and the rows n'(v - m) - d = 0.
-   Those of a set too small to leave a plane, or a line, get none. */
+/* Gives the part's vertices from..count-1 a plane, or two for a line: variables n, d with n'n = 1, orthogonal normals,
+   and the rows n'(v - m) - d = 0. A set too small to leave one gets none. */
 GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, int32_t from) {
     const int32_t *vertex = part->vertex + from;
-    int32_t count = part->count - from, first = -1, i, p, k;
+    int32_t count = part->count - from, first = -1, i, p, q, k;
     double plane[8], middle[3];
+    gproj_term term[7];
     if (count > (part->planes == 1 ? 3 : 2)) {
         gproji_fit_planes(form, part->planes, count, vertex, plane);
         gproji_original_mean(form, count, vertex, middle);
@@ -19749,10 +19625,14 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, i
     }
     for (i = 0; i < count; ++i) part->plane[from + i] = first;
     if (first < 0) return;
-    gproji_add_plane_normals(form, part->group, part->planes, first, vertex[0]);
+    for (p = 0; p < part->planes; ++p) {
+        for (q = 0; q <= p; ++q) {
+            for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
+            gproj_system_add_row(form->system, part->group, 3, term, p == q ? -1 : 0, vertex[0]);
+        }
+    }
     for (i = 0; i < count; ++i) {
         for (p = 0; p < part->planes; ++p) {
-            gproj_term term[7];
             for (k = 0; k < 3; ++k) {
                 gproji_set_term(&term[2 * k], 3 * vertex[i] + k, first + 4 * p + k, 1);
                 gproji_set_term(&term[2 * k + 1], first + 4 * p + k, -1, -middle[k]);
@@ -19763,7 +19643,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, i
     }
 }
 
-/* Planes and lines begin a solve where they fit the vertices best. */
+/* Puts planes and lines back to a best fit, before a solve. */
 GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
     gproji_part *part;
     int32_t from, to;
@@ -19779,7 +19659,7 @@ GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
     }
 }
 
-/* Makes a part one of planes (1) or lines (2) with a group that has no rows yet. */
+/* Makes a part one with planes (1) or lines (2), its group without rows. */
 GPROJI_INTERNAL bool gproji_begin_planes(gproj_form *form, gproji_part *part, int32_t planes, const char *name,
                                          double weight) {
     if (!part) return false;
@@ -19807,22 +19687,15 @@ GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* The corners of a boundary loop; with any, *start becomes the half-edge that leaves one of them. */
-GPROJI_INTERNAL int32_t gproji_loop_corners(const gproj_form *form, int32_t loop, int32_t *start) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t h = mesh->loop_halfedge[loop], corners = 0;
-    *start = h;
-    do {
-        if (gproj_form_is_corner(form, mesh->origin[h])) *start = h, ++corners;
-        h = mesh->next[h];
-    } while (h != mesh->loop_halfedge[loop]);
-    return corners;
-}
-
-/* The sets of a boundary loop: from corner to corner, or the whole loop where there is none. */
+/* Adds a boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
 GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, int32_t loop) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t start, corners = gproji_loop_corners(form, loop, &start), h = start, from = part->count;
+    int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
+    do {
+        if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
+        h = mesh->next[h];
+    } while (h != mesh->loop_halfedge[loop]);
+    h = start; /* the half-edge that leaves a corner, if there is one */
     if (part->planes == 2 && corners < 3) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
                     "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
@@ -19834,7 +19707,7 @@ GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, i
         part->vertex[part->count++] = mesh->origin[h];
         h = mesh->next[h];
         if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
-            part->vertex[part->count++] = mesh->origin[h];
+            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
             gproji_add_plane_set(form, part, from);
             from = part->count;
         }
@@ -19846,7 +19719,7 @@ GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, int32_t plane
     gproji_part *part;
     int32_t v, most = 0, loop;
     if (!gproji_form_ready(form)) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
+    for (v = 0; v < form->mesh->vertex_count; ++v) /* corners are in two sets */
         most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
     part = gproji_new_part(form, most);
     if (!gproji_begin_planes(form, part, planes, name, weight)) return -1;
@@ -19878,6 +19751,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
                     "orthogonal edges: the normal has no direction");
         return -1;
     }
+    /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
     group = gproji_new_group(form, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
     for (i = 0; i < 2 * count && gproji_form_ready(form); ++i) {
@@ -19892,12 +19766,15 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_form_ready(form) ? group : -1;
 }
 
+/* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
+   and v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
     int32_t group, v, k, ring[3];
     if (!gproji_form_ready(form)) return -1;
     group = gproji_new_group(form, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
-        gproj_term term[12]; /* ring: along the boundary the first and the last */
+        gproj_term term[12];
+        /* A boundary vertex's ring begins and ends along the boundary. */
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
         for (k = 0; k < 3; ++k) {
             gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
@@ -19916,7 +19793,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     group = gproji_new_group(form, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
         gproj_term term;
-        if (i % 3 == 2) continue;
+        if (i % 3 == 2) continue; /* z is free */
         gproji_set_term(&term, i, -1, 1);
         gproj_system_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
     }
@@ -19925,7 +19802,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
 
 /* -- shapes of faces, areas, volume -- */
 
-/* Where the axis points of circular faces start: the circumcentre at the system's x, else the mean. */
+/* Start for a circular face's axis point: the circumcentre at the system's x, else the mean. */
 GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -19937,141 +19814,122 @@ GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t fac
     gproji_circumcentre(mesh, x, face, mean, normal, out);
 }
 
-/* The row |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 of an edge, c the variables from `axis` on. */
-GPROJI_INTERNAL void gproji_add_axis_row(gproj_form *form, int32_t group, int32_t face, int32_t axis,
-                                         int32_t halfedge) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t i = 3 * mesh->origin[halfedge], j = 3 * mesh->origin[mesh->next[halfedge]], k;
-    gproj_term term[12];
-    for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[4 * k], j + k, j + k, 0.5);
-        gproji_set_term(&term[4 * k + 1], i + k, i + k, -0.5);
-        gproji_set_term(&term[4 * k + 2], axis + k, j + k, -1);
-        gproji_set_term(&term[4 * k + 3], axis + k, i + k, 1);
-    }
-    gproj_system_add_row(form->system, group, 12, term, 0, face);
+/* Makes a list for first variables, all -1, unless it is there; false without memory. */
+GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
+    if (*list) return true;
+    *list = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof **list);
+    if (*list)
+        gproji_fill(*list, count, -1);
+    else
+        gproji_fail_memory(&form->error);
+    return *list != NULL;
 }
 
+/* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
+   the axis of their circle. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
-    int32_t group, f, k, h;
-    if (!gproji_form_ready(form)) return -1;
-    if (!form->axis) {
-        form->axis = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->face_count, sizeof *form->axis);
-        if (!form->axis) {
-            gproji_fail_memory(&form->error);
-            return -1;
-        }
-        for (f = 0; f < form->mesh->face_count; ++f) form->axis[f] = -1;
-    }
+    const gproj_mesh *mesh;
+    int32_t group, f, k, c, h;
+    if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
+    mesh = form->mesh;
     group = gproji_new_group(form, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
     gproji_update_areas(form);
-    for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
+    for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
         double start[3];
-        if (form->mesh->face_degree[f] == 3) continue;
+        if (mesh->face_degree[f] == 3) continue;
         gproji_start_axis_point(form, f, start);
         if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
-        h = form->mesh->face_halfedge[f];
-        for (k = 0; k < form->mesh->face_degree[f] && gproji_form_ready(form); ++k, h = form->mesh->next[h])
-            gproji_add_axis_row(form, group, f, form->axis[f], h);
+        h = mesh->face_halfedge[f];
+        for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
+            int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
+            gproj_term term[12];
+            for (c = 0; c < 3; ++c) {
+                gproji_set_term(&term[4 * c], j + c, j + c, 0.5);
+                gproji_set_term(&term[4 * c + 1], i + c, i + c, -0.5);
+                gproji_set_term(&term[4 * c + 2], form->axis[f] + c, j + c, -1);
+                gproji_set_term(&term[4 * c + 3], form->axis[f] + c, i + c, 1);
+            }
+            gproj_system_add_row(form->system, group, 12, term, 0, f);
+        }
     }
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* How many faces meet at a vertex. */
-GPROJI_INTERNAL int32_t gproji_faces_at(const gproj_mesh *mesh, int32_t vertex) {
-    return gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
-}
-
-/* The row det(a, e, m) / (2 |e|) = 0 of a half-edge, linearised at x: a the axis of its origin, e = v_j - v_i, m = n_f
-   + n_g. Its derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
-GPROJI_INTERNAL void gproji_refresh_cone_row(const gproj_form *form, gproj_system *system, int32_t group, int32_t row,
-                                             int32_t halfedge) {
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system), *a = x + form->cone[mesh->origin[halfedge]];
-    double e[3], m[3], slope[5][3], scale;
-    int32_t count, k, c;
-    gproj_term *term = gproji_row_terms(system, group, row, &count);
-    gproji_sub3(x + 3 * (size_t)mesh->origin[halfedge ^ 1], x + 3 * (size_t)mesh->origin[halfedge], e);
-    gproji_copy3(x + form->normal[mesh->face[halfedge]], m);
-    gproji_add_scaled3(1, x + form->normal[mesh->face[halfedge ^ 1]], m);
-    gproji_cross3(e, m, slope[0]);
-    gproji_cross3(a, m, slope[1]);
-    gproji_cross3(m, a, slope[2]);
-    gproji_cross3(a, e, slope[3]);
-    gproji_copy3(slope[3], slope[4]);
-    scale = 0.5 / gproji_fmax(gproji_length3(e), 1e-6);
-    for (k = 0; k < 5; ++k)
-        for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[k][c];
-    gproj_system_set_row(system, group, row, NULL, -2 * scale * gproji_dot3(a, slope[0]));
-}
-
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge in part->vertex: a the axis at v_i, e = v_j -
+   v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        if (part->vertex[i] >= 0) gproji_refresh_cone_row(part->form, system, group, i, part->vertex[i]);
-}
-
-/* The rows of one vertex: a'a = 1, and one for each edge between two faces. */
-GPROJI_INTERNAL void gproji_add_cone_rows(gproj_form *form, gproji_part *part, int32_t vertex) {
+    const gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
-    int32_t axis = form->cone[vertex], start = mesh->vertex_halfedge[vertex], h = start, c;
-    gproj_term term[15];
-    for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
-    gproj_system_add_row(form->system, part->group, 3, term, -1, vertex);
-    part->vertex[part->count++] = -1;
-    do {
-        int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
-        for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
-            gproji_set_term(&term[c], axis + c, -1, 0);
-            gproji_set_term(&term[3 + c], 3 * vertex + c, -1, 0);
-            gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
-            gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
-            gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
-        }
-        if (face >= 0 && other >= 0) {
-            gproj_system_add_row(form->system, part->group, 15, term, 0, vertex);
-            part->vertex[part->count++] = h;
-        }
-        h = gproji_rotate(mesh, h);
-    } while (h != start && gproji_form_ready(form));
-}
-
-/* Gives the vertices where four or more faces meet the axes of their cones as variables, if they have none. Returns the
-   number of rows that they will have; -1 without memory. */
-GPROJI_INTERNAL int32_t gproji_add_cones(gproj_form *form) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t v, rows = 0;
-    if (!form->cone) {
-        form->cone = (int32_t *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *form->cone);
-        if (!form->cone) {
-            gproji_fail_memory(&form->error);
-            return -1;
-        }
-        for (v = 0; v < mesh->vertex_count; ++v) form->cone[v] = -1;
+    const double *x = gproj_system_values(system), *a;
+    double e[3], m[3], slope[5][3], scale;
+    int32_t i, count, k, c;
+    for (i = 0; i < part->count; ++i) {
+        int32_t h = part->vertex[i];
+        gproj_term *term = gproji_row_terms(system, group, i, &count);
+        if (h < 0) continue; /* a'a = 1 */
+        a = x + form->cone[mesh->origin[h]];
+        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], x + 3 * (size_t)mesh->origin[h], e);
+        gproji_copy3(x + form->normal[mesh->face[h]], m);
+        gproji_add_scaled3(1, x + form->normal[mesh->face[h ^ 1]], m);
+        gproji_cross3(e, m, slope[0]);
+        gproji_cross3(a, m, slope[1]);
+        gproji_cross3(m, a, slope[2]);
+        gproji_cross3(a, e, slope[3]);
+        gproji_copy3(slope[3], slope[4]);
+        scale = 0.5 / gproji_fmax(gproji_length3(e), 1e-6);
+        for (k = 0; k < 5; ++k)
+            for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[k][c];
+        gproj_system_set_row(system, group, i, NULL, -2 * scale * gproji_dot3(a, slope[0]));
     }
+}
+
+/* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
+   edge e between faces f and g: a is in the plane of e and n_f + n_g. */
+GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
+    const gproj_mesh *mesh;
+    gproji_part *part;
+    gproj_term term[15];
+    int32_t rows = 0, v, c;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
+    if (!gproji_take_firsts(form, form->mesh->vertex_count, &form->cone)) return -1;
+    /* 1. Axes as variables, and how many rows there can be. */
+    mesh = form->mesh;
     for (v = 0; v < mesh->vertex_count; ++v) {
         double start[3];
-        if (gproji_faces_at(mesh, v) < 4) continue;
+        if (gproj_mesh_valence(mesh, v) - gproj_mesh_is_boundary_vertex(mesh, v) < 4) continue;
         gproji_cone_axis(mesh, gproj_system_values(form->system), v, start);
         if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
-    return gproji_form_ready(form) ? rows : -1;
-}
-
-GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
-    gproji_part *part;
-    int32_t rows, v;
-    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
-    rows = gproji_add_cones(form);
-    part = rows < 0 ? NULL : gproji_new_part(form, rows);
+    part = gproji_new_part(form, rows);
     if (!part) return -1;
     part->count = 0;
     part->group =
         gproji_new_group(form, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_cones, part);
-    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
-        if (form->cone[v] >= 0) gproji_add_cone_rows(form, part, v);
+    /* 2. Rows: a'a = 1, then one for each edge between two faces. */
+    for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
+        int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
+        if (axis < 0) continue;
+        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
+        gproj_system_add_row(form->system, part->group, 3, term, -1, v);
+        part->vertex[part->count++] = -1;
+        do {
+            int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
+            for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
+                gproji_set_term(&term[c], axis + c, -1, 0);
+                gproji_set_term(&term[3 + c], 3 * v + c, -1, 0);
+                gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
+                gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
+                gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
+            }
+            if (face >= 0 && other >= 0) {
+                gproj_system_add_row(form->system, part->group, 15, term, 0, v);
+                part->vertex[part->count++] = h;
+            }
+            h = gproji_rotate(mesh, h);
+        } while (h != start && gproji_form_ready(form));
+    }
     return gproji_form_ready(form) ? part->group : -1;
 }
 
@@ -20082,6 +19940,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term term[4];
         if (form->mesh->face_degree[f] != 4) continue;
+        /* v_0 - v_1 + v_2 - v_3 = 0 in each coordinate. */
         for (k = 0; k < 3; ++k) {
             int32_t h = form->mesh->face_halfedge[f];
             for (c = 0; c < 4; ++c, h = form->mesh->next[h])
@@ -20092,7 +19951,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The gradient of a face's area by the vertex where half-edge h of it starts: (v_(i+1) - v_(i-1)) x a / (2 |a|). */
+/* A face's area has, by the vertex v_i at which half-edge h begins, the gradient (v_(i+1) - v_(i-1)) x a / (2 |a|). */
 GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const double normal[3], double out[3]) {
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
@@ -20103,14 +19962,14 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
 
-/* scale (|a(v)| + grad |a|'(v' - v)) of a face at form->area: 3 coefficients a corner; returns the constant. */
+/* Linearises a face's scale |a(v)| at form->work.area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
     int32_t h = mesh->face_halfedge[face], k, c;
     double normal[3], slope[3], constant;
-    gproji_copy3(form->area + 3 * (size_t)face, normal);
+    gproji_copy3(form->work.area + 3 * (size_t)face, normal);
     constant = scale * gproji_length3(normal);
     gproji_normalise3(normal, none);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
@@ -20122,7 +19981,7 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
     return constant;
 }
 
-/* The terms of gproji_linearise_area, for variables that are there; returns how many. */
+/* The terms that gproji_linearise_area fills in; returns their number. */
 GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t face, gproj_term *term) {
     int32_t h = mesh->face_halfedge[face], k, c;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
@@ -20130,7 +19989,7 @@ GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t fa
     return 3 * mesh->face_degree[face];
 }
 
-/* The row |a(v)| - A = 0 of each face. */
+/* Rows |a(v)| - A = 0 for each face, A an unknown. */
 GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
     gproj_form *form = ((const gproji_part *)user)->form;
     int32_t f, count;
@@ -20142,27 +20001,54 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
 }
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
+    gproji_part *part = gproji_new_part(form, 0);
     gproj_term *term = part ? gproji_take_terms(form) : NULL;
     int32_t common, f, count;
     double area = 0;
     if (!term) return -1;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count; ++f)
-        area += gproji_length3(form->area + 3 * (size_t)f) / form->mesh->face_count;
+        area += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
     common = gproj_system_add_variables(form->system, 1, 1, &area);
     part->group =
         gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
-        gproji_set_term(&term[count], common, -1, -1);
+        gproji_set_term(&term[count], common, -1, -1); /* A, at first the mean area */
         gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     gproji_give_terms(form, term);
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* The row (V(v) + grad V'(v' - v) - volume) / area; the terms are those of all vertices in order. */
+/* A part for a sum over the whole mesh, with room for the gradient; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_gradient_part(gproj_form *form) {
+    gproji_part *part = gproji_new_part(form, 0);
+    if (!part) return NULL;
+    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
+    if (!part->gradient) gproji_fail_memory(&form->error);
+    return part->gradient ? part : NULL;
+}
+
+/* Adds a group with `rows` rows for the whole mesh: terms for all coordinates in order, coefficients from the
+   refresh. */
+GPROJI_INTERNAL int32_t gproji_add_global_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
+                                               double weight, int32_t rows, gproj_refresh refresh) {
+    int32_t count = 3 * form->mesh->vertex_count, t;
+    gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
+    if (!term) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, part);
+    if (part->group >= 0) form->system->group[part->group].global = true;
+    for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
+    for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
+    gproji_give(&form->own, term, (size_t)count, sizeof *term);
+    return gproji_form_ready(form) ? part->group : -1;
+}
+
+/* The row (V(v) + grad V'(v' - v) - volume) / area. */
 GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     gproj_form *form = part->form;
@@ -20172,40 +20058,25 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
     constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
     scale = 1 / gproji_fmax(area, 1e-12);
     for (k = 0; k < count; ++k) part->gradient[k] *= scale / 6;
-    /* summed up as the row's value is: their roundings are the same */
+    /* Summed up like the row's value, so that their roundings are the same. */
     constant = scale * constant - gproji_dot(part->gradient, x, count);
     gproj_system_set_row(system, group, 0, part->gradient, constant);
 }
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
-    size_t count;
-    gproj_term *term;
-    int32_t t;
+    gproji_part *part = gproji_new_gradient_part(form);
     if (!part) return -1;
     if (!gproji_is_finite(volume)) {
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
         return -1;
     }
-    count = 3 * (size_t)form->mesh->vertex_count;
     part->target = volume * form->scale * form->scale * form->scale;
-    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
-    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
-    if (!term) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    part->group = gproji_new_global_group(form, "volume", GPROJ_CONSTRAINT, weight, gproji_refresh_volume, part);
-    for (t = 0; t < (int32_t)count; ++t) gproji_set_term(&term[t], t, -1, 0);
-    gproj_system_add_row(form->system, part->group, (int32_t)count, term, 0, 0);
-    gproji_give(&form->own, term, count, sizeof *term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_add_global_rows(form, part, "volume", GPROJ_CONSTRAINT, weight, 1, gproji_refresh_volume);
 }
 
 /* -- bounds, total area, cost -- */
 
-/* bound = the caller's at least and at most, times `scale`, 0 and infinite where there is none; refuses those that make
-   no sense. */
+/* Refuses bounds that make no sense; bound = at least and at most, times `scale`, 0 and infinite without a bound. */
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
     if (max >= 0 && !(max > 0)) max = HUGE_VAL;
@@ -20219,11 +20090,12 @@ GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, doub
     return true;
 }
 
-/* Is there a bound: side 0 at least, side 1 at most? */
+/* Is there a bound? Side 0: at least, side 1: at most. */
 GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
+/* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
                                           double weight) {
     static const char name[] = "length bounds";
@@ -20245,7 +20117,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
     return gproji_form_ready(form) ? group : -1;
 }
 
-/* The rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) of each face. */
+/* Rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) for each face. */
 GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t i, side, count, row = 0;
@@ -20268,7 +20140,9 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
-    if (!gproji_form_ready(form) || !gproji_faces_are_valid(form, name, count, faces)) return -1;
+    if (!gproji_form_ready(form) ||
+        !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces))
+        return -1;
     part = gproji_new_part(form, count);
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
     term = gproji_take_terms(form);
@@ -20286,64 +20160,51 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* gradient += price * grad |v_i - v_j| over all edges; returns the sum of the lengths. */
-GPROJI_INTERNAL double gproji_add_length_gradient(const gproj_form *form, double price, double *gradient) {
-    static const double none[3] = {0, 0, 0};
-    const int32_t *origin = form->mesh->origin;
-    const double *x = gproj_system_values(form->system);
-    gproji_sum sum = {0, 0};
-    int32_t e;
-    for (e = 0; e < form->mesh->edge_count; ++e, origin += 2) {
-        double d[3];
-        gproji_sub3(x + 3 * (size_t)origin[0], x + 3 * (size_t)origin[1], d);
-        gproji_sum_add(&sum, gproji_length3(d));
-        gproji_normalise3(d, none);
-        gproji_add_scaled3(price, d, gradient + 3 * (size_t)origin[0]);
-        gproji_add_scaled3(-price, d, gradient + 3 * (size_t)origin[1]);
-    }
-    return gproji_sum_value(&sum);
-}
-
-/* gradient += price * grad |a_k| over all faces at form->area; returns the sum of the areas. */
-GPROJI_INTERNAL double gproji_add_area_gradient(const gproj_form *form, double price, double *gradient) {
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, with part->gradient. `size`:
+   by how much C changes when the mesh grows by a mean edge length. */
+GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
-    gproji_sum sum = {0, 0};
-    int32_t f, k;
+    const double *x = gproj_system_values(form->system);
+    double length, area, d[3], slope[3], *gradient = part->gradient;
+    gproji_sum sum = {0, 0}, areas = {0, 0};
+    int32_t e, f, k;
+    memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
+    /* 1. Lengths: the gradient by each end is the unit vector away from the other one. */
+    for (e = 0; e < mesh->edge_count; ++e) {
+        size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
+        gproji_sub3(x + i, x + j, d);
+        gproji_sum_add(&sum, gproji_length3(d));
+        gproji_normalise3(d, none);
+        gproji_add_scaled3(part->price[0], d, gradient + i);
+        gproji_add_scaled3(-part->price[0], d, gradient + j);
+    }
+    /* 2. Areas. */
+    gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
-        double normal[3];
-        gproji_copy3(form->area + 3 * (size_t)f, normal);
-        gproji_sum_add(&sum, gproji_length3(normal));
-        gproji_normalise3(normal, none);
+        gproji_copy3(form->work.area + 3 * (size_t)f, d);
+        gproji_sum_add(&areas, gproji_length3(d));
+        gproji_normalise3(d, none);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            double slope[3];
-            gproji_area_slope(form, h, normal, slope);
-            gproji_add_scaled3(price, slope, gradient + 3 * (size_t)mesh->origin[h]);
+            gproji_area_slope(form, h, d, slope);
+            gproji_add_scaled3(part->price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
         }
     }
-    return gproji_sum_value(&sum);
-}
-
-/* The cost and its gradient at the system's x. */
-GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
-    double length, area;
-    gproji_update_areas(form);
-    memset(part->gradient, 0, 3 * (size_t)form->mesh->vertex_count * sizeof *part->gradient);
-    length = part->price[0] * gproji_add_length_gradient(form, part->price[0], part->gradient);
-    area = gproji_add_area_gradient(form, part->price[1], part->gradient);
+    length = part->price[0] * gproji_sum_value(&sum);
+    area = gproji_sum_value(&areas);
     if (size) *size = (length + 2 * part->price[1] * area) / gproji_fmax(sqrt(area), 1e-6);
     return length + part->price[1] * area;
 }
 
-/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit; the terms are those of all vertices in order.
-   A prescribed cost has the first one only. */
+/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit. A prescribed cost has the first one only. */
 GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
     gproji_sum ahead = {0, 0};
     double scale = 1 / part->unit;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
+    /* C - grad C'v cancels: it is summed up with compensation. */
     ahead.high = gproji_cost(part->form, part, NULL);
     for (t = 0; t < count; ++t) {
         gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
@@ -20357,114 +20218,90 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
     }
 }
 
-/* The global rows of a cost whose part has its bounds and prices. `term`: room for all vertices. */
-GPROJI_INTERNAL int32_t gproji_add_cost_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
-                                             double weight, gproj_term *term) {
-    int32_t count = 3 * form->mesh->vertex_count, side, t;
-    gproji_cost(form, part, &part->unit);
-    part->unit = gproji_fmax(part->unit, 1e-12);
-    part->group = gproji_new_global_group(form, name, kind, weight, gproji_refresh_cost, part);
-    for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
-    for (side = 0; side < 2; ++side)
-        if (gproji_has_bound(part->bound, side)) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
-    return gproji_form_ready(form) ? part->group : -1;
-}
-
-/* The prices of lengths and areas as the caller gives them. */
-GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, const double price[2],
-                                         double min, double max, double weight) {
-    gproji_part *part = gproji_form_ready(form) ? gproji_new_part(form, 0) : NULL;
-    size_t count;
-    gproj_term *term;
-    int32_t group;
+/* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
+GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, double length_price,
+                                         double area_price, double min, double max, double weight) {
+    gproji_part *part = gproji_new_gradient_part(form);
+    double prices = length_price + area_price;
+    int32_t rows;
     if (!part) return -1;
-    if (!(price[0] >= 0) || !(price[1] >= 0) || !(price[0] + price[1] > 0) || !gproji_is_finite(price[0] + price[1])) {
+    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: the prices %g and %g must be >= 0 and not both 0", name, price[0], price[1]);
+                    "%s: the prices %g and %g must be >= 0 and not both 0", name, length_price, area_price);
         return -1;
     }
     if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
-    count = 3 * (size_t)form->mesh->vertex_count;
-    part->price[0] = price[0] / form->scale;
-    part->price[1] = price[1] / form->scale / form->scale;
-    part->gradient = (double *)gproji_take(&form->own, count, sizeof *part->gradient);
-    term = part->gradient ? (gproj_term *)gproji_take(&form->own, count, sizeof *term) : NULL;
-    if (!term) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    group = gproji_add_cost_rows(form, part, name, kind, weight, term);
-    gproji_give(&form->own, term, count, sizeof *term);
-    return group;
+    part->price[0] = length_price / form->scale;
+    part->price[1] = area_price / form->scale / form->scale;
+    gproji_cost(form, part, &part->unit);
+    part->unit = gproji_fmax(part->unit, 1e-12);
+    rows = gproji_has_bound(part->bound, 0) + gproji_has_bound(part->bound, 1);
+    return gproji_add_global_rows(form, part, name, kind, weight, rows, gproji_refresh_cost);
 }
 
-/* What is prescribed is > 0: so "0 means no bound" does not apply to it. */
-GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, const double price[2],
-                                                    double value, double weight) {
+/* Prescribes a value > 0: "0 means no bound" does not apply to it. */
+GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, double length_price,
+                                                    double area_price, double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
     if (!(value > 0) || !gproji_is_finite(value)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", name, value);
         return -1;
     }
-    return gproji_add_total(form, name, GPROJ_CONSTRAINT, price, value, HUGE_VAL, weight);
+    return gproji_add_total(form, name, GPROJ_CONSTRAINT, length_price, area_price, value, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
-    static const double price[2] = {0, 1};
-    return gproji_add_prescribed_total(form, "total area", price, area, weight);
+    return gproji_add_prescribed_total(form, "total area", 0, 1, area, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
-    static const double price[2] = {0, 1};
-    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, price, min, max, weight);
+    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, 0, 1, min, max, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
-    double price[2];
-    price[0] = length_price;
-    price[1] = area_price;
-    return gproji_add_prescribed_total(form, "cost", price, cost, weight);
+    return gproji_add_prescribed_total(form, "cost", length_price, area_price, cost, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
                                         double max, double weight) {
-    double price[2];
-    price[0] = length_price;
-    price[1] = area_price;
-    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, price, min, max, weight);
+    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, length_price, area_price, min, max, weight);
 }
 
 /* ============================================================================================================
    >>statics   Force densities in the edges: equilibrium, bounds on forces, their start. Uses platform, memory,
    error, vector, least-squares, system, loop, mesh, form, catalogue.
 
-   Based on Tang et al. (2014), sections 3.1 and 3.5; force densities: Schek, The force density method for form finding
-   and computation of general networks (1974).
+   Edge ij has a force density w_ij, force by length, positive if it pushes. Vertex i is in equilibrium along an axis if
+       sum over edges ij of w_ij (v_i - v_j) + load_i = 0                                                      (1)
+   there, which is quadratic. Based on Tang et al. (2014), sections 3.1 and 3.5; for force densities on Schek, The force
+   density method for form finding and computation of general networks (1974).
 
-   Edge e has the variable force[e] = w_e load_scale / scale, and the rows of its ends are in internal lengths and loads
-   times load_scale, chosen at the start so that these variables have mean square 1. The weight on a vertex depends on
-   the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], as linear terms at the end of its z row whose
-   coefficients the refresh fills in. */
+   Edge e has the variable force[e] = w_e load_scale / scale; rows are in internal lengths, and loads times load_scale,
+   chosen at the start so that these variables have mean square 1. Weights depend on the shape. That on vertex i is
+   linearised in the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], by terms at the end of the z row. */
 
 enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* First forces. A density of `thrust` times the mean load, for each edge from the middle to the supports, is that of a
-   shallow dome, which rises by less than a tenth of its radius: the larger the forces, the less a shape has to move. (A solve
-   for the nearest mesh finds how large they should be, and begins with 1.) Forces that balance the shape best are drawn to
-   three quarters of it, and more with signs, which keeps them off zero. A shape whose best forces, drawn by `faint`, leave
-   more than `lost` of its loads carries nothing: it starts from uniform forces, which are kept at first. */
+/* First forces. A density of `thrust` times the mean load, for each edge between the middle and the supports, is that
+   of a shallow dome, rising by less than a tenth of the radius: the larger the forces, the less a shape has to move. (A
+   solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that balance a shape best
+   are damped towards three quarters of this, and more with signs, which keeps them off zero. A shape carries nothing if
+   its best forces, damped by `faint`, leave more than `lost` of the loads: it starts from uniform forces, kept at
+   first. */
 static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
                     gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
-/* Forces that are given are scaled to 1 where they are at least this part of what the loads ask for. */
+/* Given forces are scaled to 1 if they are at least this part of those that the loads ask for. */
 static const double gproji_least_force = 1e-4;
 
 /* The factors from the caller's loads to other units. */
 typedef struct gproji_load_units {
     double force, per_length, per_area;
 } gproji_load_units;
+
+static const gproji_load_units gproji_caller_loads = {1, 1, 1};
 
 GPROJI_INTERNAL gproji_load_units gproji_internal_loads(const gproj_form *form) {
     gproji_load_units units;
@@ -20482,7 +20319,7 @@ GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
 GPROJI_INLINE bool gproji_areas_weigh(const gproj_loads *loads) { return loads->area_load != 0 || loads->snow != 0; }
 
 /* The weight on a face is h'a, a its vectorial area and h a direction that depends on a only: area_load a / |a|, and
-   snow (0, 0, 1) with the sign of a. Returns it. */
+   snow (0, 0, 1) with the sign that a_z has. Returns it. */
 GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
                                         double h[3]) {
     static const double up[3] = {0, 0, 1};
@@ -20521,189 +20358,131 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
 
 /* -- the rows of equilibrium -- */
 
-/* Has the vertex an equation along z whose weight can change? */
-GPROJI_INLINE bool gproji_has_weight(const gproji_statics *s, int32_t vertex) { return (s->axes[vertex] & 4) != 0; }
-
-/* The row of a vertex for an axis (0, 1, 2) along which it is in equilibrium; axis 3: how far its rows go. */
+/* A vertex's row for an axis (0, 1, 2) along which it is in equilibrium; axis 3: the end of these rows. */
 GPROJI_INLINE int32_t gproji_axis_row(const gproji_statics *s, int32_t vertex, int32_t axis) {
     int32_t row = s->first_row[vertex], c;
     for (c = 0; c < axis; ++c) row += s->axes[vertex] >> c & 1;
     return row;
 }
 
-/* Where the z row of a vertex has its weight: a constant, and three terms for each vertex that it depends on. */
-typedef struct gproji_weight_row {
-    double *constant;
-    const int32_t *vertex;
-    gproj_term *term;
-} gproji_weight_row;
-
-GPROJI_INTERNAL gproji_weight_row gproji_weight_row_of(const gproj_form *form, int32_t vertex) {
-    const gproji_statics *statics = form->statics;
-    int64_t first = statics->load_start[vertex];
-    int32_t count, row = gproji_axis_row(statics, vertex, 2);
-    gproji_weight_row weight;
-    weight.constant = &form->system->group[statics->group].row[row].constant;
-    weight.vertex = statics->load_vertex + first;
-    weight.term = gproji_row_terms(form->system, statics->group, row, &count);
-    weight.term += count - 3 * (statics->load_start[vertex + 1] - first);
-    return weight;
-}
-
-/* The coefficients of vertex `other`: += s d. */
-GPROJI_INLINE void gproji_add_weight_terms(const gproji_weight_row *weight, int32_t other, double s,
+/* Adds s d to the coefficients for vertex `other`; `term` has three for each entry in the list `vertex`. */
+GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *term, int32_t other, double s,
                                            const double d[3]) {
-    gproj_term *term = weight->term;
-    const int32_t *vertex;
     int32_t k;
-    for (vertex = weight->vertex; *vertex != other; ++vertex) term += 3;
+    for (; *vertex != other; ++vertex) term += 3;
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
-/* The weight of an edge, w'(a - b) / 2 on each end with w along the edge: linear, without a constant. */
-GPROJI_INLINE void gproji_linearise_edge_load(const gproji_weight_row *weight, const double *x, double half,
-                                              int32_t vertex, int32_t other) {
-    static const double none[3] = {0, 0, 0};
-    double d[3];
-    gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
-    gproji_normalise3(d, none);
-    gproji_add_weight_terms(weight, vertex, -half, d);
-    gproji_add_weight_terms(weight, other, half, d);
-}
-
-/* The weight on a face is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j, so linearised it is its
-   gradient times x minus its value. A corner's part of a face: load[0..3) is -h / 2, load[3] the value. */
-GPROJI_INTERNAL void gproji_find_face_loads(const gproj_form *form, const double *x, double per_area) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t f, k;
-    for (f = 0; f < mesh->face_count; ++f) {
-        double h[3], scale = per_area / mesh->face_degree[f], *load = form->statics->face_load + 4 * (size_t)f;
-        load[3] = scale * gproji_face_load(mesh, &form->statics->loads, x, f, h);
-        for (k = 0; k < 3; ++k) load[k] = -0.5 * scale * h[k];
-    }
-}
-
-/* The face's part of the weight on the vertex where a halfedge begins. */
-GPROJI_INLINE void gproji_linearise_face_load(const gproji_weight_row *weight, const gproj_mesh *mesh, const double *x,
-                                              const double *load, int32_t halfedge) {
-    int32_t h = halfedge;
-    *weight->constant += load[3];
-    do {
-        double across[3], gradient[3];
-        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
-        gproji_cross3(across, load, gradient);
-        gproji_add_weight_terms(weight, mesh->origin[h], 1, gradient);
-        h = mesh->next[h];
-    } while (h != halfedge);
-}
-
-/* The weight on one vertex. */
+/* Linearises the weight on a vertex: adds to the z row's constant, fills in the row's last terms. */
 GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                              int32_t vertex) {
+    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
-    const gproji_statics *statics = form->statics;
-    gproji_weight_row weight = gproji_weight_row_of(form, vertex);
-    int64_t terms = 3 * (statics->load_start[vertex + 1] - statics->load_start[vertex]), t;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
-    for (t = 0; t < terms; ++t) weight.term[t].a = 0;
+    const gproji_statics *s = form->statics;
+    const int32_t *list = s->load_vertex + s->load_start[vertex];
+    int32_t row = gproji_axis_row(s, vertex, 2), start = mesh->vertex_halfedge[vertex], h = start, around, count, t;
+    int32_t terms = 3 * (int32_t)(s->load_start[vertex + 1] - s->load_start[vertex]);
+    double *constant = &form->system->group[s->group].row[row].constant;
+    gproj_term *term = gproji_row_terms(form->system, s->group, row, &count);
+    term += count - terms;
+    for (t = 0; t < terms; ++t) term[t].a = 0;
     if (terms == 0) return;
     do {
-        double half = 0.5 * per_length * gproji_density(&statics->loads, h / 2);
-        if (half != 0) gproji_linearise_edge_load(&weight, x, half, vertex, mesh->origin[mesh->twin[h]]);
-        if (statics->face_load && mesh->face[h] >= 0)
-            gproji_linearise_face_load(&weight, mesh, x, statics->face_load + 4 * (size_t)mesh->face[h], h);
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
-}
-
-/* The loads at the present x. */
-GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
-    gproj_form *form = (gproj_form *)user;
-    gproji_statics *statics = form->statics;
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(system), *point = statics->loads.point_load;
-    gproji_load_units units = gproji_internal_loads(form);
-    int32_t v, c, row = 0;
-    if (statics->face_load) gproji_find_face_loads(form, x, units.per_area);
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        for (c = 0; c < 3; ++c)
-            if (statics->axes[v] >> c & 1)
-                gproj_system_set_row(system, group, row++, NULL,
-                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
-        if (gproji_has_weight(statics, v)) gproji_linearise_weight(form, x, units.per_length, v);
-    }
-}
-
-/* The edges of a vertex that have a force: spoke[2 k] is the force's variable, spoke[2 k + 1] the vertex at the other end.
-   Returns how many they are. */
-GPROJI_INTERNAL int32_t gproji_find_spokes(const gproj_form *form, int32_t vertex, int32_t *spoke) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
-    do {
-        int32_t force = form->statics->force[h / 2];
-        if (force >= 0) {
-            spoke[2 * count] = force;
-            spoke[2 * count++ + 1] = mesh->origin[mesh->twin[h]];
+        int32_t other = mesh->origin[mesh->twin[h]];
+        double half = 0.5 * per_length * gproji_density(&s->loads, h / 2), d[3], gradient[3];
+        /* An edge puts w'(a - b) / 2 on each end, w along it: linear, without a constant. */
+        if (half != 0) {
+            gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
+            gproji_normalise3(d, none);
+            gproji_add_weight_terms(list, term, vertex, -half, d);
+            gproji_add_weight_terms(list, term, other, half, d);
+        }
+        /* A face's weight is quadratic, with the gradient (x_(j+1) - x_(j-1)) x h / 2 at corner j: linearised it is
+           this gradient times x, minus the value. */
+        if (s->face_load && mesh->face[h] >= 0) {
+            const double *load = s->face_load + 4 * (size_t)mesh->face[h];
+            *constant += load[3];
+            around = h;
+            do {
+                gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[around]],
+                            x + 3 * (size_t)mesh->origin[mesh->prev[around]], d);
+                gproji_cross3(d, load, gradient);
+                gproji_add_weight_terms(list, term, mesh->origin[around], 1, gradient);
+                around = mesh->next[around];
+            } while (around != h);
         }
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    return count;
 }
 
-/* The terms of a row y_e (x_i - x_j) summed over spokes, by places: y_e, x_i and x_j of the first one, then y_e and x_j of
-   the others. */
-GPROJI_INTERNAL void gproji_set_spoke_terms(int32_t spokes, gproj_term *term) {
-    int32_t k;
+/* Renews the loads in the rows (1) at the present x. */
+GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
+    gproj_form *form = (gproj_form *)user;
+    gproji_statics *s = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(system), *point = s->loads.point_load;
+    gproji_load_units units = gproji_internal_loads(form);
+    int32_t f, v, c, row = 0;
+    /* A face's corners have equal shares: load[0..3) is -h / 2, load[3] the value. */
+    for (f = 0; s->face_load && f < mesh->face_count; ++f) {
+        double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
+        load[3] = scale * gproji_face_load(mesh, &s->loads, x, f, h);
+        for (c = 0; c < 3; ++c) load[c] = -0.5 * scale * h[c];
+    }
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        for (c = 0; c < 3; ++c)
+            if (s->axes[v] >> c & 1)
+                gproj_system_set_row(system, group, row++, NULL,
+                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
+        if (s->axes[v] & 4) gproji_linearise_weight(form, x, units.per_length, v);
+    }
+}
+
+/* Adds a vertex's rows (1). `spoke`: work, 2 numbers for each edge there; `term`: work for a row. */
+GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *s = form->statics;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start, spokes = 0, count, c, k;
+    int64_t l;
+    /* 1. Spokes, the edges that have a force: its variable, and the vertex at the other end. */
+    do {
+        if (s->force[h / 2] >= 0) {
+            spoke[2 * spokes] = s->force[h / 2];
+            spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
+        }
+        h = mesh->next[mesh->twin[h]];
+    } while (h != start);
+    /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for
+       the first spoke, y_e and x_j for others: so rows with equally many spokes share them. */
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
         gproji_set_term(&term[2 * k + 1], force, 2 * k + 2, -1);
     }
-}
-
-/* A vertex's row for coordinate c, with these terms. */
-GPROJI_INTERNAL void gproji_add_force_row(gproj_form *form, int32_t vertex, int32_t c, int32_t spokes,
-                                          const int32_t *spoke, const gproj_term *term) {
-    int32_t locals = spokes > 0 ? 2 * spokes + 1 : 0, k, *local;
-    local = gproji_add_placed_rows(form->system, form->statics->group, -1, 1, 2 * spokes, term, locals, 0, vertex);
-    if (!local || spokes == 0) return;
-    for (k = 0; k < spokes; ++k) {
-        local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
-        local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
+    for (c = 0; c < 3; ++c) {
+        int32_t *local;
+        if (!(s->axes[vertex] >> c & 1)) continue;
+        if (c == 2 && s->load_start[vertex] < s->load_start[vertex + 1]) break;
+        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term, spokes > 0 ? 2 * spokes + 1 : 0,
+                                       0, vertex);
+        for (k = 0; k < spokes && local; ++k) {
+            local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
+            local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
+        }
+        if (local && spokes > 0) local[1] = 3 * vertex + c;
     }
-    local[1] = 3 * vertex + c;
-}
-
-/* The row for the third one with room for the weight's terms, which may name more variables. */
-GPROJI_INTERNAL void gproji_add_weight_row(gproj_form *form, int32_t vertex, int32_t spokes, const int32_t *spoke,
-                                           gproj_term *term) {
-    const gproji_statics *statics = form->statics;
-    int32_t count = 0, k;
-    int64_t l;
-    for (k = 0; k < spokes; ++k) {
+    if (c == 3) return;
+    /* 3. A z row with a weight has the weight's terms at its end, for gproji_linearise_weight to fill in. */
+    for (k = 0, count = 0; k < spokes; ++k) {
         gproji_set_term(&term[count++], spoke[2 * k], 3 * vertex + 2, 1);
         gproji_set_term(&term[count++], spoke[2 * k], 3 * spoke[2 * k + 1] + 2, -1);
     }
-    for (l = statics->load_start[vertex]; l < statics->load_start[vertex + 1]; ++l)
-        for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * statics->load_vertex[l] + k, -1, 0);
-    gproj_system_add_row(form->system, statics->group, count, term, 0, vertex);
+    for (l = s->load_start[vertex]; l < s->load_start[vertex + 1]; ++l)
+        for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * s->load_vertex[l] + k, -1, 0);
+    gproj_system_add_row(form->system, s->group, count, term, 0, vertex);
 }
 
-/* The rows of one vertex. spoke, term: work. */
-GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
-    const gproji_statics *statics = form->statics;
-    int32_t spokes = gproji_find_spokes(form, vertex, spoke), c;
-    gproji_set_spoke_terms(spokes, term); /* the weight's row, the last one, has others */
-    for (c = 0; c < 3; ++c) {
-        if (!(statics->axes[vertex] >> c & 1)) continue;
-        if (c == 2 && statics->load_start[vertex] < statics->load_start[vertex + 1])
-            gproji_add_weight_row(form, vertex, spokes, spoke, term);
-        else
-            gproji_add_force_row(form, vertex, c, spokes, spoke, term);
-    }
-}
-
-/* Notes `other` among the vertices that the weight on `vertex` depends on, once. */
+/* Notes `other` once among the vertices that the weight on `vertex` depends on. */
 GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex, int32_t other, int32_t *mark,
                                         int64_t *count) {
     if (mark[other] == vertex) return;
@@ -20712,7 +20491,7 @@ GPROJI_INTERNAL void gproji_note_weight(gproji_statics *statics, int32_t vertex,
     ++*count;
 }
 
-/* The vertices that the weight on each vertex depends on; without load_vertex only counts. `mark`: work, one number a
+/* Lists the vertices that each vertex's weight depends on; without load_vertex only counts. `mark`: work, one number a
    vertex. */
 GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) {
     const gproj_mesh *mesh = form->mesh;
@@ -20725,7 +20504,7 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start, around;
         statics->load_start[v] = count;
-        if (!gproji_has_weight(statics, v) || start < 0 || !(areas || lengths)) continue;
+        if (!(statics->axes[v] & 4) || start < 0 || !(areas || lengths)) continue;
         gproji_note_weight(statics, v, v, mark, &count);
         do {
             gproji_note_weight(statics, v, mesh->origin[mesh->twin[h]], mark, &count);
@@ -20739,18 +20518,28 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 
 /* -- making the statics of a form -- */
 
-GPROJI_INTERNAL double *gproji_copy_numbers(gproj_form *form, const double *numbers, size_t count) {
-    double *copy = (double *)gproji_take(&form->own, count, sizeof *copy);
-    if (copy && count) memcpy(copy, numbers, count * sizeof *copy);
+GPROJI_INTERNAL double *gproji_copy_numbers(gproji_pool *pool, const double *numbers, int64_t count) {
+    double *copy = (double *)gproji_pool_take(pool, count, sizeof *copy);
+    if (copy && count) memcpy(copy, numbers, (size_t)count * sizeof *copy);
     return copy;
 }
 
-/* Refuses loads that are no numbers. */
-GPROJI_INTERNAL bool gproji_loads_are_valid(gproj_form *form, const gproj_loads *loads) {
+/* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
+GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
+                                                 const gproj_supports *supports) {
     int32_t e, v;
-    bool finite = loads && gproji_is_finite(loads->density) && gproji_is_finite(loads->area_load) &&
-                  gproji_is_finite(loads->snow);
-    if (!finite) {
+    if (form->statics) {
+        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "the form has its equilibrium already: set its schedule, or make a new form");
+        return false;
+    }
+    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
+        return false;
+    }
+    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex)) return false;
+    if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
+        !gproji_is_finite(loads->snow)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "equilibrium: there are no loads, or density, area load or snow is not a finite number");
         return false;
@@ -20770,121 +20559,92 @@ GPROJI_INTERNAL bool gproji_loads_are_valid(gproj_form *form, const gproj_loads 
     return true;
 }
 
-/* Takes the arrays; what is missing is seen by the caller. */
-GPROJI_INTERNAL bool gproji_take_statics(gproj_form *form, const gproj_loads *loads) {
-    size_t vertices = (size_t)form->mesh->vertex_count, edges = (size_t)form->mesh->edge_count;
+/* Makes form->statics; false without memory. */
+GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports) {
+    const gproj_mesh *mesh = form->mesh;
+    int64_t vertices = mesh->vertex_count, edges = mesh->edge_count;
     gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->own, 1, sizeof *s);
+    int32_t v, e, k, first, carrying = 0;
     form->statics = s;
     if (!s) return false;
+    /* 1. Arrays; loads are copied. */
+    gproji_pool_start(&s->pool, &form->own);
     s->group = s->guidance = s->brake = -1;
     s->load_scale = 1;
     s->loads = *loads;
-    if (loads->edge_density) s->edge_density = gproji_copy_numbers(form, loads->edge_density, edges);
-    if (loads->point_load) s->point_load = gproji_copy_numbers(form, loads->point_load, 3 * vertices);
+    if (loads->edge_density) s->edge_density = gproji_copy_numbers(&s->pool, loads->edge_density, edges);
+    if (loads->point_load) s->point_load = gproji_copy_numbers(&s->pool, loads->point_load, 3 * vertices);
     s->loads.edge_density = s->edge_density;
     s->loads.point_load = s->point_load;
-    s->axes = (uint8_t *)gproji_take(&form->own, vertices, sizeof *s->axes);
-    s->force = (int32_t *)gproji_take(&form->own, edges, sizeof *s->force);
-    s->first_row = (int32_t *)gproji_take(&form->own, vertices, sizeof *s->first_row);
-    s->load_start = (int64_t *)gproji_take_zeroed(&form->own, vertices + 1, sizeof *s->load_start);
-    s->work = (double *)gproji_take(&form->own, 3 * vertices, sizeof *s->work);
-    s->queue = (int32_t *)gproji_take(&form->own, 2 * vertices, sizeof *s->queue);
+    s->axes = (uint8_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->axes);
+    s->force = (int32_t *)gproji_pool_take(&s->pool, edges, sizeof *s->force);
+    s->first_row = (int32_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->first_row);
+    s->load_start = (int64_t *)gproji_pool_take(&s->pool, vertices + 1, sizeof *s->load_start);
+    s->work = (double *)gproji_pool_take(&s->pool, 3 * vertices, sizeof *s->work);
+    s->queue = (int32_t *)gproji_pool_take(&s->pool, 2 * vertices, sizeof *s->queue);
     if (gproji_areas_weigh(loads))
-        s->face_load = (double *)gproji_take(&form->own, 4 * (size_t)form->mesh->face_count, sizeof *s->face_load);
-    return (s->edge_density || !loads->edge_density) && (s->point_load || !loads->point_load) && s->axes && s->force &&
-           s->first_row && s->load_start && s->work && s->queue && (s->face_load || !gproji_areas_weigh(loads));
-}
-
-/* Which vertices are in equilibrium along which axes, which edges have a force. */
-GPROJI_INTERNAL void gproji_set_supports(gproj_form *form, const gproj_supports *supports) {
-    const gproj_mesh *mesh = form->mesh;
-    gproji_statics *s = form->statics;
-    int32_t v, e, k, first, carrying = 0;
+        s->face_load = (double *)gproji_pool_take(&s->pool, 4 * (int64_t)mesh->face_count, sizeof *s->face_load);
+    if ((loads->edge_density && !s->edge_density) || (loads->point_load && !s->point_load) || !s->axes || !s->force ||
+        !s->first_row || !s->load_start || !s->work || !s->queue || (gproji_areas_weigh(loads) && !s->face_load))
+        return false;
+    /* 2. Axes along which each vertex is in equilibrium; none for vertices that no face has. */
     for (v = 0; v < mesh->vertex_count; ++v) s->axes[v] = mesh->vertex_halfedge[v] < 0 ? 0 : GPROJI_AXES;
     for (k = 0; k < supports->count; ++k) {
         v = supports->vertex[k];
-        if (mesh->vertex_halfedge[v] >= 0) /* else no face has it */
-            s->axes[v] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
+        if (mesh->vertex_halfedge[v] >= 0) s->axes[v] = supports->slides ? supports->slides[k] & GPROJI_AXES : 0;
     }
     for (v = 0, k = 0; v < mesh->vertex_count; ++v) {
         s->first_row[v] = k;
         k = gproji_axis_row(s, v, 3);
     }
-    for (e = 0; e < mesh->edge_count; ++e) {
+    /* 3. Variables of the forces: an edge between pinned vertices is in no row, and has none. */
+    for (e = 0; e < mesh->edge_count; ++e)
         s->force[e] = s->axes[mesh->origin[2 * e]] || s->axes[mesh->origin[2 * e + 1]] ? carrying++ : -1;
-    }
     first = gproj_system_add_variables(form->system, carrying, 1, NULL);
     for (e = 0; e < mesh->edge_count; ++e)
         if (s->force[e] >= 0) s->force[e] += first;
-}
-
-/* The lists of weights; `mark`: work, one number a vertex. */
-GPROJI_INTERNAL bool gproji_take_weights(gproj_form *form, int32_t *mark) {
-    gproji_statics *s = form->statics;
-    gproji_list_weights(form, mark);
-    s->load_vertex =
-        (int32_t *)gproji_take(&form->own, (size_t)s->load_start[form->mesh->vertex_count], sizeof *s->load_vertex);
-    if (!s->load_vertex) return false;
-    gproji_list_weights(form, mark);
-    return true;
-}
-
-GPROJI_INTERNAL void gproji_add_equilibrium_rows(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    int64_t most = 0, v;
-    size_t count, spokes = 2 * (size_t)form->ring_size;
-    gproj_term *term;
-    int32_t *spoke;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
-        if (s->load_start[v + 1] - s->load_start[v] > most) most = s->load_start[v + 1] - s->load_start[v];
-    gproji_expect_group(form, s->group, 0, 3 * (size_t)v,
-                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)s->load_start[v],
-                        12 * (size_t)form->mesh->edge_count + 3 * (size_t)(v + s->load_start[v]));
-    count = spokes + 3 * (size_t)most;
-    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
-    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
-    if (!spoke || !term) gproji_fail_memory(&form->error);
-    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
-        if (s->axes[v]) gproji_add_vertex_equilibrium(form, (int32_t)v, spoke, term);
-    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
-    gproji_give(&form->own, term, count, sizeof *term);
+    /* 4. Vertices that weights depend on: counted, then listed. */
+    gproji_list_weights(form, s->queue);
+    s->load_vertex = (int32_t *)gproji_pool_take(&s->pool, s->load_start[vertices], sizeof *s->load_vertex);
+    if (s->load_vertex) gproji_list_weights(form, s->queue);
+    return s->load_vertex != NULL;
 }
 
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight) {
-    int32_t *mark;
+    gproji_statics *s;
+    size_t count, spokes, edge_terms, most = 0;
+    gproj_term *term;
+    int32_t *spoke, v;
+    if (!gproji_form_ready(form) || !gproji_equilibrium_is_valid(form, loads, supports)) return -1;
+    if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
-    if (form->statics) {
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "the form has its equilibrium already: set its schedule, or make a new form");
-        return -1;
-    }
-    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
-        return -1;
-    }
-    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex) ||
-        !gproji_loads_are_valid(form, loads))
-        return -1;
-    mark = (int32_t *)gproji_take(&form->own, (size_t)form->mesh->vertex_count, sizeof *mark);
-    if (mark && gproji_take_statics(form, loads)) {
-        gproji_set_supports(form, supports);
-        if (!gproji_take_weights(form, mark)) gproji_fail_memory(&form->error);
-    } else {
-        gproji_fail_memory(&form->error);
-    }
-    gproji_give(&form->own, mark, (size_t)form->mesh->vertex_count, sizeof *mark);
-    if (!gproji_form_ready(form)) return -1;
-    form->statics->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
-                                            gproji_refresh_equilibrium, form);
-    if (form->statics->group < 0) return -1;
-    gproji_add_equilibrium_rows(form);
-    return gproji_form_ready(form) ? form->statics->group : -1;
+    s = form->statics;
+    s->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
+                                gproji_refresh_equilibrium, form);
+    if (s->group < 0) return -1;
+    /* Each edge has at most 2 terms in the 3 rows at each end. */
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        if (s->load_start[v + 1] - s->load_start[v] > (int64_t)most)
+            most = (size_t)(s->load_start[v + 1] - s->load_start[v]);
+    edge_terms = 12 * (size_t)form->mesh->edge_count;
+    gproji_expect_group(form, s->group, 0, 3 * (size_t)v, edge_terms + 3 * (size_t)s->load_start[v],
+                        edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
+    spokes = 2 * (size_t)form->work.ring_size;
+    count = spokes + 3 * most;
+    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
+    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
+    if (!spoke || !term) gproji_fail_memory(&form->error);
+    for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
+        if (s->axes[v]) gproji_add_vertex_equilibrium(form, v, spoke, term);
+    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
+    gproji_give(&form->own, term, count, sizeof *term);
+    return gproji_form_ready(form) ? s->group : -1;
 }
 
 /* -- bounds and fairness of forces -- */
 
-/* Refuses what needs equilibrium and has none. */
+/* Refuses a call that needs equilibrium before. */
 GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     if (!gproji_form_ready(form)) return false;
     if (!form->statics)
@@ -20901,7 +20661,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, doub
     int32_t group, k;
     if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
-    if (group >= 0) form->system->group[group].lazy = true;
+    if (group >= 0) form->system->group[group].lazy = true; /* a good step is not found again for them */
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
@@ -20919,7 +20679,7 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
     return gproji_add_sign(form, gproji_tension_name, -1, count, edges, weight);
 }
 
-/* The terms s y l of the force in an edge: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
+/* The terms s y l of an edge's force: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
 GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge, gproj_term *term) {
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
     int32_t k;
@@ -20937,14 +20697,11 @@ GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t 
     int32_t k;
     gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], u);
     gproji_normalise3(u, none);
-    for (k = 0; k < 3; ++k) {
-        term[k].a = s * u[k];
-        term[3 + k].a = -s * u[k];
-    }
+    for (k = 0; k < 3; ++k) term[k].a = s * u[k], term[3 + k].a = -s * u[k];
 }
 
-/* Rows of forces: y l - load_scale A min >= 0 where part->factor is A, and load_scale A max - y l >= 0 where it is -A;
-   part->bound holds min and max. */
+/* Rows y l - load_scale A min >= 0 (part->factor is A) and load_scale A max - y l >= 0 (-A); part->bound holds min and
+   max. */
 GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     double load_scale = part->form->statics->load_scale;
@@ -20957,32 +20714,25 @@ GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int
     }
 }
 
-GPROJI_INTERNAL bool gproji_stress_is_valid(gproj_form *form, int32_t count, const int32_t *edges,
-                                            const double *sections, double min, double max) {
-    int32_t k;
-    if (!gproji_edges_are_valid(form, "stress bounds", count, edges)) return false;
+GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
+                                          double min, double max, double weight) {
+    gproji_part *part;
+    gproj_term term[6];
+    int32_t k, side;
+    if (!gproji_has_statics(form, "stress bounds") || !gproji_edges_are_valid(form, "stress bounds", count, edges))
+        return -1;
     if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "stress bounds: the least, %g, is not below the greatest, %g", min, max);
-        return false;
+        return -1;
     }
     for (k = 0; sections && k < count; ++k) {
         if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
                     "stress bounds: edge %d would have the cross-section %g, which is not > 0", edges ? edges[k] : k,
                     sections[k]);
-        return false;
-    }
-    return true;
-}
-
-GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
-                                          double min, double max, double weight) {
-    gproji_part *part;
-    gproj_term term[6];
-    int32_t k, side;
-    if (!gproji_has_statics(form, "stress bounds") || !gproji_stress_is_valid(form, count, edges, sections, min, max))
         return -1;
+    }
     part = gproji_new_part(form, 2 * count);
     if (!part) return -1;
     part->count = 0;
@@ -21008,7 +20758,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-/* Rows y_e l_e - y_f l_f = 0; part->vertex holds the pairs e, f. */
+/* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->vertex holds the pairs e, f. */
 GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t r, count;
@@ -21048,7 +20798,7 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* -- the forces that balance a given shape best -- */
 
-/* The edge whose force the row of a bound keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
+/* The edge whose force a bound's row keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
     const gproji_group *g = &form->system->group[group];
     int32_t count, edge = g->row[row].element;
@@ -21061,14 +20811,12 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
     return edge;
 }
 
-/* May the force of an edge be negative or positive? Bounds with weight 0 do not count. */
+/* Finds which forces may be negative or positive. Recognises bounds by their rows, so that those count that the caller
+   has added to the system; those with weight 0 do not. */
 GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
     double sign;
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        lower[e] = -HUGE_VAL;
-        upper[e] = HUGE_VAL;
-    }
+    for (e = 0; e < form->mesh->edge_count; ++e) lower[e] = -HUGE_VAL, upper[e] = HUGE_VAL;
     for (g = 0; g < form->system->group_count; ++g) {
         const gproji_group *group = &form->system->group[g];
         if (group->kind != GPROJ_BOUND || group->place != GPROJ_PLACE_EDGE || !(group->schedule.weight > 0)) continue;
@@ -21081,55 +20829,71 @@ GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, 
     }
 }
 
-static const char gproji_loads_too_large[] = "equilibrium: the loads are too large, their squares overflow";
-
-/* The least-squares problem of equilibrium at positions x: a column for each edge, rows as in the group; and its
-   solution. */
+/* Equilibrium (1) for given positions is a linear least-squares problem in the forces: a column for each edge, rows as
+   in the group. */
 typedef struct gproji_balance {
-    gproj_least_squares problem;
-    int32_t row_count;
-    int64_t *start;
+    gproji_pool pool;
+    int64_t *start; /* the matrix in compressed columns, with `row` and `value` */
     int32_t *row;
-    double *value, *load, *b, *lower, *upper, *force;
-    size_t edges, vertices;
-    bool opposite; /* of the signs that are asked for */
+    double *value, *b, *lower, *upper;
+    double *load;  /* 3 numbers a vertex */
+    double *force; /* the solution */
+    bool opposite; /* bounds with the other sign */
 } gproji_balance;
 
-GPROJI_INTERNAL void gproji_give_balance(gproj_form *form, gproji_balance *p) {
-    gproji_give(&form->own, p->start, p->edges + 1, sizeof *p->start);
-    gproji_give(&form->own, p->row, 6 * p->edges, sizeof *p->row);
-    gproji_give(&form->own, p->value, 6 * p->edges, sizeof *p->value);
-    gproji_give(&form->own, p->load, 3 * p->vertices, sizeof *p->load);
-    gproji_give(&form->own, p->b, 3 * p->vertices, sizeof *p->b);
-    gproji_give(&form->own, p->lower, p->edges, sizeof *p->lower);
-    gproji_give(&form->own, p->upper, p->edges, sizeof *p->upper);
-    gproji_give(&form->own, p->force, p->edges, sizeof *p->force);
-}
-
 GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
+    int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
-    p->edges = (size_t)form->mesh->edge_count;
-    p->vertices = (size_t)form->mesh->vertex_count;
-    p->start = (int64_t *)gproji_take(&form->own, p->edges + 1, sizeof *p->start);
-    p->row = (int32_t *)gproji_take(&form->own, 6 * p->edges, sizeof *p->row);
-    p->value = (double *)gproji_take(&form->own, 6 * p->edges, sizeof *p->value);
-    p->load = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->load);
-    p->b = (double *)gproji_take(&form->own, 3 * p->vertices, sizeof *p->b);
-    p->lower = (double *)gproji_take(&form->own, p->edges, sizeof *p->lower);
-    p->upper = (double *)gproji_take(&form->own, p->edges, sizeof *p->upper);
-    p->force = (double *)gproji_take_zeroed(&form->own, p->edges, sizeof *p->force);
+    gproji_pool_start(&p->pool, &form->own);
+    p->start = (int64_t *)gproji_pool_take(&p->pool, edges + 1, sizeof *p->start);
+    p->row = (int32_t *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->row);
+    p->value = (double *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->value);
+    p->load = (double *)gproji_pool_take(&p->pool, 3 * vertices, sizeof *p->load);
+    p->b = (double *)gproji_pool_take(&p->pool, 3 * vertices, sizeof *p->b);
+    p->lower = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->lower);
+    p->upper = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->upper);
+    p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
     if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
-    gproji_give_balance(form, p);
+    gproji_pool_give_all(&p->pool);
     gproji_fail_memory(&form->error);
     return false;
 }
 
-/* The entries of the matrix: (x_i - x_j) in the rows of i, the opposite in those of j, for edges with a force. */
-GPROJI_INTERNAL void gproji_fill_balance(const gproj_form *form, const double *x, gproji_balance *p) {
+/* The mean load on the vertices that are not pinned; not finite after an overflow. */
+GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *load) {
+    double sum = 0;
+    int32_t v, count = 0;
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
+        if (!form->statics->axes[v]) continue;
+        sum += gproji_length3(load + 3 * (size_t)v);
+        ++count;
+    }
+    return count ? sum / count : 0;
+}
+
+/* p->load at positions x; returns their mean, -1 after an error. */
+GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units units, const double *x, gproji_balance *p) {
+    double mean;
+    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
+    mean = gproji_mean_load(form, p->load);
+    if (gproji_is_finite(mean)) return mean;
+    gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                "equilibrium: the loads are too large, their squares overflow");
+    return -1;
+}
+
+/* Finds p->force, the best forces y for the loads p->load at x: those with the least residual in (1), damped towards
+   `mean`. False after an error. */
+GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
+                                          gproji_balance *p) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
-    int64_t count = 0;
-    int32_t e, side, c;
+    gproj_least_squares problem;
+    gproj_least_squares_result result;
+    gproj_error error;
+    int32_t e, v, side, c;
+    int64_t t, count = 0;
+    /* 1. The matrix, a column for each edge: x_i - x_j in i's rows, the opposite in j's. */
     for (e = 0; e < mesh->edge_count; ++e) {
         p->start[e] = count;
         for (side = 0; s->force[e] >= 0 && side < 2; ++side) {
@@ -21142,70 +20906,37 @@ GPROJI_INTERNAL void gproji_fill_balance(const gproj_form *form, const double *x
         }
     }
     p->start[mesh->edge_count] = count;
-    p->row_count = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
-}
-
-/* b = -load, in the rows of the group. */
-GPROJI_INTERNAL void gproji_fill_loads(const gproj_form *form, gproji_balance *p) {
-    int32_t v, c;
-    for (v = 0; v < form->mesh->vertex_count; ++v)
+    /* 2. b = -load, and the forces' bounds. */
+    for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
-            if (form->statics->axes[v] >> c & 1)
-                p->b[gproji_axis_row(form->statics, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
-}
-
-/* The mean load on the vertices that are not pinned. */
-GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *load) {
-    double sum = 0;
-    int32_t v, count = 0;
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
-        if (!form->statics->axes[v]) continue;
-        sum += gproji_length3(load + 3 * (size_t)v);
-        ++count;
-    }
-    return count ? sum / count : 0;
-}
-
-/* p->force: the best forces y for the loads p->load at x, drawn by `damping` to `mean`. False after an error. */
-GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, double damping, double mean,
-                                          gproji_balance *p) {
-    gproj_least_squares_result result;
-    gproj_error error;
-    int32_t e;
-    int64_t t;
-    gproji_error_clear(&error);
-    gproji_fill_balance(form, x, p);
-    gproji_fill_loads(form, p);
+            if (s->axes[v] >> c & 1) p->b[gproji_axis_row(s, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
     gproji_force_limits(form, p->lower, p->upper);
-    for (e = 0; p->opposite && e < form->mesh->edge_count; ++e) {
+    for (e = 0; p->opposite && e < mesh->edge_count; ++e) {
         double lower = p->lower[e];
         p->lower[e] = -p->upper[e];
         p->upper[e] = -lower;
     }
-    for (e = 0; e < form->mesh->edge_count; ++e) { /* y = mean + z: the same problem for z, with 0 in the middle */
+    /* 3. With y = mean + z, the damping draws z to 0. */
+    for (e = 0; e < mesh->edge_count; ++e) {
         p->lower[e] -= mean;
         p->upper[e] -= mean;
         for (t = p->start[e]; t < p->start[e + 1]; ++t) p->b[p->row[t]] -= mean * p->value[t];
     }
-    memset(&p->problem, 0, sizeof p->problem);
-    p->problem.rows = p->row_count;
-    p->problem.columns = form->mesh->edge_count;
-    p->problem.start = p->start;
-    p->problem.row = p->row;
-    p->problem.value = p->value;
-    p->problem.b = p->b;
-    p->problem.lower = p->lower;
-    p->problem.upper = p->upper;
-    p->problem.damping = damping;
-    if (gproj_solve_least_squares(&p->problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
+    memset(&problem, 0, sizeof problem);
+    problem.rows = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
+    problem.columns = mesh->edge_count;
+    problem.start = p->start, problem.row = p->row, problem.value = p->value, problem.b = p->b;
+    problem.lower = p->lower, problem.upper = p->upper, problem.damping = damping;
+    gproji_error_clear(&error);
+    if (gproj_solve_least_squares(&problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
         gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
         return false;
     }
-    for (e = 0; e < form->mesh->edge_count; ++e) p->force[e] = form->statics->force[e] >= 0 ? p->force[e] + mean : 0;
+    for (e = 0; e < mesh->edge_count; ++e) p->force[e] = s->force[e] >= 0 ? p->force[e] + mean : 0;
     return true;
 }
 
-/* Adds the forces of an edge with density w to those on its ends. */
+/* Adds an edge's forces, with density w, to the sums in both ends. */
 GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, int32_t edge, double w, double *out) {
     size_t i = 3 * (size_t)mesh->origin[2 * edge], j = 3 * (size_t)mesh->origin[2 * edge + 1], c;
     for (c = 0; c < 3; ++c) {
@@ -21214,7 +20945,7 @@ GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, i
     }
 }
 
-/* out = load + the forces' sum in each vertex at x (NULL: no forces), nothing along the axes of supports. */
+/* out = load + the sum of forces (NULL: none) in each vertex at x, 0 along supported axes. */
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
@@ -21226,22 +20957,7 @@ GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, 
             if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
 }
 
-/* p->load, at positions x, as parts of the mean load. Returns this mean, 0 without loads; -1 after an error. */
-GPROJI_INTERNAL double gproji_relative_loads(gproj_form *form, const double *x, gproji_balance *p) {
-    static const gproji_load_units units = {1, 1, 1};
-    double mean;
-    size_t i;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
-    mean = gproji_mean_load(form, p->load);
-    if (!gproji_is_finite(mean)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
-        return -1;
-    }
-    for (i = 0; mean > 0 && i < 3 * p->vertices; ++i) p->load[i] /= mean;
-    return mean;
-}
-
-/* The best forces for the mesh as it is, and what they leave: any of the arrays may be NULL. */
+/* Finds the best forces for the mesh as it is, and the loads that they leave: any of the arrays may be NULL. */
 GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left) {
     gproji_balance p;
     double *x, mean;
@@ -21249,10 +20965,11 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
         !gproji_take_balance(form, &p))
         return gproj_form_error(form)->code;
-    x = (double *)gproji_take(&form->own, 3 * p.vertices, sizeof *x);
-    if (!x) gproji_fail_memory(&form->error);
-    mean = x ? gproji_relative_loads(form, form->mesh->position, &p) : -1;
-    for (v = 0; x && v < form->mesh->vertex_count; ++v)
+    /* Loads relative to their mean make the problem independent of units. */
+    mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
+    for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
+    x = form->statics->work;
+    for (v = 0; v < form->mesh->vertex_count; ++v)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)v, x + 3 * (size_t)v);
     if (mean >= 0 && gproji_solve_balance(form, x, 0, 0, &p)) {
         gproji_unbalanced(form, x, p.force, p.load, p.load);
@@ -21261,8 +20978,7 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         for (v = 0; left && v < 3 * form->mesh->vertex_count; ++v) left[v] = mean > 0 ? p.load[v] : 0;
         for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
-    gproji_give(&form->own, x, 3 * p.vertices, sizeof *x);
-    gproji_give_balance(form, &p);
+    gproji_pool_give_all(&p.pool);
     return gproj_form_error(form)->code;
 }
 
@@ -21276,7 +20992,7 @@ GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacement
 
 /* -- the start of a solve -- */
 
-/* The largest distance of a vertex from the supports, in edges; 1 where there are none. `queue`, `distance`: work, one
+/* The largest distance between a vertex and the supports, in edges; 1 without supports. `queue`, `distance`: work, one
    number a vertex each. */
 GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *queue, int32_t *distance) {
     const gproj_mesh *mesh = form->mesh;
@@ -21301,99 +21017,78 @@ GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *q
     return radius;
 }
 
-/* 1: most of the edges are for compression only, -1: for tension only, 0: neither. The limits are those in p. */
-GPROJI_INTERNAL int gproji_wanted_sign(const gproj_form *form, const gproji_balance *p) {
-    int32_t e, carrying = 0, count[2] = {0, 0};
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        if (form->statics->force[e] < 0) continue;
-        ++carrying;
-        count[0] += p->lower[e] >= 0;
-        count[1] += p->upper[e] <= 0;
-    }
-    return 2 * count[1] > carrying ? -1 : 2 * count[0] > carrying ? 1 : 0;
-}
-
-/* Every force becomes `force`, or the nearest one that is allowed. */
-GPROJI_INTERNAL void gproji_set_uniform(const gproj_form *form, double force, gproji_balance *p) {
-    int32_t e;
-    gproji_force_limits(form, p->lower, p->upper);
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        p->force[e] = form->statics->force[e] >= 0 ? gproji_fmin(gproji_fmax(force, p->lower[e]), p->upper[e]) : 0;
-}
-
-/* Takes the forces p->force as variables, scaled to mean square 1, and the loads with them. */
-GPROJI_INTERNAL void gproji_take_forces(gproj_form *form, const gproji_balance *p) {
-    gproji_statics *s = form->statics;
-    double *x = gproj_system_values(form->system), sum = 0;
-    int32_t e, carrying = 0;
-    for (e = 0; e < form->mesh->edge_count; ++e) carrying += s->force[e] >= 0;
-    sum = sqrt(gproji_dot(p->force, p->force, p->edges) / gproji_fmax(1, carrying));
-    if (!(sum > 0)) sum = 1;
-    s->load_scale /= sum;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / sum;
-}
-
 /* Finds p->force by gproji_solve_balance; returns the part of the loads that is left, a root of sums of squares, or -1
    after an error. */
 GPROJI_INTERNAL double gproji_lost_load(gproj_form *form, double damping, double typical, gproji_balance *p) {
     const double *x = gproj_system_values(form->system);
+    size_t count = 3 * (size_t)form->mesh->vertex_count;
     double all;
     if (!gproji_solve_balance(form, x, damping, typical, p)) return -1;
     gproji_unbalanced(form, x, NULL, p->load, p->b);
-    all = gproji_dot(p->b, p->b, 3 * p->vertices);
+    all = gproji_dot(p->b, p->b, count);
     gproji_unbalanced(form, x, p->force, p->load, p->b);
-    return all > 0 ? sqrt(gproji_dot(p->b, p->b, 3 * p->vertices) / all) : 0;
+    return all > 0 ? sqrt(gproji_dot(p->b, p->b, count) / all) : 0;
 }
 
-/* Sets the scale of loads so that the mean load is 1, and p->load. False after an error. */
-GPROJI_INTERNAL bool gproji_start_loads(gproj_form *form, gproji_balance *p) {
-    gproji_statics *s = form->statics;
-    const double *x = gproj_system_values(form->system);
-    double load;
-    s->load_scale = 1;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
-    load = gproji_mean_load(form, p->load);
-    if (!gproji_is_finite(load)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "%s", gproji_loads_too_large);
-        return false;
-    }
-    if (load > 0) s->load_scale = 1 / load;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
-    return true;
-}
-
-/* The first forces: those that balance the shape best; uniform ones where it carries nothing. Returns whether they are
-   uniform. */
+/* Gives the forces their first values: those that balance the shape best, or uniform ones if it carries nothing.
+   Returns whether they are uniform. */
 GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_balance *p) {
-    int32_t *queue = form->statics->queue;
-    double lost, damping, typical = gproji_support_radius(form, queue, queue + form->mesh->vertex_count);
+    gproji_statics *s = form->statics;
+    double *x = gproj_system_values(form->system), lost, damping, typical, drawn, size;
+    int32_t e, sign, carrying = 0, pushed = 0, pulled = 0;
     bool uniform = false;
-    int sign;
-    if (!gproji_start_loads(form, p)) return false;
+    /* 1. Scale the loads to mean 1. */
+    s->load_scale = 1;
+    size = gproji_set_loads(form, gproji_internal_loads(form), x, p);
+    if (size < 0) return false;
+    if (size > 0) s->load_scale = 1 / size;
+    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    /* 2. A typical force: tension if most edges are bound to it, else compression. */
     gproji_force_limits(form, p->lower, p->upper);
-    sign = gproji_wanted_sign(form, p);
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        if (s->force[e] < 0) continue;
+        ++carrying;
+        pushed += p->lower[e] >= 0;
+        pulled += p->upper[e] <= 0;
+    }
+    sign = 2 * pulled > carrying ? -1 : 2 * pushed > carrying ? 1 : 0;
+    typical = gproji_support_radius(form, s->queue, s->queue + form->mesh->vertex_count);
     typical *= (sign < 0 ? -1 : 1) * (nearest ? 1 : gproji_force_thrust);
+    /* 3. The forces that balance the loads best. */
     damping = sign && !nearest ? gproji_force_signed : gproji_force_damping;
-    lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
-    if (lost > gproji_force_lost) { /* by the shape, or by the damping? */
-        lost = gproji_lost_load(form, gproji_force_faint, gproji_force_part * typical, p);
+    drawn = gproji_force_part * typical;
+    lost = gproji_lost_load(form, damping, drawn, p);
+    if (lost > gproji_force_lost) {
+        /* Is it the shape that cannot carry, or does the damping hold the forces back? */
+        lost = gproji_lost_load(form, gproji_force_faint, drawn, p);
         uniform = lost > gproji_force_lost;
-        if (uniform && sign) { /* would it hang instead of standing, or the opposite? */
-            form->statics->lost[0] = lost;
+        if (uniform && sign) {
+            /* For the verdict: would it hang instead of standing, or stand instead of hanging? */
+            s->lost[0] = lost;
             p->opposite = true;
-            lost = gproji_lost_load(form, gproji_force_faint, -gproji_force_part * typical, p);
-            form->statics->lost[1] = lost;
+            lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
+            s->lost[1] = lost;
             p->opposite = false;
         }
-        if (uniform) gproji_set_uniform(form, typical, p);
-        if (!uniform && lost >= 0) lost = gproji_lost_load(form, damping, gproji_force_part * typical, p);
+        if (uniform) {
+            gproji_force_limits(form, p->lower, p->upper);
+            for (e = 0; e < form->mesh->edge_count; ++e)
+                p->force[e] = s->force[e] >= 0 ? gproji_fmin(gproji_fmax(typical, p->lower[e]), p->upper[e]) : 0;
+        } else if (lost >= 0) {
+            lost = gproji_lost_load(form, damping, drawn, p);
+        }
     }
-    if (lost >= 0) gproji_take_forces(form, p);
+    if (!(lost >= 0)) return uniform;
+    /* 4. As variables they have mean square 1, and the loads follow. */
+    size = sqrt(gproji_dot(p->force, p->force, (size_t)form->mesh->edge_count) / gproji_fmax(1, carrying));
+    if (!(size > 0)) size = 1;
+    s->load_scale /= size;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        if (s->force[e] >= 0) x[s->force[e]] = p->force[e] / size;
     return uniform;
 }
 
-/* The group that draws the forces to where they are, once. */
+/* Adds the group that draws the forces to their start. */
 GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     gproji_statics *s = form->statics;
     gproj_term term;
@@ -21405,37 +21100,32 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     }
 }
 
-/* Draws the forces to where they are, where they bend the shape first, with weights 0.3^n, n <= 5; and where there are
-   wishes, as long as these guide, for a shape that carries nothing is nearest to itself without forces. Weight 0
-   otherwise. */
-GPROJI_INTERNAL void gproji_set_force_guidance(gproj_form *form, bool wanted, bool wishes) {
+/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
     static const gproj_schedule fading = {1, 0.3, 5}, steady = {0.3, 1, 0};
     gproji_statics *s = form->statics;
     gproj_schedule schedule = wishes ? steady : fading;
+    gproji_balance p;
+    bool guided = false;
     const double *x;
     int32_t e, row = 0;
-    if (s->guidance < 0 && !wanted) return;
+    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
+    s->lost[0] = s->lost[1] = 0;
+    if (!s->started && gproji_take_balance(form, &p)) {
+        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
+           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
+           solve for the nearest mesh forces are free. */
+        guided = gproji_start_forces(form, nearest, &p) && !nearest;
+        gproji_pool_give_all(&p.pool);
+        s->started = gproji_form_ready(form);
+    }
+    if (s->guidance < 0 && !guided) return;
     if (s->guidance < 0) gproji_add_force_guidance(form);
-    if (!wanted) schedule.weight = 0;
+    if (!guided) schedule.weight = 0;
     gproj_system_set_schedule(form->system, s->guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
         if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
-}
-
-/* What comes before a solve: forces, if there are none yet, and their guidance; for the nearest mesh they are free. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
-    gproji_statics *s = form->statics;
-    gproji_balance p;
-    bool uniform = false;
-    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
-    s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &p)) {
-        uniform = gproji_start_forces(form, nearest, &p);
-        gproji_give_balance(form, &p);
-        s->started = gproji_form_ready(form);
-    }
-    gproji_set_force_guidance(form, uniform && !nearest, wishes);
 }
 
 /* -- forces for the caller -- */
@@ -21461,65 +21151,55 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
 }
 
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
-    static const gproji_load_units units = {1, 1, 1};
     if (!form || !loads) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
     if (!form->statics) return GPROJ_ERROR_STATE;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, form->mesh->position, loads);
+    gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
     return GPROJ_OK;
-}
-
-/* Root of the mean square of the densities of edges with a force; without overflow. */
-GPROJI_INTERNAL double gproji_mean_density(const gproj_form *form, const double *densities) {
-    double largest = 0, sum = 0;
-    int32_t e, carrying = 0;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) largest = gproji_fmax(largest, fabs(densities[e]));
-    for (e = 0; e < form->mesh->edge_count; ++e) {
-        double part = largest > 0 ? densities[e] / largest : 0;
-        if (form->statics->force[e] < 0) continue;
-        sum += part * part;
-        ++carrying;
-    }
-    return carrying ? largest * sqrt(sum / carrying) : 0;
-}
-
-/* The density that balances the mean load at an angle of 45 degrees in a mean edge. */
-GPROJI_INTERNAL double gproji_density_of_loads(const gproj_form *form) {
-    double density;
-    gproj_get_loads(form, form->statics->work);
-    density = gproji_mean_load(form, form->statics->work) * form->scale;
-    return gproji_is_finite(density) ? density : 0;
 }
 
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
-    double *x, mean, of_loads;
-    int32_t e;
+    gproji_statics *s;
+    double *x, mean, of_loads, largest = 0, sum = 0;
+    int32_t e, carrying = 0;
     if (!form) return GPROJ_ERROR_ARGUMENT;
     if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
-    form->statics->started = false;
+    s = form->statics;
+    s->started = false;
     x = gproj_system_values(form->system);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = 0;
+        if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) return GPROJ_OK;
+    /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
-        if (form->statics->force[e] < 0 || gproji_is_finite(densities[e])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                           "set forces: the density of edge %d is not a finite number", e);
+        if (s->force[e] < 0) continue;
+        if (!gproji_is_finite(densities[e]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "set forces: the density of edge %d is not a finite number", e);
+        largest = gproji_fmax(largest, fabs(densities[e]));
     }
-    of_loads = gproji_density_of_loads(form);
-    mean = gproji_mean_density(form, densities);
-    /* forces that are next to nothing must not make the loads huge */
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        double part = largest > 0 ? densities[e] / largest : 0;
+        if (s->force[e] < 0) continue;
+        sum += part * part;
+        ++carrying;
+    }
+    mean = carrying ? largest * sqrt(sum / carrying) : 0;
+    /* 2. Forces that are next to nothing must not make the loads huge: then the scale is the density that balances the
+       mean load at 45 degrees in a mean edge. */
+    gproj_get_loads(form, s->work);
+    of_loads = gproji_mean_load(form, s->work) * form->scale;
+    if (!gproji_is_finite(of_loads)) of_loads = 0;
     if (mean < gproji_least_force * of_loads) mean = of_loads;
     if (!(mean > DBL_MIN)) mean = 1;
-    form->statics->load_scale = form->scale / mean;
+    s->load_scale = form->scale / mean;
     for (e = 0; e < form->mesh->edge_count; ++e)
-        if (form->statics->force[e] >= 0) x[form->statics->force[e]] = densities[e] / mean;
-    form->statics->started = true;
+        if (s->force[e] >= 0) x[s->force[e]] = densities[e] / mean;
+    s->started = true;
     return GPROJ_OK;
 }
 
-/* out += the forces' sum in each vertex, at the mesh's positions. */
+/* out += the sum of forces in each vertex, at the mesh's positions. */
 GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
     int32_t e;
     for (e = 0; e < form->mesh->edge_count; ++e)
@@ -21541,61 +21221,54 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
     return GPROJ_OK;
 }
 
-/* The measures that belong to edges. */
-GPROJI_INTERNAL void gproji_measure_members(const gproj_form *form, gproj_forces *m) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t e;
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
+    gproj_forces m;
+    const gproj_mesh *mesh;
+    double largest = 0, *sum;
+    int32_t e, v, c;
     bool first = true;
+    memset(&m, 0, sizeof m);
+    m.residual_vertex = -1;
+    if (!form || !gproji_has_statics(form, "measure forces")) return m;
+    mesh = form->mesh;
+    /* 1. Edges: extremes and the load path, the sum of |force| length. */
     for (e = 0; e < mesh->edge_count; ++e) {
         double w = gproji_force_density(form, e), length, force;
         if (form->statics->force[e] < 0) continue;
         length = gproji_distance3(mesh->position + 3 * (size_t)mesh->origin[2 * e],
                                   mesh->position + 3 * (size_t)mesh->origin[2 * e + 1]);
         force = w * length;
-        m->load_path += fabs(force) * length;
-        m->min_density = first ? w : gproji_fmin(m->min_density, w);
-        m->max_density = first ? w : gproji_fmax(m->max_density, w);
-        m->min_force = first ? force : gproji_fmin(m->min_force, force);
-        m->max_force = first ? force : gproji_fmax(m->max_force, force);
+        m.load_path += fabs(force) * length;
+        m.min_density = first ? w : gproji_fmin(m.min_density, w);
+        m.max_density = first ? w : gproji_fmax(m.max_density, w);
+        m.min_force = first ? force : gproji_fmin(m.min_force, force);
+        m.max_force = first ? force : gproji_fmax(m.max_force, force);
         first = false;
     }
-}
-
-/* The measures that belong to vertices; `sum`: 3 numbers a vertex, loads on entry, destroyed. */
-GPROJI_INTERNAL void gproji_measure_nodes(const gproj_form *form, double *sum, gproj_forces *m) {
-    const gproj_mesh *mesh = form->mesh;
-    double largest = 0;
-    int32_t v, c;
+    /* 2. Vertices: `sum` is the load, then load and forces together. */
+    sum = form->statics->work;
+    gproj_get_loads(form, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
-        m->total_load -= sum[3 * (size_t)v + 2];
+        m.total_load -= sum[3 * (size_t)v + 2];
     }
     gproji_add_force_sums(form, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         double left[3], given[3];
         if (mesh->vertex_halfedge[v] < 0) continue;
+        /* Along free axes nothing should be left; along the others supports give the sum back. */
         for (c = 0; c < 3; ++c) {
             bool balanced = form->statics->axes[v] >> c & 1;
             left[c] = balanced ? sum[3 * (size_t)v + (size_t)c] : 0;
             given[c] = balanced ? 0 : sum[3 * (size_t)v + (size_t)c];
         }
-        m->max_reaction = gproji_fmax(m->max_reaction, gproji_length3(given));
+        m.max_reaction = gproji_fmax(m.max_reaction, gproji_length3(given));
         if (!form->statics->axes[v]) continue;
-        if (!(gproji_length3(left) > m->residual) && m->residual_vertex >= 0) continue;
-        m->residual = gproji_length3(left);
-        m->residual_vertex = v;
+        if (!(gproji_length3(left) > m.residual) && m.residual_vertex >= 0) continue;
+        m.residual = gproji_length3(left);
+        m.residual_vertex = v;
     }
-    if (largest > 0) m->residual /= largest;
-}
-
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
-    gproj_forces m;
-    memset(&m, 0, sizeof m);
-    m.residual_vertex = -1;
-    if (!form || !gproji_has_statics(form, "measure forces")) return m;
-    gproj_get_loads(form, form->statics->work);
-    gproji_measure_members(form, &m);
-    gproji_measure_nodes(form, form->statics->work, &m);
+    if (largest > 0) m.residual /= largest;
     return m;
 }
 
@@ -22847,18 +22520,17 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
    statics, guard, corners, solve.
 
-   One description of the format (gproji_pass_state) counts, writes, checks and reads it, by the way of the stream that it
-   is given. All integers are little-endian; a double is its 64 bits, or, where most are small numbers of eighths
-   (coefficients, constants, weights), one byte for these.
+   One description of the format, gproji_pass_state, counts, writes, checks and reads it, by the stream's mode. Integers
+   are little-endian; a double is its 64 bits, but coefficients, constants and weights, which mostly are small numbers of
+   eighths, have one byte for these.
 
-       8 bytes "gprojstD", 8 bytes the size of it all, 8 bytes the fingerprint of the form, the state, 8 bytes a checksum
+       8 bytes "gprojstD", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
-   The fingerprint is a hash of what a form is made of: mesh, variables, rows with their terms' variables, but none of the
-   numbers that the state has. A state is checked from its beginning to its end before any of it is read, so that what is
-   refused changes nothing.
+   The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
+   have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
 
-   Groups that the library adds itself, when they are first needed, may be missing in either: a form gets those of the
-   state, and those that the state does not have lose their weight. */
+   Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or
+   in the state: then they lose their weight. */
 
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
@@ -22869,7 +22541,7 @@ enum {
 
 /* -- the groups that the library adds to a form -- */
 
-/* Their numbers stand in saved states. */
+/* These numbers stand in saved states. */
 typedef enum gproji_own {
     GPROJI_OWN_NONE, /* the caller's */
     GPROJI_OWN_CLOSENESS,
@@ -22889,8 +22561,8 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     case GPROJI_OWN_CLOSENESS: return form->closeness;
     case GPROJI_OWN_GUARD: return form->guard ? form->guard->group : -1;
     case GPROJI_OWN_FORCES: return form->statics ? form->statics->guidance : -1;
-    case GPROJI_OWN_DRAG_FAIRNESS: return form->drag_fairness;
-    case GPROJI_OWN_DRAG_HANDLES: return form->drag_handles;
+    case GPROJI_OWN_DRAG_FAIRNESS: return form->release.fairness;
+    case GPROJI_OWN_DRAG_HANDLES: return form->release.handles;
     case GPROJI_OWN_METRIC: return form->smooth;
     case GPROJI_OWN_CORNERS: return form->corners ? form->corners->group : -1;
     case GPROJI_OWN_BRAKE: return form->statics ? form->statics->brake : -1;
@@ -22898,7 +22570,7 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     }
 }
 
-/* Of which kind is a group? The caller's: none. */
+/* The kind of a group; none for the caller's. */
 GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t group) {
     int32_t own;
     for (own = 1; own < GPROJI_OWN_COUNT; ++own)
@@ -22906,7 +22578,7 @@ GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t 
     return GPROJI_OWN_NONE;
 }
 
-/* Adds it without a weight where it is missing. */
+/* Adds a group of this kind without a weight, if it is missing. */
 GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (!gproji_form_ready(form) || gproji_own_group(form, own) >= 0) return;
     switch (own) {
@@ -22919,12 +22591,13 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
     case GPROJI_OWN_BRAKE: gproji_add_force_metric(form); break;
     case GPROJI_OWN_DRAG_FAIRNESS:
-        form->drag_fairness = gproj_add_fairness(form, 0);
-        if (form->drag_fairness >= 0) gproji_set_group_name(&form->system->group[form->drag_fairness], "drag fairness");
+        form->release.fairness = gproj_add_fairness(form, 0);
+        if (form->release.fairness >= 0)
+            gproji_set_group_name(&form->system->group[form->release.fairness], "drag fairness");
         break;
     case GPROJI_OWN_DRAG_HANDLES:
-        form->drag_handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all), "drag handles",
-                                               GPROJ_WISH, NULL, 0);
+        form->release.handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all),
+                                                  "drag handles", GPROJ_WISH, NULL, 0);
         break;
     default: break;
     }
@@ -22932,32 +22605,31 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 
 /* -- a stream of numbers -- */
 
-typedef enum gproji_way {
+typedef enum gproji_mode {
     GPROJI_COUNT,
     GPROJI_WRITE,
     GPROJI_CHECK,
     GPROJI_READ
-} gproji_way;
+} gproji_mode;
 
 typedef struct gproji_stream {
-    gproji_way way;
-    uint8_t *out;      /* what is written */
-    const uint8_t *in; /* what is checked or read */
+    gproji_mode mode;
+    uint8_t *out;      /* written */
+    const uint8_t *in; /* checked or read */
     size_t at, size;
-    const char *wrong; /* what is wrong with it; NULL: nothing */
+    const char *wrong; /* an error; NULL: none */
 } gproji_stream;
 
-GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->way >= GPROJI_CHECK; }
+GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
 
-/* Something is wrong with it. To be counted is all right for anything. */
+/* Notes an error, except while counting, which must go on to the end. */
 GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
-    if (stream->way != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
+    if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
 }
 
-/* The lowest `bytes` bytes of a number, the lowest first. */
-GPROJI_INLINE void gproji_put_bytes(uint8_t *out, uint64_t value, int32_t bytes) {
-    int32_t i;
-    for (i = 0; i < bytes; ++i) out[i] = (uint8_t)(value >> 8 * i);
+GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream, gproj_form *form) {
+    gproji_fail_memory(&form->error);
+    gproji_spoil(stream, "out of memory");
 }
 
 GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
@@ -22967,33 +22639,34 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
     return value;
 }
 
-/* Passes the lowest `bytes` bytes of a value: returns what stands there when it comes in, 0 behind the end. */
+/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 behind the end. */
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
-    if (stream->way != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
+    int32_t i;
+    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
         gproji_spoil(stream, "it ends too early");
         return 0;
     }
-    if (stream->way == GPROJI_WRITE) gproji_put_bytes(stream->out + at, value, bytes);
+    for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
     if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
     stream->at += (size_t)bytes;
     return value;
 }
 
-/* These pass a value, and set it when it is read. All return what has passed. */
+/* The following pass a value, set it when it is read, and return the passed one. */
 
 GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
     if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
     return (int32_t)passed;
 }
 
 GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
     if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed == 1;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
     return passed == 1;
 }
 
@@ -23005,7 +22678,7 @@ GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, 
     bits = gproji_pass_bytes(stream, bits, 8);
     memcpy(&passed, &bits, sizeof passed);
     if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
-    if (stream->way == GPROJI_READ && !stream->wrong) *value = passed;
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed;
     return passed;
 }
 
@@ -23014,43 +22687,55 @@ GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, s
     for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
 }
 
-/* The byte of a small number of eighths; -0 is none, it has a sign. */
-GPROJI_INTERNAL uint64_t gproji_small_byte(double value) {
-    int32_t whole;
-    if (!(8 * fabs(value) <= (double)GPROJI_SMALL_MOST)) return GPROJI_SMALL_NONE;
-    whole = (int32_t)(8 * value);
-    if (whole != 8 * value || (whole == 0 && 1 / value < 0)) return GPROJI_SMALL_NONE;
-    return (uint64_t)(whole + GPROJI_SMALL_MOST);
-}
-
-/* A number that is often a small one of eighths. */
+/* Passes a number that often is a small one of eighths, in one byte; others have 8 bytes more. */
 GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
-    uint64_t small = gproji_pass_bytes(stream, gproji_comes_in(stream) ? 0 : gproji_small_byte(*value), 1);
-    double passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
+    uint64_t small = GPROJI_SMALL_NONE;
+    double passed;
+    if (!gproji_comes_in(stream) && 8 * fabs(*value) <= (double)GPROJI_SMALL_MOST) {
+        int32_t whole = (int32_t)(8 * *value);
+        /* -0 has 8 bytes: as eighths it would lose the sign. */
+        if (whole == 8 * *value && !(whole == 0 && 1 / *value < 0)) small = (uint64_t)(whole + GPROJI_SMALL_MOST);
+    }
+    small = gproji_pass_bytes(stream, small, 1);
+    passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
         gproji_spoil(stream, "a number is out of its range");
-    } else if (stream->way == GPROJI_READ) {
+    } else if (stream->mode == GPROJI_READ) {
         *value = passed;
     }
 }
 
 /* -- the state -- */
 
-/* The rows' weights, and what they are the products of where elements have weights. */
-GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form, gproji_group *g) {
+/* Passes the rows' weights and, if `numbers`, their constants and coefficients. */
+GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_form *form, gproji_group *g, bool numbers) {
     bool shared = g->share != NULL;
+    uint32_t t;
     int32_t r;
+    for (r = 0; numbers && r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
+    for (r = 0; numbers && r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
+            double *a = &g->term[g->row[r].term + t].a, now = *a;
+            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
+            if (memcmp(&now, a, sizeof now) == 0) continue;
+            /* Terms that rows share stay shared until a different coefficient comes in. */
+            if (g->common && !gproji_own_terms(form->system, g)) {
+                gproji_spoil_memory(stream, form);
+                return;
+            }
+            gproji_set_coefficient(g, &g->row[r], t, now);
+        }
     for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_number(stream, &g->row[r].weight, 0, 1e100);
+    /* The factors of weights, if elements have weights. */
     if (!gproji_pass_bool(stream, &shared)) {
-        for (r = 0; stream->way == GPROJI_READ && g->share && r < g->row_count; ++r)
+        for (r = 0; stream->mode == GPROJI_READ && g->share && r < g->row_count; ++r)
             g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
         return;
     }
     if (gproji_comes_in(stream) && !gproji_share_weights(form->system, g)) {
-        gproji_fail_memory(&form->error);
-        gproji_spoil(stream, "out of memory");
+        gproji_spoil_memory(stream, form);
         return;
     }
     for (r = 0; r < g->row_count && !stream->wrong; ++r) {
@@ -23059,69 +22744,14 @@ GPROJI_INTERNAL void gproji_pass_weights(gproji_stream *stream, gproj_form *form
     }
 }
 
-/* The constants and coefficients of a group's rows. Terms that rows have in common stay so if nothing else comes in. */
-GPROJI_INTERNAL void gproji_pass_numbers(gproji_stream *stream, gproj_form *form, gproji_group *g) {
-    uint32_t t;
-    int32_t r;
-    for (r = 0; r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
-    for (r = 0; r < g->row_count; ++r)
-        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
-            double *a = &g->term[g->row[r].term + t].a, now = *a;
-            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
-            if (memcmp(&now, a, sizeof now) == 0) continue;
-            if (g->common && !gproji_own_terms(form->system, g)) {
-                gproji_fail_memory(&form->error);
-                gproji_spoil(stream, "out of memory");
-                return;
-            }
-            gproji_set_coefficient(g, &g->row[r], t, now);
-        }
-}
-
-/* What of a solve in frames is passed. */
+/* The part of a solve in frames that is passed. */
 typedef enum gproji_passing {
     GPROJI_PASS_NONE,
     GPROJI_PASS_SOLVE,
     GPROJI_PASS_NEAREST /* with multipliers */
 } gproji_passing;
 
-/* What decides how steps are found: whether the group has ever counted (gproji_wake_groups), which rows close, and which
-   of the guard wait. */
-GPROJI_INTERNAL void gproji_pass_choice(gproji_stream *stream, gproj_form *form, gproji_group *g) {
-    int32_t closing = g->closing, r;
-    bool idle = g->idle, same;
-    gproji_pass_bool(stream, &idle);
-    gproji_pass_integer(stream, &closing, 0, g->row_count);
-    same = idle == g->idle && closing == g->closing;
-    if (stream->way == GPROJI_READ) g->idle = idle, g->closing = closing;
-    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
-    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
-        bool waits = g->row[r].waits;
-        gproji_pass_bool(stream, &waits);
-        same = same && waits == g->row[r].waits;
-        if (stream->way == GPROJI_READ) g->row[r].waits = waits;
-    }
-    if (stream->way == GPROJI_READ && !same) form->system->schur.stale = true; /* to be decided anew */
-}
-
-/* The corners that have rows, in their order. Those that come in get rows. */
-GPROJI_INTERNAL void gproji_pass_corners(gproji_stream *stream, gproj_form *form) {
-    const gproji_corners *guard = form->corners;
-    int32_t end = 2 * form->mesh->halfedge_count, r;
-    int32_t count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
-    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
-    for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r];
-        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
-        if (!gproji_comes_in(stream) || stream->wrong) continue;
-        if (form->mesh->face[corner / 2] < 0)
-            gproji_spoil(stream, "a corner is not one of a face");
-        else if (guard->row[corner] < 0)
-            gproji_add_corner(form, corner);
-    }
-}
-
-/* What the guard has during a solve: the corners as they were at its beginning, and the rows. */
+/* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
 GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *form, gproji_group *g,
                                              gproji_passing passing) {
     gproji_corners *guard = form->corners;
@@ -23131,7 +22761,8 @@ GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *
     gproji_pass_doubles(stream, guard->axis, 3 * (size_t)form->mesh->face_count);
     gproji_pass_integer(stream, &guard->wakings, 0, INT32_MAX / 2);
     count = gproji_pass_integer(stream, &count, 0, g->row_count);
-    for (r = 0; stream->way == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
+    /* The form may have rows that the state does not have: they get no weight. */
+    for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
     for (r = 0; r < count && !stream->wrong; ++r) {
         int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r], row;
         corner = gproji_pass_integer(stream, &corner, 0, end - 1);
@@ -23145,29 +22776,42 @@ GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *
         if (passing == GPROJI_PASS_NEAREST)
             gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
     }
-    if (stream->way == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
+    if (stream->mode == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
 }
 
-/* What a group has. During a solve these are all its numbers; else neither those of rows that a refresh makes anew, nor
-   any of a group that the library has added (`own`): they are set when a solve begins. */
+/* Passes a group: during a solve all numbers; else neither those in rows that a refresh makes anew, nor any in a group
+   that the library has added (`own`), as they are set when a solve begins. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
                                        gproji_passing passing) {
     gproj_schedule schedule = g->schedule;
+    bool idle = g->idle, reading = stream->mode == GPROJI_READ, same;
+    int32_t closing = g->closing, r;
     double none = 0;
-    int32_t r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
     gproji_pass_number(stream, &schedule.decay, 0, 1);
     gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
-    if (stream->way == GPROJI_READ) g->schedule = schedule;
+    if (reading) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
-    gproji_pass_choice(stream, form, g);
+    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows close, and
+       which rows of the guard are dormant: if they change, it is decided anew. */
+    gproji_pass_bool(stream, &idle);
+    gproji_pass_integer(stream, &closing, 0, g->row_count);
+    same = idle == g->idle && closing == g->closing;
+    if (reading) g->idle = idle, g->closing = closing;
+    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
+    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
+        bool waits = g->row[r].waits;
+        gproji_pass_bool(stream, &waits);
+        same = same && waits == g->row[r].waits;
+        if (reading) g->row[r].waits = waits;
+    }
+    if (reading && !same) form->system->schur.stale = true;
     if (own && !passing) return;
     if (g->safeguard) {
         gproji_pass_corner_rows(stream, form, g, passing);
         return;
     }
-    if (passing || !g->refresh) gproji_pass_numbers(stream, form, g);
-    gproji_pass_weights(stream, form, g);
+    gproji_pass_rows(stream, form, g, passing || !g->refresh);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
         if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
         if (passing == GPROJI_PASS_NEAREST)
@@ -23175,25 +22819,16 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, 
     }
 }
 
-/* Multipliers for a solve for the nearest point that comes in. */
-GPROJI_INTERNAL void gproji_make_multipliers(gproji_stream *stream, gproj_form *form) {
-    gproj_system *s = form->system;
-    int32_t i;
-    bool all = s->compiled && s->sum;
-    for (i = 0; i < s->group_count; ++i) all = all && s->group[i].multiplier;
-    if (all || !gproji_comes_in(stream) || stream->wrong) return;
-    if (gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)) return;
-    gproji_fail_memory(&form->error);
-    gproji_spoil(stream, "out of memory");
-}
-
-/* A solve in frames, if one is on. */
+/* Passes a solve in frames, if one is on. */
 GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
     gproji_solve solve = form->solve;
     gproji_loop *loop = &solve.loop;
-    bool nearest, begun;
+    gproj_system *s = form->system;
+    gproji_passing passing;
+    bool nearest, begun, ready = s->compiled && s->sum;
+    int32_t i;
     if (!gproji_pass_bool(stream, &solve.on)) {
-        if (stream->way == GPROJI_READ) form->solve.on = form->solve.finished = false;
+        if (stream->mode == GPROJI_READ) form->solve.on = form->solve.finished = false;
         return GPROJI_PASS_NONE;
     }
     gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
@@ -23219,39 +22854,26 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     gproji_pass_bool(stream, &loop->options.smooth);
     gproji_pass_bool(stream, &loop->stiff);
     gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &form->system->stiffness, 0, DBL_MAX);
-    gproji_pass_integer(stream, &form->system->late, 0, INT32_MAX / 2);
-    if (nearest && begun) gproji_make_multipliers(stream, form);
-    if (stream->way != GPROJI_READ) return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
+    gproji_pass_integer(stream, &s->late, 0, INT32_MAX / 2);
+    passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    /* Multipliers that are about to come in need their room. */
+    for (i = 0; i < s->group_count; ++i) ready = ready && s->group[i].multiplier;
+    if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
+        !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
+        gproji_spoil_memory(stream, form);
+    if (stream->mode != GPROJI_READ) return passing;
     if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
-    loop->system = form->system;
+    loop->system = s;
     loop->restored = loop->begun;
     loop->paused = solve.finished = false;
     memset(loop->result.seconds, 0, sizeof loop->result.seconds);
-    solve.structure = gproji_structure_of(form->system);
+    solve.structure = gproji_structure_of(s);
     form->solve = solve;
-    return nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    return passing;
 }
 
-/* The last segment that vertex i of a gliding part may be on; -1: it stays where it was. */
-GPROJI_INTERNAL int32_t gproji_last_segment(const gproji_part *part, int32_t i) {
-    if (part->curve) return part->curve->segment_count - 1;
-    return gproji_stays(part, i) ? -1 : part->own_curve[part->curve_of[i]]->segment_count - 1;
-}
-
-/* What the form and its parts remember. */
-GPROJI_INTERNAL void gproji_pass_parts(gproji_stream *stream, gproj_form *form) {
-    gproji_part *part;
-    int32_t i;
-    for (part = form->part; part; part = part->next)
-        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i)
-            gproji_pass_integer(stream, &part->segment[i], -1, gproji_last_segment(part, i));
-    if (!form->statics) return;
-    gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
-    gproji_pass_bool(stream, &form->statics->started);
-}
-
-/* The groups, each after its kind; those of the form that do not come in lose their weight. */
+/* Passes the groups, each behind a byte for the kind; groups that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     gproj_system *s = form->system;
     int32_t count = s->group_count, k, theirs = -1, own;
@@ -23276,44 +22898,68 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
         }
     }
-    for (own = 1; stream->way == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
+    for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
             s->group[gproji_own_group(form, (gproji_own)own)].schedule.weight = 0;
 }
 
-/* The kinds of the groups that the library has added, in their order. Those that come in are added to the form. */
+/* Passes the kinds of the groups that the library has added, and the corners that have rows, in their order. The form
+   gets those that come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
-    int32_t list[GPROJI_OWN_COUNT], count = 0, k;
-    for (k = 0; !gproji_comes_in(stream) && k < form->system->group_count; ++k)
+    int32_t list[GPROJI_OWN_COUNT], end = 2 * form->mesh->halfedge_count, count = 0, k;
+    bool in = gproji_comes_in(stream);
+    const gproji_corners *guard;
+    for (k = 0; !in && k < form->system->group_count; ++k)
         if (gproji_kind_of_group(form, k)) list[count++] = (int32_t)gproji_kind_of_group(form, k);
     count = gproji_pass_integer(stream, &count, 0, GPROJI_OWN_COUNT - 1);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        bool of_forces;
-        if (gproji_comes_in(stream)) list[k] = 0;
-        list[k] = (int32_t)gproji_pass_bytes(stream, (uint64_t)list[k], 1);
-        of_forces = list[k] == GPROJI_OWN_FORCES || list[k] == GPROJI_OWN_BRAKE;
-        if (gproji_comes_in(stream) && list[k] < GPROJI_OWN_COUNT && (form->statics || !of_forces))
-            gproji_add_own_group(form, (gproji_own)list[k]);
+        int32_t kind = (int32_t)gproji_pass_bytes(stream, in ? 0 : (uint64_t)list[k], 1);
+        bool of_forces = kind == GPROJI_OWN_FORCES || kind == GPROJI_OWN_BRAKE;
+        if (in && kind < GPROJI_OWN_COUNT && (form->statics || !of_forces))
+            gproji_add_own_group(form, (gproji_own)kind);
     }
-    gproji_pass_corners(stream, form);
+    guard = form->corners;
+    count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
+    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
+    for (k = 0; k < count && !stream->wrong; ++k) {
+        int32_t corner = in ? 0 : guard->corner[k];
+        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
+        if (!in || stream->wrong) continue;
+        if (form->mesh->face[corner / 2] < 0)
+            gproji_spoil(stream, "a corner is not one of a face");
+        else if (guard->row[corner] < 0)
+            gproji_add_corner(form, corner);
+    }
 }
 
+/* Passes the state between head and checksum. */
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
     gproji_passing passing;
+    gproji_part *part;
+    int32_t i;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
     passing = gproji_pass_solve(stream, form);
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
-    gproji_pass_parts(stream, form);
+    for (part = form->part; part; part = part->next)
+        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
+            const gproj_curve *curve = part->curve;
+            if (!curve && !gproji_stays(part, i)) curve = part->own_curve[part->curve_of[i]];
+            gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        }
+    if (form->statics) {
+        gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
+        gproji_pass_bool(stream, &form->statics->started);
+    }
     gproji_pass_groups(stream, form, passing);
 }
 
-/* -- what it belongs to -- */
+/* -- the form that it belongs to -- */
 
-/* A hash by 64 bits at once, with the numbers of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and in
-   the hash: a change of one value never goes unnoticed. */
+/* A hash by 64 bits at once, with the constants of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and
+   in the hash: a change in one value never goes unnoticed. */
 GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
 
 GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
@@ -23344,44 +22990,45 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
     return hash;
 }
 
-/* The mesh, as the form was made from it. */
-GPROJI_INTERNAL uint64_t gproji_hash_mesh(uint64_t hash, const gproj_form *form) {
+/* Hashes all that a form is made of, without the groups that the library adds. */
+GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
+    const gproj_system *s = form->system;
+    const gproji_statics *statics = form->statics;
+    const gproji_part *part;
+    size_t vertices = (size_t)mesh->vertex_count;
+    uint64_t hash = gproji_hash_start(), terms;
+    int32_t i, r;
+    uint32_t t;
+    /* 1. The mesh with the positions that the form was made with, and the variables. */
     hash = gproji_hash_integers(hash, mesh->face_degree, (size_t)mesh->face_count);
     hash = gproji_hash_integers(hash, mesh->origin, (size_t)mesh->halfedge_count);
     hash = gproji_hash_integers(hash, mesh->face, (size_t)mesh->halfedge_count);
-    hash = gproji_hash_doubles(hash, form->original, 3 * (size_t)mesh->vertex_count);
+    hash = gproji_hash_doubles(hash, form->original, 3 * vertices);
     hash = gproji_hash_doubles(hash, form->centre, 3);
-    return gproji_hash_doubles(hash, &form->scale, 1);
-}
-
-/* A group's rows without their numbers. */
-GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
-    uint64_t terms = 0;
-    uint32_t t;
-    int32_t r;
-    hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
-    hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
-    hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
-    for (r = 0; r < g->row_count; ++r) {
-        terms += g->row[r].terms;
-        hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
-    }
-    for (r = 0; r < g->row_count; ++r)
-        for (t = 0; t < g->row[r].terms; ++t) {
-            const gproj_term *term = g->term + g->row[r].term + t;
-            uint32_t i = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
-            uint32_t j = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
-            hash = gproji_hash_step(hash, (uint64_t)i << 32 | j);
+    hash = gproji_hash_doubles(hash, &form->scale, 1);
+    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
+    /* 2. Groups: name, kind, rows with their terms' variables. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        if (gproji_kind_of_group(form, i)) continue;
+        hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
+        hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
+        hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+        for (r = 0, terms = 0; r < g->row_count; ++r) {
+            terms += g->row[r].terms;
+            hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
         }
-    return gproji_hash_step(hash, (uint64_t)g->row_count);
-}
-
-/* What refreshes go by: loads, and the parts' own numbers. */
-GPROJI_INTERNAL uint64_t gproji_hash_parts(uint64_t hash, const gproj_form *form) {
-    size_t vertices = (size_t)form->mesh->vertex_count;
-    const gproji_statics *s = form->statics;
-    const gproji_part *part;
+        for (r = 0; r < g->row_count; ++r)
+            for (t = 0; t < g->row[r].terms; ++t) {
+                const gproj_term *term = g->term + g->row[r].term + t;
+                uint32_t first = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
+                uint32_t second = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
+                hash = gproji_hash_step(hash, (uint64_t)first << 32 | second);
+            }
+        hash = gproji_hash_step(hash, (uint64_t)g->row_count);
+    }
+    /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
         if (gproji_kind_of_group(form, part->group)) continue;
         hash = gproji_hash_integers(hash, part->vertex, (size_t)part->count);
@@ -23390,35 +23037,24 @@ GPROJI_INTERNAL uint64_t gproji_hash_parts(uint64_t hash, const gproj_form *form
         hash = gproji_hash_doubles(hash, part->price, 2);
         hash = gproji_hash_doubles(hash, part->factor, (size_t)part->capacity);
     }
-    if (!s) return hash;
-    hash = gproji_hash_bytes(hash, s->axes, vertices);
-    hash = gproji_hash_doubles(hash, &s->loads.density, 1);
-    hash = gproji_hash_doubles(hash, &s->loads.area_load, 1);
-    hash = gproji_hash_doubles(hash, &s->loads.snow, 1);
-    hash = gproji_hash_doubles(hash, s->edge_density, (size_t)form->mesh->edge_count);
-    return gproji_hash_doubles(hash, s->point_load, 3 * vertices);
-}
-
-/* What a form is made of; not what the library adds to it. */
-GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
-    const gproj_system *s = form->system;
-    uint64_t hash = gproji_hash_mesh(gproji_hash_start(), form);
-    int32_t i;
-    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
-    for (i = 0; i < s->group_count; ++i)
-        if (!gproji_kind_of_group(form, i)) hash = gproji_hash_group(hash, &s->group[i]);
-    return gproji_hash_parts(hash, form);
+    if (!statics) return hash;
+    hash = gproji_hash_bytes(hash, statics->axes, vertices);
+    hash = gproji_hash_doubles(hash, &statics->loads.density, 1);
+    hash = gproji_hash_doubles(hash, &statics->loads.area_load, 1);
+    hash = gproji_hash_doubles(hash, &statics->loads.snow, 1);
+    hash = gproji_hash_doubles(hash, statics->edge_density, (size_t)mesh->edge_count);
+    return gproji_hash_doubles(hash, statics->point_load, 3 * vertices);
 }
 
 /* -- the block -- */
 
 static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'D'};
 
-GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_way way, uint8_t *out, const uint8_t *in, size_t at,
+GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
     gproji_stream stream;
     memset(&stream, 0, sizeof stream);
-    stream.way = way, stream.out = out, stream.in = in, stream.at = at, stream.size = size;
+    stream.mode = mode, stream.out = out, stream.in = in, stream.at = at, stream.size = size;
     return stream;
 }
 
@@ -23429,7 +23065,7 @@ GPROJ_API size_t gproj_state_size(gproj_form *form) {
     return stream.at + GPROJI_STATE_TAIL;
 }
 
-/* Writes the state to as many bytes as it has. */
+/* Writes the state; `size` must be gproj_state_size. */
 GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, size_t size, gproj_error *error) {
     gproji_stream stream = gproji_make_stream(GPROJI_WRITE, out, NULL, sizeof gproji_state_magic, size);
     memcpy(out, gproji_state_magic, sizeof gproji_state_magic);
@@ -23452,44 +23088,38 @@ GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t siz
     return gproji_write_state(form, (uint8_t *)buffer, size, error);
 }
 
-/* Refuses blocks that are no state of this form, or damaged; `in` is then behind the head. */
-GPROJI_INTERNAL gproj_code gproji_open_state(gproji_stream *in, const gproj_form *form, gproj_error *error) {
-    gproji_stream tail = *in;
-    uint64_t size;
-    if (!in->in || in->size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
-        memcmp(in->in, gproji_state_magic, sizeof gproji_state_magic) != 0)
+/* Checks a block and reads it; a drag may be under way. */
+GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state, size_t size, gproj_error *error) {
+    gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, sizeof gproji_state_magic, size);
+    gproji_stream tail = in, check;
+    uint64_t stated;
+    /* 1. Refuse what is no state of this form, or damaged. */
+    if (!state || size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
+        memcmp(state, gproji_state_magic, sizeof gproji_state_magic) != 0)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: these bytes are no saved state of a form");
-    in->at = sizeof gproji_state_magic;
-    size = gproji_pass_bytes(in, 0, 8);
-    if (size != in->size)
+    stated = gproji_pass_bytes(&in, 0, 8);
+    if (stated != size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
-                           "state: it says that it has %l bytes, but there are %l", (int64_t)size, (int64_t)in->size);
-    tail.at = in->size - GPROJI_STATE_TAIL;
-    if (gproji_hash_bytes(gproji_hash_start(), in->in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
+                           "state: it says that it has %l bytes, but there are %l", (int64_t)stated, (int64_t)size);
+    tail.at = size - GPROJI_STATE_TAIL;
+    if (gproji_hash_bytes(gproji_hash_start(), in.in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
-    if (gproji_pass_bytes(in, 0, 8) != gproji_fingerprint(form))
+    if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
         return gproji_fail(
             error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
             "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
             "is not the same");
-    in->size -= GPROJI_STATE_TAIL;
-    return GPROJ_OK;
-}
-
-/* Checks a block and reads it; a drag may be under way. */
-GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state, size_t size, gproj_error *error) {
-    gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, 0, size), check;
-    gproj_code code = gproji_open_state(&in, form, error);
-    if (code) return code;
+    in.size -= GPROJI_STATE_TAIL;
+    /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
     gproji_pass_state(&check, form);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (check.wrong || check.at != in.size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "state: it is damaged: %s",
                            check.wrong ? check.wrong : "more follows than it should have");
-    in.way = GPROJI_READ;
+    in.mode = GPROJI_READ;
     gproji_pass_state(&in, form);
     form->system->changed = false;
     return GPROJ_OK;
@@ -23508,29 +23138,38 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
    vector, dense, cholesky, system, schur, loop, mesh, form, catalogue, guard, solve, state.
 
-   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables) the smallest dx
-   in the tangent space that a force f at the handles' vertices brings about is its projection,
+   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables), a force f at
+   the handles' vertices brings about the smallest dx in the tangent space, a projection,
        min 1/2 dx'D dx - f'dx,    G dx = 0.                                                                    (1)
-   It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f: each round is one solve with the same factor
-   (the method of multipliers, or a proximal iteration: Hestenes 1969, Rockafellar 1976), and takes eps^2 / (sigma^2 +
-   eps^2) of what G with the singular value sigma leaves. So G dx = 0 holds far better than eps says, and dependent rows do
-   no harm.
-   The responses of all handles' coordinates are made orthonormal in D (pivoted Gram and Schmidt, so that handles which
-   depend on each other are found): Q = (q_1, ..., q_r), Q'DQ = I. What they do to the handles is L = S'Q, and a move of
-   the handles by e = (S'S) d takes dx = Q m with the m that makes |L m - e| smallest. */
+   It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f (the method of multipliers, or a proximal
+   iteration: Hestenes 1969, Rockafellar 1976). Each round is one solve with the same factor, and multiplies G dx, in the
+   direction with the singular value sigma, by eps^2 / (sigma^2 + eps^2). So G dx = 0 holds far better than eps says, and
+   dependent rows do no harm.
+   S has a column for each coordinate of each handle. The responses to all are made orthonormal in D (pivoted Gram and
+   Schmidt, which finds handles that depend on each other): Q = (q_1, ..., q_r), Q'DQ = I. They move the handles by
+   L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|. */
 
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
-static const double gproji_drag_light = 1e-2;   /* the root of what other variables count beside vertices */
-static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, beside a free one, does not move */
+static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
+static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, relative to a free one, does not move */
 static const double gproji_drag_touch = 1e-6;   /* bounds so near to their limit stay there */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
-static const double gproji_drag_rest = 1e-3; /* of staying where it was before the drag, beside where the handles are */
+static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
-    GPROJI_DRAG_ITERATIONS = 10, /* of the release */
-    GPROJI_DRAG_GUIDED = 5
+    GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
+    GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
 };
+
+/* S has the entry weight[e] in column 3 k + c and row 3 vertex[e] + c, for e in start[k] .. start[k + 1] - 1. */
+typedef struct gproji_handle_list {
+    int64_t *start;
+    int32_t *vertex;
+    double *weight;
+    double *from; /* 3 numbers a handle: the caller's positions at the beginning */
+    double *gram; /* handles x handles: S'S for one axis */
+} gproji_handle_list;
 
 struct gproj_drag {
     gproji_heap own;
@@ -23539,26 +23178,21 @@ struct gproj_drag {
     gproji_structure structure; /* of the system at the beginning */
     gproj_drag_options options;
     gproj_drag_info info;
-    int32_t columns;   /* 3 * handles */
-    int32_t variables; /* of the system */
-    int64_t *start;    /* the handles, in compressed columns */
-    int32_t *vertex;
-    double *weight;
-    double *from;             /* columns: the caller's positions of the handles at the beginning */
-    double *gram;             /* handles x handles: S'S */
+    gproji_handle_list handle;
+    int32_t columns;          /* 3 * handles */
+    int32_t variables;        /* of the system */
     double *first;            /* 3 * vertex_count: the vertices at the beginning */
     double *begun;            /* variables: x before the drag */
     double *last;             /* variables: x before a move */
-    double *base;             /* variables: x where the rows were linearised */
+    double *base;             /* variables: x at the last linearisation */
     double *held;             /* columns: S'v there */
-    double *wanted;           /* columns: S'v as the handles want it */
+    double *wanted;           /* columns: S'v wanted by the handles */
     double *motion;           /* columns x variables: Q */
     double *lift;             /* columns x columns: L by columns */
     double *pull;             /* columns x columns: (L'L)^-1 L', by rows */
-    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; what the handles lack */
-    double *amount;           /* columns: m */
-    int32_t *name;            /* columns: the handle's coordinate that each column of Q began with */
-    gproj_schedule *schedule; /* during the release: those of the form's wishes */
+    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; e - L m, and m */
+    int32_t *name;            /* columns: the handle's coordinate that began each column of Q */
+    gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
     gproji_pool pool;
@@ -23568,58 +23202,19 @@ struct gproj_drag {
 
 /* out = S'v: 3 numbers a handle. */
 GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double *v, double *out) {
+    const gproji_handle_list *list = &drag->handle;
     int32_t k, c;
     int64_t e;
     for (k = 0; k < drag->info.handles; ++k) {
         gproji_set3(0, 0, 0, out + 3 * (size_t)k);
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
+        for (e = list->start[k]; e < list->start[k + 1]; ++e)
             for (c = 0; c < 3; ++c)
-                out[3 * (size_t)k + (size_t)c] += drag->weight[e] * v[3 * (size_t)drag->vertex[e] + (size_t)c];
+                out[3 * (size_t)k + (size_t)c] += list->weight[e] * v[3 * (size_t)list->vertex[e] + (size_t)c];
     }
 }
 
-/* Column 3 k + c of Q = the force of handle k along axis c. */
-GPROJI_INTERNAL void gproji_start_responses(gproj_drag *drag) {
-    size_t n = (size_t)drag->variables;
-    int32_t j;
-    int64_t e;
-    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
-    for (j = 0; j < drag->columns; ++j)
-        for (e = drag->start[j / 3]; e < drag->start[j / 3 + 1]; ++e)
-            drag->motion[n * (size_t)j + 3 * (size_t)drag->vertex[e] + (size_t)(j % 3)] += drag->weight[e];
-}
-
-/* Q = eps^2 D Q */
-GPROJI_INTERNAL void gproji_scale_responses(gproj_drag *drag, double epsilon) {
-    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
-    double heavy = epsilon * epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
-    int32_t j;
-    for (j = 0; j < drag->columns; ++j) {
-        double *column = drag->motion + n * (size_t)j;
-        for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
-    }
-}
-
-/* Q = (A + U U')^-1 Q for the columns from `first` on: see gproji_wide_correct. `wide`: columns of U. */
-GPROJI_INTERNAL void gproji_solve_responses(gproj_drag *drag, int32_t first, int32_t wide) {
-    gproj_system *s = drag->form->system;
-    gproj_cholesky *c = s->cholesky;
-    size_t n = (size_t)drag->variables;
-    double *column = drag->motion + n * (size_t)first;
-    int32_t j;
-    if (wide == 0) {
-        gproj_cholesky_solve(c, drag->columns - first, column, column);
-        return;
-    }
-    gproji_cholesky_forward(c, drag->columns - first, column, column);
-    for (j = first; j < drag->columns; ++j, column += n) {
-        memset(s->wide.vector, 0, (size_t)wide * sizeof *s->wide.vector);
-        gproji_wide_correct(s, wide, column);
-        gproji_cholesky_backward(c, column, column);
-    }
-}
-
-/* Rows, gradients and residual at x; what must hold has the weight 1 and nothing else acts. */
+/* Linearises at x, where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
+   Returns the residual. */
 GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
     gproj_system *s = drag->form->system;
     gproji_loop loop;
@@ -23641,94 +23236,98 @@ GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
     return loop.standing.residual;
 }
 
-/* A = G'G + eps^2 D, factored; the first responses go along as far as there is room for them. */
-GPROJI_INTERNAL bool gproji_factor_tangents(gproj_drag *drag, double epsilon, int32_t sides) {
-    gproji_loading loading;
-    gproj_system *s = drag->form->system;
-    loading.system = s, loading.epsilon = epsilon, loading.curved = false;
-    loading.light_from = 3 * drag->form->mesh->vertex_count, loading.light = gproji_drag_light * epsilon;
-    return gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, sides, drag->motion) == GPROJ_FACTORED;
-}
-
-/* Makes U ready, and a step that takes the residual off, where `base` is to move by it. Returns how many columns U has. */
-GPROJI_INTERNAL int32_t gproji_prepare_wide(gproj_drag *drag, bool restore) {
-    gproj_system *s = drag->form->system;
-    int32_t i, wide = 0;
-    if (s->wide_count == 0 && !restore) return 0;
-    gproji_merit_gradient(s);
-    wide = gproji_step_sides(s);
-    gproji_finish_step(s, wide, false);
-    for (i = 0; restore && i < drag->variables; ++i) drag->base[i] += s->step[i];
-    return wide;
-}
-
-/* The responses in Q: see (1). The first ones go along with the factorisation, unless rows are wide. False: the matrix
+/* Finds the responses Q by (1). restore: `base` moves by a step that takes the residual off, too. False: the matrix
    cannot be factored. */
 GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
-    int32_t round, wide, first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns);
-    gproji_start_responses(drag);
-    gproji_scale_responses(drag, gproji_drag_epsilon);
-    if (!gproji_factor_tangents(drag, gproji_drag_epsilon, first)) return false;
-    if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
-    wide = gproji_prepare_wide(drag, restore);
-    gproji_solve_responses(drag, first, wide);
-    for (round = 1; round < GPROJI_DRAG_ROUNDS; ++round) {
-        gproji_scale_responses(drag, gproji_drag_epsilon);
-        gproji_solve_responses(drag, 0, wide);
+    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
+    double heavy = gproji_drag_epsilon * gproji_drag_epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
+    int32_t first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns), wide = 0, round, j;
+    gproji_loading loading;
+    int64_t e;
+    /* 1. Column 3 k + c begins as the force of handle k along axis c. */
+    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
+    for (j = 0; j < drag->columns; ++j)
+        for (e = drag->handle.start[j / 3]; e < drag->handle.start[j / 3 + 1]; ++e)
+            drag->motion[n * (size_t)j + 3 * (size_t)drag->handle.vertex[e] + (size_t)(j % 3)] +=
+                drag->handle.weight[e];
+    for (round = 0; round < GPROJI_DRAG_ROUNDS; ++round, first = 0) {
+        double *column = drag->motion;
+        /* 2. Q = eps^2 D Q */
+        for (j = 0; j < drag->columns; ++j, column += n)
+            for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
+        /* 3. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the
+           factorisation, up to the batch's size. */
+        if (round == 0) {
+            loading.system = s, loading.epsilon = gproji_drag_epsilon, loading.curved = false;
+            loading.light_from = (int32_t)vertices, loading.light = gproji_drag_light * gproji_drag_epsilon;
+            if (gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, first, drag->motion) !=
+                GPROJ_FACTORED)
+                return false;
+            if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
+            if (s->wide_count > 0 || restore) {
+                gproji_merit_gradient(s);
+                wide = gproji_step_sides(s);
+                gproji_finish_step(s, wide, false);
+            }
+            for (i = 0; restore && i < n; ++i) drag->base[i] += s->step[i];
+        }
+        /* 4. Q = (A + U U')^-1 Q, the dense rows being the columns of U: see gproji_wide_correct. */
+        column = drag->motion + n * (size_t)first;
+        if (wide == 0) {
+            gproj_cholesky_solve(s->cholesky, drag->columns - first, column, column);
+            continue;
+        }
+        gproji_cholesky_forward(s->cholesky, drag->columns - first, column, column);
+        for (j = first; j < drag->columns; ++j, column += n) {
+            memset(s->wide.vector, 0, (size_t)wide * sizeof *s->wide.vector);
+            gproji_wide_correct(s, wide, column);
+            gproji_cholesky_backward(s->cholesky, column, column);
+        }
     }
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
     return true;
 }
 
-/* Swaps columns i and j of Q and of S'Q, and their names. */
-GPROJI_INTERNAL void gproji_swap_responses(gproj_drag *drag, int32_t i, int32_t j) {
-    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
-    double *a = drag->motion + n * (size_t)i, *b = drag->motion + n * (size_t)j;
-    double *c = drag->work + m * (size_t)i, *d = drag->work + m * (size_t)j, other;
-    int32_t named = drag->name[i];
-    for (k = 0; k < n; ++k) other = a[k], a[k] = b[k], b[k] = other;
-    for (k = 0; k < m; ++k) other = c[k], c[k] = d[k], d[k] = other;
-    drag->name[i] = drag->name[j];
-    drag->name[j] = named;
-}
-
-/* How far the response in column i moves its own handle, beside what it would without constraints. */
+/* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
 GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
     size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
-    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] / drag->gram[handle * (handles + 1)];
+    return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] /
+           drag->handle.gram[handle * (handles + 1)];
 }
 
-/* Column r becomes orthonormal: q = q / |q|_D, and is taken off the columns after it. */
-GPROJI_INTERNAL void gproji_take_off_response(gproj_drag *drag, int32_t r) {
-    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
-    double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
-    double scale = 1 / sqrt(work[drag->name[r]]);
-    int32_t i;
-    for (k = 0; k < n; ++k) q[k] *= scale;
-    for (k = 0; k < m; ++k) l[k] = work[k] * scale;
-    for (i = r + 1; i < drag->columns; ++i) {
-        double part = l[drag->name[i]], *other = drag->motion + n * (size_t)i;
-        work = drag->work + m * (size_t)i;
-        for (k = 0; k < n; ++k) other[k] -= part * q[k];
-        for (k = 0; k < m; ++k) work[k] -= part * l[k];
-    }
-}
-
-/* Makes the responses orthonormal, the one that yields most first, until the rest does not yield. */
+/* Makes the responses orthonormal in D by pivoted Gram and Schmidt, the one that yields most first, until the rest does
+   not yield. Column i of S'Q is in `work`; entry name[i] there is q'D q, q being the projection of that force. */
 GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, k;
     int32_t i, r, best;
-    size_t m = (size_t)drag->columns;
     for (i = 0; i < drag->columns; ++i) {
         drag->name[i] = i;
-        gproji_gather_handles(drag, drag->motion + (size_t)drag->variables * (size_t)i, drag->work + m * (size_t)i);
+        gproji_gather_handles(drag, drag->motion + n * (size_t)i, drag->work + m * (size_t)i);
     }
     for (r = 0; r < drag->columns; ++r) {
+        double *q = drag->motion + n * (size_t)r, *l = drag->lift + m * (size_t)r, *work = drag->work + m * (size_t)r;
+        double *other, *beside, scale, part;
+        int32_t name;
+        /* 1. The pivot. */
         for (best = r, i = r + 1; i < drag->columns; ++i)
             if (gproji_yield(drag, i) > gproji_yield(drag, best)) best = i;
         if (!(gproji_yield(drag, best) > gproji_drag_stiff)) break;
-        gproji_swap_responses(drag, r, best);
-        gproji_take_off_response(drag, r);
+        other = drag->motion + n * (size_t)best, beside = drag->work + m * (size_t)best;
+        for (k = 0; k < n; ++k) part = q[k], q[k] = other[k], other[k] = part;
+        for (k = 0; k < m; ++k) part = work[k], work[k] = beside[k], beside[k] = part;
+        name = drag->name[best], drag->name[best] = drag->name[r], drag->name[r] = name;
+        /* 2. q = q / |q|, l = S'q. */
+        scale = 1 / sqrt(work[name]);
+        for (k = 0; k < n; ++k) q[k] *= scale;
+        for (k = 0; k < m; ++k) l[k] = work[k] * scale;
+        /* 3. The columns behind lose their part along q. */
+        for (i = r + 1; i < drag->columns; ++i) {
+            part = l[drag->name[i]];
+            other = drag->motion + n * (size_t)i, beside = drag->work + m * (size_t)i;
+            for (k = 0; k < n; ++k) other[k] -= part * q[k];
+            for (k = 0; k < m; ++k) beside[k] -= part * l[k];
+        }
     }
     drag->info.freedom = r;
 }
@@ -23749,8 +23348,8 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     }
 }
 
-/* Linearises at x, and finds what the handles can do there. restore: a step takes the residual off, too. False: that
-   could not be done, and what was found before is lost. */
+/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
+   False: that could not be done, and earlier responses are lost. */
 GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
     int32_t batch = s->cholesky->batch;
@@ -23769,7 +23368,7 @@ GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     return true;
 }
 
-/* Says why that failed. */
+/* Says why gproji_linearise_drag failed. */
 GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
@@ -23785,34 +23384,24 @@ GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const 
     return code;
 }
 
-/* x = base + Q m with the m for which the handles come nearest to where they should be. */
+/* x = base + Q m, with the m that brings the handles closest to their wanted places. */
 GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
-    double *x = drag->form->system->x, *lack = drag->work;
+    double *x = drag->form->system->x, *lack = drag->work, *amount = drag->work + m;
     for (k = 0; k < m; ++k) lack[k] = drag->wanted[k] - drag->held[k];
-    for (p = 0; p < (size_t)drag->info.freedom; ++p) drag->amount[p] = gproji_dot(drag->pull + m * p, lack, m);
+    for (p = 0; p < (size_t)drag->info.freedom; ++p) amount[p] = gproji_dot(drag->pull + m * p, lack, m);
     memcpy(x, drag->base, n * sizeof *x);
     for (p = 0; p < (size_t)drag->info.freedom; ++p) {
         const double *q = drag->motion + n * p;
-        double amount = drag->amount[p];
-        for (i = 0; i < n; ++i) x[i] += amount * q[i];
-        for (k = 0; k < m; ++k) lack[k] -= amount * drag->lift[m * p + k];
+        double a = amount[p];
+        for (i = 0; i < n; ++i) x[i] += a * q[i];
+        for (k = 0; k < m; ++k) lack[k] -= a * drag->lift[m * p + k];
     }
     drag->info.behind = 0;
     for (k = 0; k < handles; ++k)
-        drag->info.behind = gproji_fmax(drag->info.behind, gproji_length3(lack + 3 * k) /
-                                                               (drag->gram[k * (handles + 1)] * drag->form->scale));
-}
-
-/* wanted = S'v at the beginning + (S'S) d. */
-GPROJI_INTERNAL void gproji_set_wanted(gproj_drag *drag, const double *positions) {
-    int32_t k, j, c, handles = drag->info.handles;
-    gproji_gather_handles(drag, drag->first, drag->wanted);
-    for (k = 0; k < handles; ++k)
-        for (j = 0; j < handles; ++j)
-            for (c = 0; c < 3; ++c)
-                drag->wanted[3 * k + c] += drag->gram[(size_t)k * (size_t)handles + (size_t)j] *
-                                           (positions[3 * j + c] - drag->from[3 * j + c]) * drag->form->scale;
+        drag->info.behind =
+            gproji_fmax(drag->info.behind,
+                        gproji_length3(lack + 3 * k) / (drag->handle.gram[k * (handles + 1)] * drag->form->scale));
 }
 
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
@@ -23825,21 +23414,9 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     return drag->error.code == GPROJ_OK;
 }
 
-/* Linearises anew where the move has led, and goes on from there to the handles. Where that cannot be done, the move has
-   not been: everything is linearised anew where it began. Without freedom nothing moves any more. */
-GPROJI_INTERNAL bool gproji_renew_drag(gproj_drag *drag) {
-    if (gproji_linearise_drag(drag, true)) {
-        gproji_follow_handles(drag);
-        return true;
-    }
-    gproji_fail_linearising(drag, &drag->error);
-    memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
-    if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
-    return false;
-}
-
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
     double behind, bound;
+    int32_t k, j, c, handles;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
@@ -23848,11 +23425,26 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     behind = drag->info.behind;
     bound = drag->options.residual_bound;
     memcpy(drag->last, drag->form->system->x, (size_t)drag->variables * sizeof *drag->last);
-    gproji_set_wanted(drag, positions);
+    /* 1. wanted = S'v at the beginning + (S'S) d. */
+    handles = drag->info.handles;
+    gproji_gather_handles(drag, drag->first, drag->wanted);
+    for (k = 0; k < handles; ++k)
+        for (j = 0; j < handles; ++j)
+            for (c = 0; c < 3; ++c)
+                drag->wanted[3 * k + c] += drag->handle.gram[(size_t)k * (size_t)handles + (size_t)j] *
+                                           (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
-    if (bound > 0 && !(gproji_see_constraints(drag) <= bound) && !gproji_renew_drag(drag)) {
-        drag->info.behind = behind;
-        return drag->error.code;
+    /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
+    if (bound > 0 && !(gproji_see_constraints(drag) <= bound)) {
+        if (!gproji_linearise_drag(drag, true)) {
+            /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
+            gproji_fail_linearising(drag, &drag->error);
+            memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
+            if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+            drag->info.behind = behind;
+            return drag->error.code;
+        }
+        gproji_follow_handles(drag);
     }
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
@@ -23878,82 +23470,22 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag) { return gproji
 
 /* -- begin -- */
 
-/* Refuses handles that are none. */
-GPROJI_INTERNAL bool gproji_handles_are_valid(const gproj_form *form, const gproj_handles *h, gproj_error *error) {
-    int64_t e, end;
-    int32_t k;
-    if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
-        return false;
-    }
-    for (k = 0; k < h->count; ++k) {
-        double size = 0;
-        e = h->start ? h->start[k] : k;
-        end = h->start ? h->start[k + 1] : k + 1;
-        if (e < 0 || e > end) {
-            gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k, "drag: the list of handle %d is no list", k);
-            return false;
-        }
-        for (; e < end; ++e) {
-            double weight = h->weight ? h->weight[e] : 1;
-            if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count) {
-                gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, h->vertex[e],
-                            "drag: handle %d: there is no vertex %d (the mesh has %d, counted from 0)", k, h->vertex[e],
-                            form->mesh->vertex_count);
-                return false;
-            }
-            size += weight * weight;
-        }
-        if (!(size > 1e-100 && size < 1e100)) {
-            gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
-                        "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
-            return false;
-        }
-    }
-    return !h->position || gproji_check_handle_positions(h->count, h->position, error) == GPROJ_OK;
-}
-
-/* The handles' lists, S'S, and where the handles are. `column`: work, one number a vertex. */
-GPROJI_INTERNAL void gproji_copy_handles(gproj_drag *drag, const gproj_handles *h, double *column) {
-    int32_t k, j, c, handles = h->count;
-    int64_t e, first = h->start ? h->start[0] : 0;
-    for (k = 0; k <= handles; ++k) drag->start[k] = h->start ? h->start[k] - first : k;
-    memcpy(drag->vertex, h->vertex + first, (size_t)drag->start[handles] * sizeof *drag->vertex);
-    for (e = 0; e < drag->start[handles]; ++e) drag->weight[e] = h->weight ? h->weight[first + e] : 1;
-    memset(column, 0, (size_t)drag->form->mesh->vertex_count * sizeof *column);
-    for (k = 0; k < handles; ++k) {
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] += drag->weight[e];
-        for (j = 0; j < handles; ++j) {
-            double *product = &drag->gram[(size_t)j * (size_t)handles + (size_t)k];
-            for (*product = 0, e = drag->start[j]; e < drag->start[j + 1]; ++e)
-                *product += drag->weight[e] * column[drag->vertex[e]];
-        }
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) column[drag->vertex[e]] = 0;
-    }
-    gproji_gather_handles(drag, drag->form->mesh->position, drag->from);
-    for (k = 0; k < handles; ++k) {
-        double sum = 0;
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) sum += drag->weight[e];
-        for (c = 0; c < 3; ++c)
-            drag->from[3 * k + c] = h->position ? h->position[3 * k + c] : sum != 0 ? drag->from[3 * k + c] / sum : 0;
-    }
-}
-
 /* Takes all memory of a drag; false: there is not enough. */
 GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) {
     gproj_form *form = drag->form;
     gproji_pool *pool = &drag->pool;
+    gproji_handle_list *list = &drag->handle;
     int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count,
             entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
     drag->state_size = gproj_state_size(form);
-    drag->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *drag->start);
-    drag->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *drag->vertex);
-    drag->weight = (double *)gproji_pool_take(pool, entries, sizeof *drag->weight);
-    drag->from = (double *)gproji_pool_take(pool, m, sizeof *drag->from);
-    drag->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *drag->gram);
+    list->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *list->start);
+    list->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *list->vertex);
+    list->weight = (double *)gproji_pool_take(pool, entries, sizeof *list->weight);
+    list->from = (double *)gproji_pool_take(pool, m, sizeof *list->from);
+    list->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *list->gram);
     drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
     drag->begun = (double *)gproji_pool_take(pool, n, sizeof *drag->begun);
     drag->last = (double *)gproji_pool_take(pool, n, sizeof *drag->last);
@@ -23964,13 +23496,12 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->lift = (double *)gproji_pool_take(pool, m * m, sizeof *drag->lift);
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
-    drag->amount = (double *)gproji_pool_take(pool, m, sizeof *drag->amount);
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
     drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return drag->start && drag->vertex && drag->weight && drag->from && drag->gram && drag->first && drag->begun &&
+    return list->start && list->vertex && list->weight && list->from && list->gram && drag->first && drag->begun &&
            drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
-           drag->work && drag->amount && drag->name && drag->schedule && drag->state;
+           drag->work && drag->name && drag->schedule && drag->state;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
@@ -23979,19 +23510,45 @@ GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
     gproji_destroy_object(drag, sizeof *drag);
 }
 
-/* Loads the positions as a solve does, and linearises. */
-GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handles *handles, gproj_error *error) {
+/* Copies the handles, loads the positions as a solve does, and linearises. */
+GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handles *h, gproj_error *error) {
     gproj_form *form = drag->form;
     gproj_system *s = form->system;
-    gproji_copy_handles(drag, handles, drag->first);
+    gproji_handle_list *list = &drag->handle;
+    int32_t k, j, c, handles = h->count, vertices = form->mesh->vertex_count;
+    int64_t e, first = h->start ? h->start[0] : 0;
+    double *column = drag->first; /* work: one number a vertex */
+    /* 1. Lists, and S'S. */
+    for (k = 0; k <= handles; ++k) list->start[k] = h->start ? h->start[k] - first : k;
+    memcpy(list->vertex, h->vertex + first, (size_t)list->start[handles] * sizeof *list->vertex);
+    for (e = 0; e < list->start[handles]; ++e) list->weight[e] = h->weight ? h->weight[first + e] : 1;
+    memset(column, 0, (size_t)vertices * sizeof *column);
+    for (k = 0; k < handles; ++k) {
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) column[list->vertex[e]] += list->weight[e];
+        for (j = 0; j < handles; ++j) {
+            double *product = &list->gram[(size_t)j * (size_t)handles + (size_t)k];
+            for (*product = 0, e = list->start[j]; e < list->start[j + 1]; ++e)
+                *product += list->weight[e] * column[list->vertex[e]];
+        }
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) column[list->vertex[e]] = 0;
+    }
+    /* 2. Positions of the handles: the caller's, or weighted means. */
+    gproji_gather_handles(drag, form->mesh->position, list->from);
+    for (k = 0; k < handles; ++k) {
+        double sum = 0;
+        for (e = list->start[k]; e < list->start[k + 1]; ++e) sum += list->weight[e];
+        for (c = 0; c < 3; ++c)
+            list->from[3 * k + c] = h->position ? h->position[3 * k + c] : sum != 0 ? list->from[3 * k + c] / sum : 0;
+    }
+    /* 3. The form as at the beginning of a solve. */
     form->solve.on = form->solve.finished = false;
     s->late = 0;
-    memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
+    memcpy(form->before, form->mesh->position, 3 * (size_t)vertices * sizeof *form->before);
     memcpy(drag->begun, s->x, (size_t)drag->variables * sizeof *drag->begun);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
     gproji_restart_planes(form);
-    memcpy(drag->first, s->x, 3 * (size_t)form->mesh->vertex_count * sizeof *drag->first);
+    memcpy(drag->first, s->x, 3 * (size_t)vertices * sizeof *drag->first);
     drag->structure = gproji_structure_of(s);
     if (!gproji_form_ready(form) || gproji_compile(s, true) != GPROJ_OK ||
         !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
@@ -23999,28 +23556,44 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
 }
 
-/* Is there anything that forbids a drag now? */
-GPROJI_INTERNAL bool gproji_may_drag(gproj_form *form, const gproj_handles *handles, const gproj_drag_options *options,
-                                     gproj_error *error) {
+/* Refuses a drag beside a solve or another drag, forces without values, bad options, handles that are none. */
+GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handles *h,
+                                             const gproj_drag_options *options, gproj_error *error) {
     const gproji_statics *statics;
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) {
-        gproji_pass_on(error, gproj_form_error(form));
-        return false;
-    }
+    int32_t k;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
+        return gproji_pass_on(error, gproj_form_error(form));
     statics = form->statics;
-    if (form->drag || form->system->solving) {
-        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "drag: a solve or another drag is under way, which must end before");
-    } else if (statics && gproji_is_on(form, statics->group) && !statics->started) {
-        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "drag: the forces have no values yet, solve the form before or set them");
-    } else if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
-                    options->residual_bound);
-    } else {
-        return gproji_handles_are_valid(form, handles, error);
+    if (form->drag || form->system->solving)
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "drag: a solve or another drag is under way, which must end before");
+    if (statics && gproji_is_on(form, statics->group) && !statics->started)
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "drag: the forces have no values yet, solve the form before or set them");
+    if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
+                           options->residual_bound);
+    if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
+    for (k = 0; k < h->count; ++k) {
+        int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
+        double size = 0;
+        if (e < 0 || e > end)
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k,
+                               "drag: the list of handle %d is no list", k);
+        for (; e < end; ++e) {
+            double weight = h->weight ? h->weight[e] : 1;
+            if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count)
+                return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, h->vertex[e],
+                                   "drag: handle %d: there is no vertex %d (the mesh has %d, counted from 0)", k,
+                                   h->vertex[e], form->mesh->vertex_count);
+            size += weight * weight;
+        }
+        if (!(size > 1e-100 && size < 1e100))
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
+                               "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
-    return false;
+    return h->position ? gproji_check_handle_positions(h->count, h->position, error) : GPROJ_OK;
 }
 
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
@@ -24028,7 +23601,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     gproj_drag *drag;
     gproj_code code;
     gproji_error_clear(error);
-    if (!gproji_may_drag(form, handles, options, error)) return NULL;
+    if (gproji_check_drag(form, handles, options, error) != GPROJ_OK) return NULL;
     drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag);
     if (!drag) {
         gproji_fail_memory(error);
@@ -24052,7 +23625,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
-/* The mesh is what it was before the drag. */
+/* Puts the mesh back to its positions before the drag. */
 GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
@@ -24063,41 +23636,13 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     form = drag->form;
     gproji_reset_mesh(form);
     memcpy(form->system->x, drag->begun, (size_t)drag->variables * sizeof *drag->begun);
-    gproji_read_state(form, drag->state, drag->state_size, NULL); /* not where rows were added, or after an error */
+    gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
     gproji_destroy_drag(drag);
 }
 
 /* -- release -- */
 
-/* The release's wishes: the handles where x says, fairness as it was at the beginning, all vertices where they were. */
-GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
-    gproj_form *form = drag->form;
-    gproj_system *s = form->system;
-    gproji_group *fairness = &s->group[form->drag_fairness], *handles = &s->group[form->drag_handles];
-    int32_t r, k, c;
-    int64_t e;
-    for (r = 0; r < fairness->row_count; ++r) {
-        fairness->row[r].constant = 0;
-        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
-    }
-    for (r = 0; r < handles->row_count; ++r) {
-        gproj_system_set_row(s, form->drag_handles, r, NULL, -drag->first[r]);
-        gproj_system_set_row_weight(s, form->drag_handles, r, gproji_drag_rest);
-    }
-    for (k = 0; k < drag->info.handles; ++k) {
-        double most = 0;
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e) most = gproji_fmax(most, fabs(drag->weight[e]));
-        for (e = drag->start[k]; e < drag->start[k + 1]; ++e)
-            for (c = 0; c < 3; ++c) {
-                int32_t row = 3 * drag->vertex[e] + c;
-                double weight = gproji_fmax(fabs(drag->weight[e]) / most, handles->row[row].weight);
-                gproj_system_set_row_weight(s, form->drag_handles, row, weight);
-                gproj_system_set_row(s, form->drag_handles, row, NULL, -s->x[row]);
-            }
-    }
-}
-
-/* Sets the schedules of the release, or puts back those of before. */
+/* Sets the schedules of the release, or puts back the earlier ones. */
 GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_form *form = drag->form;
     gproj_schedule fairness = {0, 0, 0}, handles = {0, 0, 0};
@@ -24113,27 +23658,58 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     handles.weight = on ? 1 : 0;
     fairness.decay = handles.decay = gproji_drag_decay;
     fairness.last = handles.last = GPROJI_DRAG_GUIDED;
-    gproj_system_set_schedule(form->system, form->drag_fairness, fairness);
-    gproj_system_set_schedule(form->system, form->drag_handles, handles);
+    gproj_system_set_schedule(form->system, form->release.fairness, fairness);
+    gproj_system_set_schedule(form->system, form->release.handles, handles);
 }
 
+/* Releases the form: solves it from the mesh before the drag, guided to x. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     gproj_result result;
+    gproj_system *s;
     gproj_form *form;
+    gproji_group *fairness, *at;
+    int32_t group, r, k, c;
+    int64_t e;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
     form = drag->form;
     form->drag = NULL;
     gproji_reset_mesh(form);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
     gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (gproji_form_ready(form)) {
-        gproji_set_release(drag);
-        gproji_schedule_release(drag, true);
-        result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
-        gproji_schedule_release(drag, false);
-    } else {
+    if (!gproji_form_ready(form)) {
         result = gproji_failed_result(gproj_form_error(form));
+        gproji_destroy_drag(drag);
+        return result;
     }
+    s = form->system;
+    group = form->release.handles;
+    fairness = &s->group[form->release.fairness], at = &s->group[group];
+    /* 1. Fairness as at the beginning. */
+    for (r = 0; r < fairness->row_count; ++r) {
+        fairness->row[r].constant = 0;
+        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
+    }
+    /* 2. All vertices stay, with a little weight; */
+    for (r = 0; r < at->row_count; ++r) {
+        gproj_system_set_row(s, group, r, NULL, -drag->first[r]);
+        gproj_system_set_row_weight(s, group, r, gproji_drag_rest);
+    }
+    /* those of handles go to their dragged places, with weights relative to the handle's largest. */
+    for (k = 0; k < drag->info.handles; ++k) {
+        int64_t end = drag->handle.start[k + 1];
+        double most = 0;
+        for (e = drag->handle.start[k]; e < end; ++e) most = gproji_fmax(most, fabs(drag->handle.weight[e]));
+        for (e = drag->handle.start[k]; e < end; ++e)
+            for (c = 0; c < 3; ++c) {
+                int32_t row = 3 * drag->handle.vertex[e] + c;
+                double weight = gproji_fmax(fabs(drag->handle.weight[e]) / most, at->row[row].weight);
+                gproj_system_set_row_weight(s, group, row, weight);
+                gproj_system_set_row(s, group, row, NULL, -s->x[row]);
+            }
+    }
+    gproji_schedule_release(drag, true);
+    result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+    gproji_schedule_release(drag, false);
     gproji_destroy_drag(drag);
     return result;
 }
