@@ -56,9 +56,106 @@
      gproj_form_units(form, centre, &scale);          // internal = (position - centre) * scale
      gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
 
-   WORDS   A wish is what guides: fairness, closeness. Wishes fade after half of the iterations, so that what must hold
-     can hold exactly: constraints, which are equations, and bounds, which are inequalities. A group is a set of rows of
-     one kind with a common weight. Residuals of a form are in mean edge lengths.
+   WORDS   The few of our own, each with the field's term:
+     must hold        a hard constraint: an equation phi = 0 or a bound (inequality) phi >= 0
+     wish             a soft constraint or energy, such as fairness; guides, then fades so that the rest holds exactly
+     row, group       one scalar equation; the rows of one kind, with a common name, weight and schedule
+     element, place   the vertex, edge or face that a row belongs to; the kind of thing that an index counts
+     schedule         the weight in each iteration (continuation)
+     refresh          relinearisation of rows that are not quadratic, before each iteration
+     merit            sum w^2 phi^2, the objective of the line search
+     settle           variable projection: normals and axes take their best values for the vertices as they are
+     bend             second-order correction of a step
+     stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
+     brake            a damping of single variables that acts only after steps have failed
+     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way
+     attempt          a restart of a smooth solve with other stiffness; within one iteration: a factorisation
+     verdict          the outcome of a solve and a sentence about it
+     spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
+     cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
+     frame            the iterations of a solve between two pictures (gproj_step)
+   Residuals of a form are in mean edge lengths.
+
+   HOW IT WORKS   Guided projection (Tang et al. 2014) is Newton's method for more unknowns than equations.
+
+     1. Quadratic by new variables. "This quad is planar" is a cubic equation in the coordinates. With a unit normal n
+     for the face as three more variables the equations become quadratic, one for each edge i j and one for n:
+         n'(v_i - v_j) = 0,    n'n = 1.
+     Points on the axes of circles, axes of cones, force densities and common lengths are such variables, too. Hence all
+     constraints are rows                                                                                (paper, eq. 1)
+         phi(x) = 1/2 x'H x + b'x + c = 0,    grad phi = H x + b,
+     with a few numbers each: cheap to evaluate, trivial to differentiate. Conditions that stay worse than quadratic (a
+     vertex on a curve, an area, a volume) are replaced by their tangents at x, anew in each iteration.
+     2. Linearise. A step dx should satisfy phi + g'dx = 0 in all rows, g = grad phi(x). Planar quads have 6 unknowns a
+     face (one vertex and one normal, on average) and 5 equations, one of which follows from the others: many dx do.
+     3. The least step. Rounding turns redundant equations into contradictions, so nobody solves them literally. Instead
+         sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2                                                           (paper, eq. 3)
+     over the rows of constraints and wishes is made smallest (Levenberg 1944, Marquardt 1963):
+         (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi g,
+     one sparse, symmetric, positive definite matrix and one factorisation (>>cholesky). Among all dx that satisfy the
+     rows, eps chooses the shortest; unknowns that no row mentions stay put.
+     4. Quadratic at the end. A full step leaves exactly 1/2 dx'H dx in each quadratic row, besides a share of about
+     (eps/w)^2 in phi. Near a solution |dx| is proportional to the residual, hence 1e-2 becomes 1e-4, 1e-8, 1e-16. To
+     keep out of the way, eps follows the residual from 1e-3 down to 1e-5. Far from a solution a full step may do harm:
+     the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows (>>loop).
+     5. Weights against eps. A weight multiplies the row and enters squared: with w = 1 and eps = 1e-3 a constraint is a
+     million times stronger than the pull towards staying put, with w = eps it goes half way only. Constraints that
+     agree hold at any weight well above eps. Ratios matter if rows compete: constraints at 1, wishes at 0.01 to 0.3.
+     6. Wishes fade. Fairness and closeness choose among the meshes that satisfy the constraints. A wish that stayed on
+     would bias the end: the sum above balances it against the constraints. So wishes lead in the first half of the
+     iterations, then weigh 0 (unless their schedules say otherwise), and the constraints alone converge as in 4.
+     7. Inequalities. A bound phi >= 0 joins the sum if it is violated, or would be by the step; the step is then found
+     again (an active set). The paper's squared dummy variables are not needed.
+
+     gproj_solve_options.smooth makes this work on fine meshes. The shortest step is a bad guide there: the nearest mesh
+     with flat faces is a sawtooth. So, with a stiffness k,
+     - the smooth metric adds k^2 |dx_i - dx_j|^2 along edges, and a little |dx_i|^2: neighbours move together, nothing
+       is biased. k follows how well the linearised rows foretold the last step, and rests near the solution;
+     - settling (Golub, Pereyra 1973) refits normals and axes to the vertices after each step. Carried along linearly,
+       they would report every rotation as an error and cut good steps short;
+     - bending adds a second-order correction. The error 1/2 dx'H dx of a step is known exactly, and the factor at hand
+       turns it into a correction for the price of a solve;
+     - the corners' safeguards (>>corners) are bounds: each corner keeps a part of its area. Exactly planar faces may be
+       folded, crossed or empty; these may not. If no step exists with the safeguards they let go; the verdict tells.
+
+     Projection ends at some solution near its path, not at the best. gproj_solve_options.nearest goes on to a local
+     minimum of the wishes' sum E, such as closeness, among all x that satisfy the constraints: grad E + sum y g = 0,
+     with multipliers y that hold the constraints against wishes which need not fade. Allow 30 iterations.
+
+   FROM THE PAPER TO THE CODE   Each line: section or equation, function, program in examples/, and GPROJT_TEST(name) in
+   the file tests/test_....c. A dash: no program.
+     (1)     quadratic rows     gproj_system_add_row          custom_constraint    system: values_and_gradients_by_hand
+     (2)     wishes, energy     gproj_system_add_group        -                    loop: schedules
+     (3)     one step           gproj_system_solve            -                    system: steps_of_random_systems
+     3.1     planar faces       gproj_add_planarity           planarize            form: real_meshes_become_planar
+     3.1     edge lengths       gproj_add_lengths             -                    shape: lengths
+     3.1     equilibrium        gproj_add_equilibrium         thrust_network       statics: domes_stand_by_compression
+     3.1     compression alone  gproj_add_compression         self_supporting_roof statics: planar_faces_and_compression
+     3.1     bounds on stress   gproj_add_stress_bounds       -                    statics: stresses_stay_within_bounds
+     3.2     fairness           gproj_add_fairness            boundary_fill        form: fairness_makes_smooth
+     3.2     in tangent planes  gproj_add_tangential_fairness hybrid_fairing       form: tangential_fairness_evens_out
+     3.2     of the Gauss image gproj_add_gauss_fairness      hybrid_fairing       form: gauss_fairness
+     3.3     vertices on curves gproj_add_gliding             courtyard            form: gliding_on_a_curve
+     3.3     near a surface     gproj_add_reference           subdivision_design   form: reference_draws_near
+     3.4     first forces       gproj_find_forces             -                    statics: best_forces
+     3.4     a filled boundary  gproj_mesh_fill               boundary_fill        fill: random_curves
+     3.5     circular faces     gproj_add_circularity         circular_mesh        shape: circular_faces
+     3.5     conical vertices   gproj_add_conicality          conical_mesh         offset: conical_meshes
+     3.5     equal areas        gproj_add_equal_areas         equal_areas          shape: areas_become_more_equal
+     3.5     volume             gproj_add_volume              volume               shape: volume_is_reached
+     3.5     fair forces        gproj_add_force_fairness      courtyard            statics: fair_forces
+     3.5     cost, total area   gproj_add_cost                -                    size: total_area_and_cost_are_reached
+     3.5     bounds on sizes    gproj_add_length_bounds       courtyard            size: lengths_and_areas_in_a_range
+     Fig. 2  coarse handles     gproj_mesh_subdivide          subdivision_design   drag: points_of_a_cage
+     Fig. 8  parallelograms     gproj_add_parallelograms      parallelograms       shape: quads_become_parallelograms
+     Fig. 10 closeness          gproj_add_closeness           planarize_compare    form: closeness_limits_the_way
+     Fig. 13 lifting            gproj_add_lifting             greenhouse           boundary: lifting
+     Fig. 13 right angles       gproj_add_orthogonal_boundary greenhouse           boundary: boundary_at_right_angles
+     4       dragging           gproj_drag_begin              drag                 drag: the_change_is_the_smallest
+
+   Where the paper prints something else: the last term in its normal equations needs eps^2, the sign in its equilibrium
+   is reversed, its volume is exact for triangles only, and its conical rows hold trivially at c = 0. The comments below
+   give the rows that are solved.
 
    CONTENTS (search for the tag)
      the interface
@@ -315,7 +412,8 @@ typedef struct gproj_cholesky gproj_cholesky;
 typedef enum gproj_ordering {
     GPROJ_ORDERING_BEST,       /* one of the next two: dissection where it is likely to pay in four factorisations */
     GPROJ_ORDERING_AMD,        /* approximate minimum degree */
-    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the middle */
+    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the
+                                  middle */
     GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
     GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
@@ -409,8 +507,8 @@ typedef struct gproj_least_squares_result {
     int32_t factorisations;
     int32_t at_bounds; /* variables that are equal to a bound */
     double residual;   /* |A x - b|, Euclidean */
-    /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2 x
-       is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
+    /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2
+       x is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
        divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
        is nearest to 0; both in units of the variables in which the columns of A have length 1. */
     double kkt;
@@ -456,8 +554,8 @@ typedef enum gproj_kind {
 } gproj_kind;
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
-   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at most).
-   So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
+   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at
+   most). So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
@@ -545,8 +643,8 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
        roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
-       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most 1e-11,
-       the others 1e-8. */
+       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most
+       1e-11, the others 1e-8. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
                            less where steps fall short near the end) */
@@ -556,8 +654,9 @@ typedef struct gproj_solve_options {
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
     bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
-    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any resolution.
-       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
+    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any
+       resolution. Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is
+       set. */
     bool smooth;
     /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
        must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
@@ -567,7 +666,8 @@ typedef struct gproj_solve_options {
     bool nearest;
 } gproj_solve_options;
 
-/* How often a mesh is spoiled, compared with its original. Constraints may hold exactly on a mesh that cannot be built. */
+/* How often a mesh is spoiled, compared with its original. Constraints may hold exactly on a mesh that cannot be
+   built. */
 typedef struct gproj_spoiled {
     int32_t turned;          /* faces turned over: vectorial area against the original's */
     int32_t crossed;         /* faces that cross themselves (bow-ties), and did not */
@@ -588,13 +688,13 @@ typedef struct gproj_result {
     double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
     double tolerance;   /* what it was compared with */
     double step;        /* largest |dx| of the last step */
-    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the tangent space of what must hold, over
-       the norm without projection: 0 at a minimum, 1 where nothing has been gained. Else 0. */
+    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the tangent space of what must hold,
+       over the norm without projection: 0 at a minimum, 1 where nothing has been gained. Else 0. */
     double optimality;
     int32_t worst_group; /* where that residual is; -1 where nothing must hold */
     int32_t worst_element;
-    /* Of a form, at the end of a solve: compared with the mesh at gproj_form_create, so that whatever moved it since then
-       counts. A result is usable where the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
+    /* Of a form, at the end of a solve: compared with the mesh at gproj_form_create, so that whatever moved it since
+       then counts. A result is usable where the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
     gproj_spoiled spoiled;
     double seconds[GPROJ_PHASE_COUNT];
     char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; of a form also what else
@@ -854,13 +954,13 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
    >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
 
    The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
-   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count +
-   edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face f,
-   at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
+   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count
+   + edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face
+   f, at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
        Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
        Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
-   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its polylines
-   are refined in it, the rest of the polyline is kept.
+   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its
+   polylines are refined in it, the rest of the polyline is kept.
 
    Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
        face            mean of its corners
@@ -870,9 +970,10 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
                        Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
        vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
        vertex, S > 2   v, as for corners
-   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and vertices
-   are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that become smooth
-   there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the boundary. */
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and
+   vertices are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that
+   become smooth there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the
+   boundary. */
 typedef enum gproj_scheme {
     GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
     GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
@@ -883,8 +984,8 @@ typedef struct gproj_subdivide_options {
     gproj_scheme scheme;
     int32_t levels;        /* 1 to 14; 0 means 1 */
     int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
-    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
-       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all
+       are always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
     int32_t crease_count;
     const int32_t *creases;
     const double *sharpness;
@@ -895,11 +996,11 @@ typedef struct gproj_subdivide_options {
     bool round_corners;
 } gproj_subdivide_options;
 
-/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
-   the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
-   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
-   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
-   are owned by the stencil. */
+/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh,
+   with the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order;
+   their sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6
+   entries for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All
+   arrays are owned by the stencil. */
 typedef struct gproj_stencil {
     int32_t row_count;
     int32_t column_count;
@@ -908,13 +1009,13 @@ typedef struct gproj_stencil {
     const double *weight;
 } gproj_stencil;
 
-/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil` may
-   be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Of
-   one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels take
-   the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level.
-   Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme
-   GPROJ_ERROR_ARGUMENT where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners;
-   GPROJ_ERROR_SIZE, before memory is taken, where a level would have more than a mesh can. */
+/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil`
+   may be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure.
+   Of one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels
+   take the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level. Refuses:
+   GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme GPROJ_ERROR_ARGUMENT
+   where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners; GPROJ_ERROR_SIZE, before
+   memory is taken, where a level would have more than a mesh can. */
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
 
@@ -1001,8 +1102,8 @@ typedef struct gproj_measures {
 /* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
    `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
-/* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original counts
-   as scaled by the least of their factors. Takes no memory. */
+/* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original
+   counts as scaled by the least of their factors. Takes no memory. */
 GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original);
 /* The planarity of faces alone, a part of the time of all measures: returns planarity_max. `planarity` (as above) and
    `mean`, planarity_mean, may be NULL. */
@@ -1013,10 +1114,10 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-offset   Parallel meshes at constant distance, and the support structure between them.
 
-   Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar (Pottmann,
-   Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant distance,
-   conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is, gproj_measure_offset
-   tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
+   Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar
+   (Pottmann, Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant
+   distance, conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is,
+   gproj_measure_offset tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
 
 /* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
    orthogonal to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round
@@ -1040,11 +1141,13 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                                          gproj_error *error);
 
 typedef struct gproj_offset_measures {
-    /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial area. */
+    /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial
+       area. */
     double face_distance_min, face_distance_max;
     double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, of vertices with a face, in the mesh's units */
-    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of gproj_mesh_support,
-       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths of the mesh. */
+    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of
+       gproj_mesh_support, the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge
+       lengths of the mesh. */
     double parallel_max, support_planarity_max;
     int32_t reversed_edges; /* they run against their edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
@@ -1091,12 +1194,12 @@ typedef struct gproj_fill_info {
    its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
    fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
    A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
-   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where the
-   cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves
-   nothing better.
+   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where
+   the cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this
+   leaves nothing better.
    `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
-   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
-   with an odd sum, with what to change, and curves for which no filling was found. */
+   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1
+   or with an odd sum, with what to change, and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
@@ -1111,8 +1214,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do positions
-   that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
+/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
+   positions that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1198,8 +1301,8 @@ GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double wei
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight);
 
-/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower bound,
-   a max of 0 or INFINITY no upper one.
+/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower
+   bound, a max of 0 or INFINITY no upper one.
 
    Lengths of these edges (as for gproj_add_lengths):
        (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
@@ -1273,19 +1376,19 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    gproj_measure.
 
    options->smooth (the command line's default) does more for meshes of any resolution:
-   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of by
-     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that satisfy the
-     linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is biased:
-     no closeness is added. Forces are measured, too, where steps fail.
-   - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent by
-     what the linearised rows have missed: full steps are good ones then, and their number hardly depends on how fine the mesh
-     is.
-   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50 iterations
-     or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and edges keep a
-     length. The rows come as they are needed, as the group "corners". Where no step is found with them they are let go;
-     gproj_result.spoiled tells what that has cost.
-   - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to three
-     times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
+   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of
+     by |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that
+     satisfy the linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is
+     biased: no closeness is added. Forces are measured, too, where steps fail.
+   - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
+     by what the linearised rows have missed: full steps are good ones then, and their number hardly depends on how fine
+     the mesh is.
+   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50
+     iterations or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and
+     edges keep a length. The rows come as they are needed, as the group "corners". Where no step is found with them
+     they are let go; gproj_result.spoiled tells what that has cost.
+   - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to
+     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -1302,15 +1405,15 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
            draw(mesh);
        }
 
-   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step takes
-   as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0 seconds: one,
-   without a clock. It writes the positions and returns how the solve stands: GPROJ_TIME_OUT while it is on, then its
-   verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one gproj_solve.
-   Between two frames weights may be changed and targets moved; vertices are moved by targets, or before another
-   gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve, gproj_drag_begin
-   and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure, such as
-   seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts the seconds
-   inside all steps. */
+   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step
+   takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0
+   seconds: one, without a clock. It writes the positions and returns how the solve stands: GPROJ_TIME_OUT while it is
+   on, then its verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
+   gproj_solve. Between two frames weights may be changed and targets moved; vertices are moved by targets, or before
+   another gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve,
+   gproj_drag_begin and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure,
+   such as seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts
+   the seconds inside all steps. */
 GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_step_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
@@ -1319,8 +1422,8 @@ GPROJ_API void gproj_step_stop(gproj_form *form);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
 
-   Every edge v_i v_j has a force density w_ij, a variable: it pushes v_i by w_ij (v_i - v_j) and v_j by the opposite, so
-   w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
+   Every edge v_i v_j has a force density w_ij, a variable: it pushes v_i by w_ij (v_i - v_j) and v_j by the opposite,
+   so w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
        sum_j w_ij (v_i - v_j) + f_i = 0                     (paper 3.1; with loads that point down, along -z)
    f_i is the load on the vertex. Units are the caller's: lengths as in the mesh, loads in any unit of force, and forces
    come out in that one. Inside, both are normalised, so units do not change the shape. Edges between two pinned
@@ -1346,8 +1449,8 @@ typedef struct gproj_supports {
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
    forces start from the solution of gproj_find_forces, drawn to those of a shallow dome, so that the shape has to move
-   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
-   first. Later solves go on from the forces they find. */
+   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a
+   dome first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -1378,11 +1481,11 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
    gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): what is left in each vertex, over the mean
    load. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
-/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is what those of gproj_find_forces leave in
-   each vertex, over the mean load, 0 along the axes of supports. As virtual displacements of the vertices it is a proof
-   (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces w_ij (v_i - v_j)'(d_i - d_j) >= 0, which is never
-   the opposite. It holds for these positions only; others may be balanced. d is 0, but for rounding, where forces are
-   found. */
+/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is what those of gproj_find_forces
+   leave in each vertex, over the mean load, 0 along the axes of supports. As virtual displacements of the vertices it
+   is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces w_ij (v_i - v_j)'(d_i - d_j) >= 0,
+   which is never the opposite. It holds for these positions only; others may be balanced. d is 0, but for rounding,
+   where forces are found. */
 GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
 
 typedef struct gproj_forces {
@@ -1401,14 +1504,14 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-drag   Dragging: a form follows one or several handles at screen rate, and what must hold goes on holding.
 
-   gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the meshes
-   that satisfy it (paper, section 2). gproj_drag_move then finds, with what has been prepared,
+   gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the
+   meshes that satisfy it (paper, section 2). gproj_drag_move then finds, with what has been prepared,
        the dx with G dx = 0 and S'dv = (S'S) d that has the smallest |dv|^2 + 0.0001 |da|^2
    where d is how far the handles have been moved, dv the part of dx that belongs to the vertices, da its other part
-   (normals, axes, forces), and S the weights of the handles' vertices, one column a handle. So a vertex goes where it is
-   dragged to, and a point of a coarse cage takes its fine vertices along, S d if nothing stands against it. Where the
-   handles cannot follow fully, they follow in the sense of least squares. The mesh is dragged out of what must hold by the
-   square of the drag only: half a drag, a quarter of the error. gproj_drag_end projects that away.
+   (normals, axes, forces), and S the weights of the handles' vertices, one column a handle. So a vertex goes where it
+   is dragged to, and a point of a coarse cage takes its fine vertices along, S d if nothing stands against it. Where
+   the handles cannot follow fully, they follow in the sense of least squares. The mesh is dragged out of what must hold
+   by the square of the drag only: half a drag, a quarter of the error. gproj_drag_end projects that away.
 
        gproj_drag *drag = gproj_drag_begin(form, &handles, NULL, &error);
        while (mouse_is_down()) {
@@ -1420,10 +1523,10 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
    While it lasts the form must not be solved, restored or destroyed, and nothing be added to it. */
 typedef struct gproj_drag gproj_drag;
 
-/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those of
-   its column of the subdivision. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column, t->weight,
-   NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL: handle k is
-   vertex[k]. weight NULL: all are 1. */
+/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those
+   of its column of the subdivision. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column,
+   t->weight, NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL:
+   handle k is vertex[k]. weight NULL: all are 1. */
 typedef struct gproj_handles {
     int32_t count;
     const int64_t *start; /* count + 1 entries, start[0] >= 0 */
@@ -1434,9 +1537,9 @@ typedef struct gproj_handles {
 } gproj_handles;
 
 typedef struct gproj_drag_options {
-    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew at
-       the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs an
-       evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew
+       at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs
+       an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -1461,37 +1564,37 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
    handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
-   not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
+   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position
+   is not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
-/* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
-   all rows. */
+/* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation
+   of all rows. */
 GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
 GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
-/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over under a
-   pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go to where they
-   are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its shape, so that
-   features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The form's own wishes
-   rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag handles" to the form,
-   so it is analysed anew. Where there was no room to follow (gproj_drag_residual well above 0.1) the handles may end far
-   from where they were dragged. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
-   mesh is as before the drag. */
+/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over
+   under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go
+   to where they are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its
+   shape, so that features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The
+   form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and
+   "drag handles" to the form, so it is analysed anew. Where there was no room to follow (gproj_drag_residual well above
+   0.1) the handles may end far from where they were dragged. Where the result says that 10 iterations were not enough,
+   gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were added
-   during the drag, or the form has met an error, the mesh and all variables are put back. */
+/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were
+   added during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
-   weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it is.
-   What follows from a restored state is what would have followed when it was saved: to the bit on the same processor and
-   build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last
-   digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same form, or in
-   one that the same calls have made from the same mesh.
+   weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it
+   is. What follows from a restored state is what would have followed when it was saved: to the bit on the same
+   processor and build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for
+   the last digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same
+   form, or in one that the same calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
