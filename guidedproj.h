@@ -5,15 +5,15 @@
      Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, static equilibrium, compression
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
-     machine precision, and you get an honest verdict: what holds, how exactly, and where it does not. For editors:
-     vertices are dragged at screen rate while everything holds, solves go on frame by frame, states are saved for undo.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their combinatorics, closed
-     curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with bounds, and
-     projection onto any system of quadratic equations and inequalities.
+     machine precision, and you get an honest verdict: which constraints hold, how exactly, and the worst element by
+     name. For editors: vertices are dragged at screen rate while everything holds, solves go on frame by frame, states
+     are saved for undo. Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their
+     combinatorics, closed curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with
+     bounds, and projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them there
-       are >>api-edit, >>api-subdivide and >>api-fill);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics (to change them, see >>api-edit,
+       >>api-subdivide and >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -88,7 +88,8 @@
      vertex on a curve, an area, a volume) are replaced by their tangents at x, anew in each iteration.
      2. Linearise. A step dx should satisfy phi + g'dx = 0 in all rows, g = grad phi(x). Planar quads have 6 unknowns a
      face (one vertex and one normal, on average) and 5 equations, one of which follows from the others: many dx do.
-     3. The least step. Rounding turns redundant equations into contradictions, so nobody solves them literally. Instead
+     3. The least step. Rounding turns redundant equations into contradictions, so they are not solved literally.
+     Instead
          sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2                                                           (paper, eq. 3)
      over the rows of constraints and wishes is made smallest (Levenberg 1944, Marquardt 1963):
          (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi g,
@@ -228,17 +229,18 @@
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
-   MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
-     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
+   MEMORY Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
+   back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
+   nothing, unless
      during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
      sets coefficients of planarity, fairness or their like (which rows have in common before). Every allocation may
-     fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a
-     curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and
-     surfaces that were added to it, and a drag to its form.
+     fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a mesh, a curve, a
+     stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and surfaces added to
+     it, a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
-     by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
-     drag are one object in this. Reading an object that no one changes is always safe.
+     by different threads at the same time; one object by one thread at a time. A form with its mesh, system and drag
+     counts as one object. Reading an object that no one changes is always safe.
 
    DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
      run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
@@ -250,7 +252,7 @@
 
    REFERENCES
      Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4),
-     2014. Others stand in the sections that are based on them. */
+     2014. Other sources are named in the sections based on them. */
 #ifndef GUIDEDPROJ_H
 #define GUIDEDPROJ_H
 
@@ -306,9 +308,9 @@ typedef struct gproj_allocator {
 } gproj_allocator;
 
 /* Threads. `run` calls task(data, index) once for each index in 0..count-1, in any order, on any threads, and
-   returns when all calls have returned. NULL: a plain loop. How work is cut into tasks depends on the problem
-   alone, and so do the results, bit for bit: neither the number of threads nor their speed matters. The same loops
-   come in every iteration: threads that get the same indices again have their data in the cache. */
+   returns when all calls have returned. NULL: a plain loop. The problem alone decides how work is cut into tasks, and
+   so the results, bit for bit: neither the number of threads nor their speed matters. Each iteration runs the same
+   loops: threads that get the same indices again find their data in the cache. */
 typedef void (*gproj_task)(void *data, int32_t index);
 typedef struct gproj_parallel {
     void (*run)(void *user, int32_t count, gproj_task task, void *data);
@@ -328,7 +330,8 @@ typedef struct gproj_host {
     gproj_clock clock;
 } gproj_host;
 
-/* What an object holds, in bytes, and how many allocations and reallocations it has asked for so far. */
+/* The bytes that an object holds and has held at most, and the allocations and reallocations it has asked for so
+   far. */
 typedef struct gproj_memory {
     size_t used;
     size_t peak;
@@ -358,7 +361,7 @@ typedef enum gproj_code {
     GPROJ_CODE_FORCE_INT = 0x7fffffff
 } gproj_code;
 
-/* What the index of an error, of a row or of a group's worst row counts. */
+/* The kind of element that the index of an error, a row or a group's worst row counts. */
 typedef enum gproj_place {
     GPROJ_PLACE_NONE,
     GPROJ_PLACE_VERTEX,
@@ -379,11 +382,11 @@ enum {
 typedef struct gproj_error {
     gproj_code code;
     gproj_place place;
-    int64_t index;                    /* from 0 (lines: from 1); -1 where there is none */
+    int64_t index;                    /* from 0 (lines: from 1); -1: no index */
     char message[GPROJ_MESSAGE_SIZE]; /* one sentence, UTF-8, without a newline; "" for GPROJ_OK */
 } gproj_error;
 
-/* The general sentence of a code ("out of memory"), a constant string. */
+/* The general sentence for a code ("out of memory"), a constant string. */
 GPROJ_API const char *gproj_code_string(gproj_code code);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -394,8 +397,8 @@ enum {
 };
 
 /* Reads a decimal number ([+-]digits[.digits][e[+-]digits], also "inf" and "nan" in any case, so that readers
-   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0
-   where there is no number. Numbers too large become infinite. */
+   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0 if there
+   is no number. Numbers too large become infinite. */
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value);
 
 /* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns its length. */
@@ -404,17 +407,16 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-cholesky   Sparse Cholesky factorisation P A P' = L L' of symmetric positive definite matrices.
 
-   Usable by itself. Analyse a pattern once, then factor any number of matrices that have this pattern; neither
-   the second and later gproj_cholesky_factor nor gproj_cholesky_solve allocates. One object is used by one
-   thread at a time. */
+   Usable by itself. Analyse a pattern once, then factor any matrices with this pattern; neither the second and later
+   gproj_cholesky_factor nor gproj_cholesky_solve allocates. One object is used by one thread at a time. */
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_BEST,       /* one of the next two: dissection where it is likely to pay in four factorisations */
+    GPROJ_ORDERING_BEST,       /* one of the next two: dissection if it is likely to pay in four factorisations */
     GPROJ_ORDERING_AMD,        /* approximate minimum degree */
     GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the
                                   middle */
-    GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
+    GPROJ_ORDERING_GIVEN,      /* options.permutation */
     GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
 } gproj_ordering;
@@ -426,7 +428,7 @@ typedef struct gproj_cholesky_options {
     bool disable_postorder;     /* keep the given order exactly; supernodes become small */
 } gproj_cholesky_options;
 
-/* What an analysis predicts and a factorisation has done. */
+/* Predictions of an analysis, and the state after a factorisation. */
 typedef struct gproj_cholesky_info {
     int32_t columns;        /* n */
     int32_t supernodes;     /* after relaxation */
@@ -434,8 +436,8 @@ typedef struct gproj_cholesky_info {
     int64_t exact_entries;  /* the same without relaxation */
     double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
     size_t factor_bytes;    /* memory for the values of L */
-    size_t work_bytes;      /* memory for the work arrays of factor and solve */
-    int32_t failed_column;  /* of A, where the last factorisation met a pivot that is not > 0; else -1 */
+    size_t work_bytes;      /* memory for the work arrays in factor and solve */
+    int32_t failed_column;  /* the column of A whose pivot was not > 0 in the last factorisation; else -1 */
     const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
@@ -453,13 +455,13 @@ GPROJ_API const gproj_error *gproj_cholesky_error(const gproj_cholesky *cholesky
 GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky);
 
 /* Analyses the pattern of an n x n symmetric matrix in compressed columns: rows row[start[j]..start[j+1]-1] in
-   column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the
-   lower or in the upper triangle (all in one of the two, or mixed); diagonal entries may be left out (then 0).
-   Repeated entries are summed. `options` may be NULL. The arrays are not needed after the call. */
+   column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the lower or
+   the upper triangle (mixed or not); diagonal entries may be left out (then 0). Repeated entries are summed. `options`
+   may be NULL. The arrays are not needed after the call. */
 GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
                                             const int32_t *row, const gproj_cholesky_options *options);
 
-/* Factors the matrix with these values, in the order of `row` at the analysis. */
+/* Factors the matrix with these values, ordered like `row` at the analysis. */
 GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, const double *values);
 
 /* Solves A X = B for `count` right-hand sides, each of n contiguous numbers. x may be b. */
@@ -480,24 +482,24 @@ GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *choles
 
        minimise  1/2 |A x - b|^2 + 1/2 damping^2 |x|^2   subject to  lower <= x <= upper
 
-   For example the forces of a mesh that stands by compression alone: one variable x_e >= 0 for each edge, three rows
-   for each vertex without support. A may have dependent columns; where the solution is then not unique, one that is
-   in the middle of the possible ones, or near the start, is found. */
+   For example the forces in a mesh that stands by compression alone: one variable x_e >= 0 for each edge, three rows
+   for each vertex without support. A may have dependent columns; if the solution is then not unique, one in the middle
+   of the possible ones, or near the start, is found. */
 typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
-    const int32_t *row;   /* of each entry, in any order; entries of the same place are summed */
+    const int32_t *row;   /* of each entry, in any order; entries at the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
     const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
-    double damping;       /* >= 0, in the units of the entries of A; makes the solution unique */
+    double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
     GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
     GPROJ_LEAST_SQUARES_LIMIT, /* factorisations or digits ran out: x is the best point met, see kkt, which may be small
-                                   where large entries cancel and what is left is less than their rounding */
+                                  if large entries cancel and the rest is less than their rounding */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
     GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_least_squares_outcome;
@@ -507,24 +509,24 @@ typedef struct gproj_least_squares_result {
     int32_t factorisations;
     int32_t at_bounds; /* variables that are equal to a bound */
     double residual;   /* |A x - b|, Euclidean */
-    /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2
-       x is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
-       divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
-       is nearest to 0; both in units of the variables in which the columns of A have length 1. */
+    /* Optimality (Karush, Kuhn, Tucker): x is exactly within the bounds, and each entry of the gradient g = A'(A x - b)
+       + damping^2 x is 0 for a variable between its bounds, >= 0 at a lower and <= 0 at an upper bound. kkt is the
+       largest violation, divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y| for the y nearest to 0
+       within the bounds; both in units of the variables that give the columns of A length 1. */
     double kkt;
-    gproj_memory memory; /* without that of the factorisation: see factor_bytes, work_bytes */
+    gproj_memory memory; /* without the factorisation's: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
     size_t work_bytes;
 } gproj_least_squares_result;
 
-/* Solves the problem. x, `columns` numbers: where to start; at the end the solution. A start of zeros is good. A start
+/* Solves the problem. x, `columns` numbers: the start, and at the end the solution. Zeros are a good start. A start
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
-   zeros. `host`, `result` and `error` may be NULL. The work are factorisations of a matrix with the pattern of A'A, so
-   a row of A must not have very many entries. Usual are 5 to 20; up to 30 where most bounds matter and the residual
-   stays large; there are never more than 80. Where A has dependent columns and damping is 0, nothing is added to the
-   problem: 1e-12 of the diagonal of A'A stands in the matrix of each step, but not in the conditions that the solution
-   satisfies. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
-   for what is wrong with the problem, GPROJ_ERROR_MEMORY. */
+   zeros. `host`, `result` and `error` may be NULL. The work is in factorisations of a matrix with the pattern of A'A,
+   so a row of A must not have very many entries. Usual are 5 to 20; up to 30 if most bounds matter and the residual
+   stays large; there are never more than 80. If A has dependent columns and damping is 0, nothing is added to the
+   problem: the matrix in each step has 1 + 1e-12 times the diagonal of A'A, the conditions that the solution satisfies
+   do not. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for
+   a wrong problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -533,17 +535,16 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Variables x, and rows
        phi(x) = sum_t a_t x_i(t) x_j(t) + sum_t b_t x_i(t) + c                                  (paper, eq. 1)
-   in groups. A group of kind GPROJ_CONSTRAINT must hold: phi = 0. A group of kind GPROJ_BOUND must hold, too, but
-   phi >= 0 is enough. A group of kind GPROJ_WISH guides: the sum of its phi^2 should be small, and it fades so that
-   the constraints can be met exactly. A group's weight multiplies its rows, so it enters squared. One step from x
-   solves                                                                                       (paper, eq. 3)
+   in groups. A GPROJ_CONSTRAINT must hold: phi = 0. A GPROJ_BOUND must hold, too, but phi >= 0 is enough. A GPROJ_WISH
+   guides: the sum of phi^2 over the group should be small, and it fades so that the constraints can be met exactly. A
+   group's weight multiplies its rows, so it enters squared. One step from x solves (paper, eq. 3)
        (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi(x) g,    g = grad phi(x),
    over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
 
-   The row of a bound counts by its violation, min(phi, 0), in residual and merit. It has a part in the sums where it is
-   violated; and where a step would violate it, the step is found again with it, and without rows that would only hold
-   the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
-   iterations, and nothing where they are far from being reached. */
+   Bounds count by their violation, min(phi, 0), in residual and merit. A row takes part in the sums if it is violated;
+   if a step would violate more rows, the step is found again with these, and without rows that would only hold it back
+   (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some iterations, and nothing as long as
+   they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
 typedef enum gproj_kind {
@@ -568,12 +569,12 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
-/* Called before each iteration for groups whose rows depend on x in another way than quadratic (closest points, tangent
-   frames): reads x, and replaces its rows by gproj_system_set_row. Must not add anything to the system. */
+/* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
+   and replaces the rows by gproj_system_set_row. Must not add anything to the system. */
 typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
 
 enum {
-    GPROJ_NAME_SIZE = 32 /* of a group's name, with the final NUL */
+    GPROJ_NAME_SIZE = 32 /* for a group's name, with the final NUL */
 };
 
 typedef struct gproj_group {
@@ -582,14 +583,14 @@ typedef struct gproj_group {
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
        which costs half a solve more per row. */
     bool global;
-    gproj_place place; /* what the element numbers of its rows count */
+    gproj_place place; /* the kind of element that the rows' element numbers count */
     gproj_schedule schedule;
     gproj_refresh refresh; /* NULL: the rows are as they were added */
     void *refresh_user;
 } gproj_group;
 
-/* The state of a group at the current x, in the units of its rows, without weights. phi stands for min(phi, 0) in a
-   bound: how far it is violated. */
+/* A group at the current x, in the units of the rows, without weights. In a bound phi stands for min(phi, 0), the
+   violation. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -597,8 +598,8 @@ typedef struct gproj_group_info {
     gproj_schedule schedule;
     int32_t rows;
     double max;            /* largest |phi| */
-    double rms;            /* root of the mean of phi^2 */
-    int32_t worst_row;     /* where the largest is; -1 without rows */
+    double rms;            /* root mean square of phi */
+    int32_t worst_row;     /* the row with the largest |phi|; -1 without rows */
     int32_t worst_element; /* the element number of that row */
 } gproj_group_info;
 
@@ -606,7 +607,7 @@ typedef enum gproj_phase {
     GPROJ_PHASE_ANALYSE,  /* pattern, ordering, symbolic factorisation: once */
     GPROJ_PHASE_REFRESH,  /* refresh callbacks, evaluation of rows */
     GPROJ_PHASE_ASSEMBLE, /* right-hand sides */
-    GPROJ_PHASE_FACTOR,   /* the matrix, front by front, its factor, and half of the solution */
+    GPROJ_PHASE_FACTOR,   /* the matrix, front by front, the factor, and half of the solution */
     GPROJ_PHASE_SOLVE,
     GPROJ_PHASE_COUNT,
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
@@ -622,16 +623,16 @@ typedef enum gproj_outcome {
     GPROJ_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_outcome;
 
-/* What one iteration did; given to the callback after it. */
+/* One iteration; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number; /* from 1, through all attempts; some are left out where no step is found before a schedule ends */
-    double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
-    double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
-    double energy;     /* the wishes' part of it */
+    int32_t number; /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
+    double residual;   /* largest |phi| over rows that must hold with weight > 0, after the step */
+    double merit;      /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
+    double energy;     /* the wishes' part of the merit */
     double step;       /* largest |dx| */
     double epsilon;    /* the regularisation used */
-    double length;     /* the part of the step that was taken: 1, or another where the merit asked for it */
-    int32_t attempts;  /* factorisations: 1, or more where the step was damped, guarded or met bounds */
+    double length;     /* the part of the step that was taken: 1, or another if the merit asked for it */
+    int32_t attempts;  /* factorisations: 1, or more if the step was damped, guarded or met bounds */
     double optimality; /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
@@ -641,64 +642,65 @@ typedef struct gproj_iteration {
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
-    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
-       roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
-       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most
-       1e-11, the others 1e-8. */
+    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or more if rounding asks for it: 8 roundings
+       of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4 of sum_k
+       |dphi/dx_k x_k| if nothing else keeps a row from holding (large forces). The last gives at most 1e-11, the others
+       1e-8. */
     double tolerance;
-    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
-                           less where steps fall short near the end) */
+    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
+                           steps fall short near the end) */
     double time_budget; /* seconds by the host's clock; 0 means none */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
-    bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
+    bool skip_closeness; /* gproj_solve only: no default guidance if no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
-    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any
-       resolution. Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is
-       set. */
+    /* gproj_solve only: measure steps by their smoothness and keep the faces' corners: sound meshes at any resolution.
+       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect if `nearest` is set. */
     bool smooth;
-    /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
-       must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
-       last do not apply, only the weights' ratios matter, and nothing is biased. gproj_solve adds closeness to where it
-       begins where nothing is wished: it ends at the mesh nearest to that. Wants about 30 iterations. Converged means
-       here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
+    /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
+       the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
+       weights' ratios matter, and nothing is biased. If nothing is wished, gproj_solve adds closeness to the positions
+       that it begins with, and ends at the mesh nearest to these. Wants about 30 iterations. Converged means here that
+       the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
     bool nearest;
 } gproj_solve_options;
 
-/* How often a mesh is spoiled, compared with its original. Constraints may hold exactly on a mesh that cannot be
-   built. */
+/* Damage to a mesh, compared with the original. Constraints may hold exactly on a mesh that cannot be built. */
 typedef struct gproj_spoiled {
     int32_t turned;          /* faces turned over: vectorial area against the original's */
     int32_t crossed;         /* faces that cross themselves (bow-ties), and did not */
-    int32_t folded;          /* edges whose faces' normals make more than 120 degrees, and did not */
-    int32_t collapsed_edges; /* edges below 0.1 of their original length and 0.1 of the original mean length */
-    int32_t collapsed_faces; /* faces below 0.05 of their original area */
+    int32_t folded;          /* edges between faces whose normals make more than 120 degrees, and did not */
+    int32_t collapsed_edges; /* edges below 0.1 times their original length and 0.1 times the original mean length */
+    int32_t collapsed_faces; /* faces below 0.05 times their original area */
     int32_t spikes;          /* edges above 5 times their original length and 3 times the original mean length */
     int32_t total;           /* the sum of these */
-    gproj_place place;       /* the first element of the first kind that occurs; GPROJ_PLACE_NONE and -1: none does */
+    gproj_place place;       /* the first element of the first kind that occurs; GPROJ_PLACE_NONE and -1: none occurs */
     int32_t element;
 } gproj_spoiled;
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
+    int32_t iterations; /* gproj_iteration.number of the last one: steps taken and numbers skipped */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
-    int32_t attempts;   /* how often a smooth gproj_solve has begun; 1 otherwise */
-    double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
-    double tolerance;   /* what it was compared with */
+    int32_t attempts;   /* of a smooth gproj_solve: the first and the restarts; 1 otherwise */
+    double residual;    /* largest |phi| over rows that must hold with weight > 0 */ double tolerance;   /* the bound
+                                                                                                            that the
+                                                                                                            residual was
+                                                                                                            compared
+                                                                                                            with */
     double step;        /* largest |dx| of the last step */
-    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the tangent space of what must hold,
-       over the norm without projection: 0 at a minimum, 1 where nothing has been gained. Else 0. */
+    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the constraints' tangent space, over the
+       norm without projection: 0 at a minimum, 1 if nothing has been gained. Else 0. */
     double optimality;
-    int32_t worst_group; /* where that residual is; -1 where nothing must hold */
+    int32_t worst_group; /* the group with that residual; -1 if nothing must hold */
     int32_t worst_element;
-    /* Of a form, at the end of a solve: compared with the mesh at gproj_form_create, so that whatever moved it since
-       then counts. A result is usable where the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
+    /* For a form, at the end of a solve: compared with the mesh at gproj_form_create, so that all moves since then
+       count. A result is usable if the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
     gproj_spoiled spoiled;
     double seconds[GPROJ_PHASE_COUNT];
-    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; of a form also what else
-                                         has happened: how the mesh is spoiled, a mesh that shrank */
+    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; for a form also other
+                                         findings: a spoiled mesh, a mesh that shrank */
 } gproj_result;
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host);
@@ -706,9 +708,9 @@ GPROJ_API void gproj_system_destroy(gproj_system *system);
 GPROJ_API const gproj_error *gproj_system_error(const gproj_system *system);
 GPROJ_API gproj_memory gproj_system_memory(const gproj_system *system);
 
-/* Appends count variables with these start values (NULL: zeros), in blocks of `block` (1 to 8; count is a multiple
-   of it): the coordinates of one point, say. A block's variables stay together in the matrix when some row
-   couples them. Returns the number of the first variable, -1 after an error. */
+/* Appends `count` variables with these start values (NULL: zeros), in blocks of `block` (1 to 8; count is a multiple of
+   it): the coordinates of a point, say. A block's variables stay together in the matrix if some row couples them.
+   Returns the number of the first variable, -1 after an error. */
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *system, int32_t count, int32_t block, const double *values);
 GPROJ_API int32_t gproj_system_variable_count(const gproj_system *system);
 /* The variables, to read and to write; valid until variables are added. */
@@ -718,18 +720,18 @@ GPROJ_API double *gproj_system_values(gproj_system *system);
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
-/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where
-   the steps of all others are found by multipliers (see gproj_solve). */
+/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets a weight for the first
+   time, if the steps so far were found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
-/* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
-   Returns its number within the group. Rows added after a solve make the next solve analyse anew. */
+/* Adds a row of `count` terms and the constant c; `element` is the number of the face, say, that it belongs to, for
+   reports. Returns the row's number within the group. Rows added after a solve make the next solve analyse anew. */
 GPROJ_API int32_t gproj_system_add_row(gproj_system *system, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element);
 /* Replaces the coefficients (in the order of the row's terms; NULL: as they are) and the constant of a row. */
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *system, int32_t group, int32_t row, const double *coefficients,
                                           double constant);
-/* The weight of one row, times its group's; 1 when it is added, 0 leaves it out. */
+/* Sets the weight of one row, times the group's; 1 when the row is added, 0 leaves it out. */
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *system, int32_t group, int32_t row, double weight);
 /* phi of one row at the current x; with `gradient` (as long as the variables, may be NULL) its dense gradient. */
 GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t group, int32_t row, double *gradient);
@@ -744,12 +746,12 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iteratio
 /* ------------------------------------------------------------------------------------------------------------
    >>api-mesh   Half-edge meshes of any polygons.
 
-   Orientable 2-manifolds, with or without boundary, any number of components and holes, faces of degree >= 3
-   (convex or not), isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has
-   face -1, and those of a boundary loop are linked by next/prev in the direction opposite to the faces.
+   Orientable 2-manifolds with or without boundary, any components and holes, faces of degree >= 3 (convex or not),
+   isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has face -1, and those of a
+   boundary loop are linked by next/prev in the direction opposite to the faces.
 
-   All arrays are owned by the mesh and read-only but for `position`, which you may change at any time.
-   Corner k of face f is the half-edge that follows face_halfedge[f] k times, in the order of the input. */
+   All arrays are owned by the mesh and read-only but for `position`, which you may change at any time. Corner k of face
+   f is the half-edge k times after face_halfedge[f], in the order of the input. */
 typedef struct gproj_mesh {
     int32_t vertex_count;
     int32_t face_count;
@@ -758,31 +760,31 @@ typedef struct gproj_mesh {
     int32_t loop_count;       /* boundary loops */
     int32_t component_count;  /* connected components, isolated vertices not counted */
     int32_t isolated_count;   /* vertices without a face */
-    int32_t reoriented_count; /* faces turned round so that all of a component agree */
+    int32_t reoriented_count; /* faces turned round so that each component is oriented alike */
 
-    double *position;               /* 3 * vertex_count: x y z of each vertex */
+    double *position;               /* 3 * vertex_count: each vertex's x y z */
     const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1; -1: isolated */
     const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
     const int32_t *face_degree;     /* number of corners */
-    const int32_t *loop_halfedge;   /* a half-edge with face -1 of each boundary loop */
+    const int32_t *loop_halfedge;   /* for each boundary loop a half-edge with face -1 */
 
     const int32_t *twin; /* of each half-edge h: the opposite one, h ^ 1 */
     const int32_t *next; /* the following one in the same face or boundary loop */
     const int32_t *prev;
-    const int32_t *origin; /* the vertex where it starts */
+    const int32_t *origin; /* the vertex that it starts from */
     const int32_t *face;   /* the face on its left, or -1 */
     const int32_t *edge;   /* h / 2 */
 
-    int32_t polyline_count;         /* polylines `l` of an OBJ file, by vertices of the mesh (often isolated ones) */
+    int32_t polyline_count;         /* polylines `l` in an OBJ file, by vertices of the mesh (often isolated ones) */
     const int32_t *polyline_start;  /* polyline_count + 1 entries into polyline_vertex */
-    const int32_t *polyline_vertex; /* a closed polyline repeats its first vertex at its end */
+    const int32_t *polyline_vertex; /* a closed polyline ends with its first vertex */
 } gproj_mesh;
 
-/* Builds a mesh of at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
-   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the
-   element: indices out of range, a face with fewer than 3 or with repeated vertices, coordinates that are not finite,
-   edges with more than two faces, vertices whose faces form more than one fan, components without a consistent
-   orientation (the first face of a component gives it; faces against it are turned round and counted). */
+/* Builds a mesh from at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
+   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the element:
+   indices out of range, faces with fewer than 3 or with repeated vertices, coordinates that are not finite, edges with
+   more than two faces, vertices whose faces form more than one fan, components without a consistent orientation (a
+   component's first face gives it; faces against it are turned round and counted). */
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
@@ -790,15 +792,15 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
 
-/* The number of edges at a vertex. */
+/* For NULL, as for an index out of range, the following give 0, false or zeros. The number of edges at a vertex. */
 GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex);
 GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex);
 /* The neighbours of a vertex in cyclic order, counter-clockwise seen from outside (at the boundary from the first to
-   the last along the faces). Writes at most `capacity` of them, returns the valence. */
+   the last along the faces). Writes at most `capacity` neighbours, returns the valence. */
 GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity);
-/* The vectorial area of a face: 1/2 sum v_i x v_(i+1); its length is the area of a planar face. */
+/* The vectorial area of a face: 1/2 sum v_i x v_(i+1); for a planar face, the length is the area. */
 GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]);
-/* The mean length of all edges; 0 without edges. */
+/* The mean edge length; 0 without edges. */
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh);
 
 typedef enum gproj_format {
@@ -814,52 +816,51 @@ typedef enum gproj_format {
 GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_format format, const gproj_host *host,
                                       gproj_error *error);
 
-/* Receives a piece of text; returns false to stop (then the writer returns GPROJ_ERROR_FILE). */
+/* Receives a piece of the text; returns false to stop (then the writer returns GPROJ_ERROR_FILE). */
 typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 /* Writes the mesh with vertices, faces and corners in their order and numbers that read back to the same bits. OFF has
    no polylines. */
 GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
 
 #ifndef GPROJ_NO_STDIO
-/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most
-   1 GiB is read, or as much as the allocator's limit says where that is more. */
+/* Reads a file; the format by the name's ending, or by the first word if that is neither .obj nor .off. Reads at most 1
+   GiB, or the allocator's limit if that is more. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
-/* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
-   or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
-   renames it. An existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format
-   follows the ending: .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
+/* Replaces the file at `path`, or a symbolic link's target, whole or not at all, even if the program or the machine
+   stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and renames it. An
+   existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format follows the ending:
+   .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
 
-   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy of them that can be changed, each change in time
-   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as
-   often as wanted, and says where each element has gone:
+   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy that can be changed, each change in time that
+   depends on the neighbourhood alone; gproj_edit_mesh turns the present state into a mesh, at any time and as often as
+   wanted, and gives the new number of each element:
 
        gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
-       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
-       gproj_edit_split_face(edit, 4, v, 23, NULL);                  // from there across face 4 to vertex 23
-       gproj_mesh *after = gproj_edit_mesh(edit, NULL, NULL);
+       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL); // vertex v in the middle of edge 17
+       gproj_edit_split_face(edit, 4, v, 23, NULL); // from there across face 4 to vertex 23 gproj_mesh *after =
+       gproj_edit_mesh(edit, NULL, NULL);
        handle = edit->vertex_number[handle];                         // a vertex of `mesh`, or v, in `after`
        gproj_edit_destroy(edit);
 
    NUMBERS  Vertices, edges and faces of the mesh keep their numbers in the edit, whatever is done; new elements get the
-   following ones, and numbers of removed ones are not given again. The number of a vertex or edge that was merged into
-   another one stands for that one, in all functions here; of the two the lower number stays.
-   REFUSALS  After each change the edit is an orientable manifold of the kind that gproj_mesh_create accepts. A change
-   that would end that is refused: it returns -1, with an error that names the element, and the edit is as it was, as it
-   is when there is no memory. A refusal has no consequences for later changes. `error` may be NULL.
-   POLYLINES  Those of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new
-   vertex. */
+   following ones, and numbers of removed ones are not given again. If two vertices or edges are merged the lower number
+   stays, and the other one stands for it in all functions here.
+   REFUSALS After each change the edit is an orientable manifold that gproj_mesh_create would accept. A change that
+   would end that is refused: it returns -1, with an error that names the element, and the edit is as it was; without
+   memory likewise. A refusal has no consequences for later changes. `error` may be NULL.
+   POLYLINES follow their vertices. One that runs along an edge gets the new vertex if the edge is split. */
 
-/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those
-   of gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
-   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge
-   h / 2. */
+/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are as in
+   gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
+   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge h /
+   2. */
 typedef struct gproj_edit {
-    int32_t vertex_count; /* numbers given so far, those of removed elements included */
+    int32_t vertex_count; /* numbers given so far, with removed elements */
     int32_t edge_count;
     int32_t face_count;
 
@@ -867,116 +868,114 @@ typedef struct gproj_edit {
     const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1 */
     const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
     const int32_t *face_degree;     /* number of corners */
-    const int32_t *face_parent;     /* the face of the first mesh of which this one is a part */
+    const int32_t *face_parent;     /* the face of the first mesh that this one is a part of */
 
     const int32_t *next; /* of each of the 2 * edge_count half-edges, as in gproj_mesh */
     const int32_t *prev;
     const int32_t *origin;
     const int32_t *face;
 
-    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: for merged
-       elements that of what they were merged into, -1 where nothing is left. NULL before. */
+    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: merged
+       elements have the number of the one that stayed, removed ones -1. NULL before. */
     const int32_t *vertex_number;
     const int32_t *edge_number;
     const int32_t *face_number;
 } gproj_edit;
 
-/* An edit of a mesh, which is copied. NULL: there is no mesh, or no memory. */
+/* Begins an edit with a copy of the mesh. NULL: there is no mesh, or no memory. */
 GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
 GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
 
-/* A mesh of what the edit is now, its elements in the order of their numbers (edges in that of all meshes: as they
-   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is
-   left is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
+/* Makes a mesh from the edit as it is, elements ordered by their numbers (edges, as in all meshes, as they appear along
+   the faces), and the maps of numbers. Polylines lose repeated vertices; one with a single vertex left is dropped.
+   Refuses only positions that gproj_mesh_create refuses. */
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
 
-/* The vertex that this number stands for: itself, or what it was merged into; -1 out of range. */
+/* The vertex that this number stands for: itself, or the one it was merged into; -1 out of range. */
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex);
 /* The edge between two vertices; -1: none. */
 GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other);
 
-/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one
+/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1; half-edge 2 * edge goes from i to j. The faces there get one
    corner more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new
    vertex. */
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part
-   is the last face. Refused where the corners have an edge already. Returns the new edge. */
+/* Cuts a face by a diagonal between two corners. `face` is then the part with the first corner; the other part is the
+   last face. Refused if the corners have an edge already. Returns the new edge. */
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error);
 
-/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes
-   from i to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be
+/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1; half-edge 2 * edge goes from i
+   to j. The faces there lose a corner; the other two edges of a triangle become one. Refused if the mesh would be
    pinched or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or
-   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a
-   component would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns
-   the vertex. */
+   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and if a component
+   would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns the
+   vertex. */
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Of all ways to do so, one is taken whose
-   triangles are not turned over in the plane orthogonal to the face's vectorial area (if there is one: the face may be
-   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of (a^2 + b^2
-   + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are left
-   (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new faces. */
+/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Takes triangles that are not turned over in
+   the plane orthogonal to the face's vectorial area (if possible: the face may be non-convex, but must not cross itself
+   there), and among these the best ones: with the least sum of (a^2 + b^2 + c^2) / area (Klincsek 1980). Faces with
+   more than 128 corners lose ears first until 128 are left (Meisters 1975). Refused if each way needs a diagonal that
+   is an edge already. Returns the number of new faces. */
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
 
 /* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
-   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs;
-   all can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
+   both ways, until the strip closes or meets the boundary or a face that is no quad. The edges across are the rungs;
+   all can be given the same direction. If a strip crosses itself, the quad there belongs to it twice.
 
-   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction
-   in which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads
-   stay quads; at the ends of the strip triangles are cut in two, and faces with 5 or more corners get one more. Refused
-   where no quad is at the edge, and where a closed strip has two quads only. Returns the new part of the edge, from the
-   new vertex to j: a rung of the new strip. */
+   Inserts a strip beside the one of an edge: splits all rungs at (1 - t) v_i + t v_j, 0 <= t <= 1, directed like
+   half-edge 2 * edge from i to j, and cuts the quads in two, those that belong to it twice in four. Quads stay quads;
+   at the strip's ends triangles are cut in two, and faces with 5 or more corners get one more. Refused if no quad is at
+   the edge, or a closed strip has two quads only. Returns the new part of the edge, from the new vertex to j: a rung of
+   the new strip. */
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva,
-   Shepherd, Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish.
-   Refused where the mesh would be pinched or folded onto itself, as for a single edge. Takes time in the size of the
-   mesh. After gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for the numbers
-   of faces. Returns the number of rungs. */
+/* Removes the strip of an edge: collapses all rungs to (1 - t) v_i + t v_j in that direction (Daniels, Silva, Shepherd,
+   Cohen 2008). Quads beside it stay quads; other faces at the ends lose a corner, and triangles there vanish. Refused
+   if the mesh would be pinched or folded onto itself, as for a single edge. Takes time proportional to the mesh. After
+   gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for face numbers. Returns
+   the number of rungs. */
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a
-   face whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces
-   come, in their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices;
-   then the corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face,
-   which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices
-   do. `vertex_face`: vertex_count numbers to be filled with the dual face of each vertex, -1 for those without a face;
-   may be NULL. The dual of the dual of a closed mesh has the combinatorics of the mesh. Refused where two faces have
-   more than one edge in common, for their vertices would have two edges. */
+/* Makes the dual mesh: vertex f is the mean of face f's corners, and each vertex with faces, in ascending order,
+   becomes a face whose corners are the faces around it. The dual ends at the boundary of the mesh: after the faces'
+   vertices come, in ascending order, the midpoints of boundary edges, which are corners of the dual faces of their two
+   vertices; then the boundary's corners (gproj_form_is_corner), each in its own dual face; then vertices without a
+   face, which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay if all their vertices
+   do. `vertex_face`: vertex_count numbers to be filled with each vertex's dual face, -1 for vertices without a face;
+   may be NULL. The dual of a closed mesh's dual has the combinatorics of the mesh. Refused if two faces have more than
+   one edge in common, for their vertices would have two edges. */
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
                                       gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
 
-   The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
-   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count
-   + edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face
-   f, at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
-       Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
-       Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
-   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its
-   polylines are refined in it, the rest of the polyline is kept.
+   Each level gives a finer mesh with a vertex for each vertex and each edge, and with Catmull and Clark's scheme for
+   each face: vertex v stays vertex v, edge e gives vertex_count + e, face f gives vertex_count + edge_count + f. The
+   finer faces follow the corners of the mesh's faces, with the same order and orientation. Corner k of face f, at the
+   vertex v between the edges e (to the next vertex) and d (from the one before), gives
+       Catmull-Clark the quad v, e, f, d which is face (corners of faces before f) + k Loop the triangle v, e, d which
+       is face 4 f + k; face 4 f + 3 are the three edges' vertices
+   Several levels are this, repeated. Vertices without a face stay. Polylines are refined along the edges of the mesh
+   and kept elsewhere.
 
-   Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
-       face            mean of its corners
-       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+   Positions (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
+       face mean of its corners edge i-j Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
                        Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
        vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
                        Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
        vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
        vertex, S > 2   v, as for corners
-   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and
-   vertices are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that
-   become smooth there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the
-   boundary. */
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last sharp level, 0 < s < 1, positions are s
+   times the sharp ones + (1 - s) times the smooth ones; at a vertex s is the mean over the edges there that become
+   smooth (DeRose, Kass, Truong 1998). The surface ends in the boundary's cubic B-spline curves. */
 typedef enum gproj_scheme {
-    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
-    GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
+    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines if all vertices have 4 quads */
+    GPROJ_LOOP,          /* triangles to triangles; quartic box splines if all vertices have 6 */
     GPROJ_SCHEME_FORCE_INT = 0x7fffffff
 } gproj_scheme;
 
@@ -985,21 +984,21 @@ typedef struct gproj_subdivide_options {
     int32_t levels;        /* 1 to 14; 0 means 1 */
     int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
     /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all
-       are always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+       are always. If an edge is named twice the larger sharpness counts. Boundary edges are always sharp. */
     int32_t crease_count;
     const int32_t *creases;
     const double *sharpness;
-    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+    /* Vertices that stay as they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
        well, unless round_corners. */
     int32_t corner_count;
     const int32_t *corners;
     bool round_corners;
 } gproj_subdivide_options;
 
-/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh,
-   with the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order;
-   their sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6
-   entries for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All
+/* A sparse matrix by rows: fine positions = stencil * coarse positions. Row i belongs to vertex i of the finer mesh and
+   has weights weight[k] > 0 for the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order, with
+   the sum 1. So coarse vertices are handles for the finer mesh. A row has the vertices of all faces around: in a quad
+   mesh about 6 entries for one level, 16 for many; but faces with m corners give m rows of at least m entries. All
    arrays are owned by the stencil. */
 typedef struct gproj_stencil {
     int32_t row_count;
@@ -1009,37 +1008,37 @@ typedef struct gproj_stencil {
     const double *weight;
 } gproj_stencil;
 
-/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil`
-   may be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure.
-   Of one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels
-   take the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level. Refuses:
-   GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme GPROJ_ERROR_ARGUMENT
-   where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners; GPROJ_ERROR_SIZE, before
-   memory is taken, where a level would have more than a mesh can. */
+/* Subdivides a mesh. `options` may be NULL: one level by Catmull and Clark's scheme. `stencil` may be NULL, else it
+   receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Applied to the
+   coarse positions it gives the new ones, to the last bit for one level, up to rounding for several. For handles on
+   several levels take the meshes with 1, 2, ... levels, and for each the stencil from the level before, with
+   stencil_level. Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's
+   scheme GPROJ_ERROR_ARGUMENT if a face is no triangle, and _NON_MANIFOLD if two faces have the same three corners;
+   GPROJ_ERROR_SIZE, before memory is taken, if a level would have more elements than a mesh can. */
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
 
 GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil);
 GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil);
-/* fine = stencil * coarse, for any data with `size` numbers a vertex: 3 for positions. coarse: size * column_count
-   numbers, fine: size * row_count others. */
+/* Computes fine = stencil * coarse for any data with `size` numbers a vertex: 3 for positions. coarse: size *
+   column_count numbers, fine: size * row_count numbers, which must not overlap them. */
 GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine);
-/* The stencil that leads through both: fine * coarse, where the columns of `fine` are the rows of `coarse`. */
+/* The stencil that leads through both: fine * coarse; the columns of `fine` are the rows of `coarse`. */
 GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
                                                 const gproj_host *host, gproj_error *error);
-/* The transposed matrix: row j is what coarse vertex j moves. When that moves by d, fine vertex column[k] moves by
-   weight[k] * d. Its rows do not sum to 1. */
+/* The transposed matrix: row j has the fine vertices that coarse vertex j moves. When that moves by d, fine vertex
+   column[k] moves by weight[k] * d. Rows of this matrix do not sum to 1. */
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
+   >>api-reference   Curves and surfaces to stay close to. They are copies: the mesh they come from may change. */
 typedef struct gproj_curve gproj_curve;
 typedef struct gproj_surface gproj_surface;
 
 typedef struct gproj_curve_hit {
     double point[3];   /* the closest point of the curve */
-    double tangent[3]; /* unit; of the segment on which the point lies */
+    double tangent[3]; /* unit; along the segment with the point */
     double distance;
     int32_t segment;  /* from point[segment] to the next one */
     double parameter; /* 0..1 within the segment */
@@ -1049,23 +1048,23 @@ typedef struct gproj_surface_hit {
     double point[3];
     double normal[3]; /* unit; vertex normals interpolated at the point */
     double distance;
-    int32_t face; /* of the mesh that the surface was made from */
+    int32_t face; /* in the mesh that the surface was made from */
 } gproj_surface_hit;
 
 /* A polyline through `count` >= 2 points (3 * count numbers); closed: with a segment from the last to the first. */
 GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, bool closed, const gproj_host *host,
                                           gproj_error *error);
-/* Boundary loop `loop` of a mesh as a closed curve, in the direction of the faces' edges, from the origin of
+/* Boundary loop `loop` of a mesh as a closed curve, directed like the faces' edges, from the origin of
    loop_halfedge[loop]. */
 GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
                                              gproj_error *error);
-/* Polyline `polyline` of a mesh; closed where its last vertex is its first. */
+/* Polyline `polyline` of a mesh; closed if it ends with its first vertex. */
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
-/* The mesh's faces, cut into triangles. Refused where the mesh has no faces. */
+/* The mesh's faces, cut into triangles. Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
