@@ -792,7 +792,9 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
 
-/* For NULL, as for an index out of range, the following give 0, false or zeros. The number of edges at a vertex. */
+/* For NULL, as for an index out of range, the following give 0, false or zeros.
+
+   The number of edges at a vertex. */
 GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex);
 GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex);
 /* The neighbours of a vertex in cyclic order, counter-clockwise seen from outside (at the boundary from the first to
@@ -958,13 +960,14 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
    each face: vertex v stays vertex v, edge e gives vertex_count + e, face f gives vertex_count + edge_count + f. The
    finer faces follow the corners of the mesh's faces, with the same order and orientation. Corner k of face f, at the
    vertex v between the edges e (to the next vertex) and d (from the one before), gives
-       Catmull-Clark the quad v, e, f, d which is face (corners of faces before f) + k Loop the triangle v, e, d which
-       is face 4 f + k; face 4 f + 3 are the three edges' vertices
+       Catmull-Clark   the quad      v, e, f, d    which is face (corners of faces before f) + k
+       Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
    Several levels are this, repeated. Vertices without a face stay. Polylines are refined along the edges of the mesh
    and kept elsewhere.
 
    Positions (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
-       face mean of its corners edge i-j Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+       face            mean of the corners
+       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with the adjacent faces' vertices f, g;
                        Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
        vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
                        Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
@@ -998,7 +1001,7 @@ typedef struct gproj_subdivide_options {
 /* A sparse matrix by rows: fine positions = stencil * coarse positions. Row i belongs to vertex i of the finer mesh and
    has weights weight[k] > 0 for the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order, with
    the sum 1. So coarse vertices are handles for the finer mesh. A row has the vertices of all faces around: in a quad
-   mesh about 6 entries for one level, 16 for many; but faces with m corners give m rows of at least m entries. All
+   mesh about 6 entries for one level, 16 for many; but rows around a face with many corners have all of these. All
    arrays are owned by the stencil. */
 typedef struct gproj_stencil {
     int32_t row_count;
@@ -1062,50 +1065,51 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
+/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
 /* The mesh's faces, cut into triangles. Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
+/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-measure   What a mesh is like. */
+   >>api-measure Measures: sizes, planarity and other shape properties, and damage. */
 typedef struct gproj_measures {
     double mean_edge, min_edge, max_edge;
-    double length;                             /* of all edges */
+    double length;                             /* sum over all edges */
     double area, min_face_area, max_face_area; /* lengths of vectorial areas */
-    /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the
-       mesh. */
+    /* For a face: the largest distance of a vertex from the vertices' least-squares plane, in mean edge lengths. */
     double planarity_max, planarity_mean;
-    int32_t planarity_face; /* where the largest is; -1 without faces */
-    double circularity_max; /* of faces with more than 3 sides: largest difference of the distances of a face's vertices
-                               from its circumcentre, in mean edge lengths */
-    double area_spread;     /* standard deviation of the face areas over their mean */
-    double diagonal_max;    /* quads: distance of the lines through the diagonals, in mean edge lengths */
-    /* Of vertices where 4 or more faces meet: the largest difference of the angles of the faces' normals with the axis
-       that is nearest to the bisecting planes of neighbouring faces, in radians. */
+    int32_t planarity_face; /* the face with planarity_max; -1 without faces */
+    double circularity_max; /* for faces with more than 3 sides: largest difference between a face's vertices in
+                               distance from the circumcentre, in mean edge lengths */
+    double area_spread;     /* standard deviation of face areas over their mean */
+    double diagonal_max;    /* quads: distance between the lines through the diagonals, in mean edge lengths */
+    /* For vertices with 4 or more faces: the largest difference between the angles that the faces' normals make with
+       the axis, in radians. The axis is the one nearest to the bisecting planes of neighbouring faces. */
     double conicality_max;
-    double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
-    double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
-    int32_t turned_faces;                /* vectorial area against the one of the original face */
+    double deviation_max, deviation_rms; /* |v - v_original| / the original's bounding box diagonal */
+    double displacement_mean;            /* mean |v - v_original| in the original's mean edge lengths */
+    int32_t turned_faces;                /* vectorial area against the original face's */
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
-    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal of its plane */
-    int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
+    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal */
+    int32_t degenerate_faces;            /* vectorial area below 1e-12 squared mean edges */
     int32_t collapsed_edges;             /* not longer than 1e-6 mean edges */
-    /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
-       normals, as a sum of triangle areas about its mean. */
+    /* Sum over interior vertices: area of the vertex star's Gauss image, the spherical polygon of the face normals, as
+       a sum of triangle areas about their mean. */
     double gauss_variation;
 } gproj_measures;
 
-/* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
-   `planarity`: face_count numbers to be filled; may be NULL. */
+/* Measures a mesh. `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are
+   0). `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
-/* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original
-   counts as scaled by the least of their factors. Takes no memory. */
+/* Counts the spoiled elements, compared with the original positions, 3 * vertex_count. If every edge has grown, the
+   original counts as scaled by the least factor. Takes no memory. */
 GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original);
-/* The planarity of faces alone, a part of the time of all measures: returns planarity_max. `planarity` (as above) and
-   `mean`, planarity_mean, may be NULL. */
+/* Measures only the planarity of faces, in less time than gproj_measure: returns planarity_max. `planarity` (as above)
+   and `mean`, planarity_mean, may be NULL. */
 GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
@@ -1115,90 +1119,88 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 
    Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar
    (Pottmann, Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant
-   distance, conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is,
-   gproj_measure_offset tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
+   distance, conical meshes one with its faces at constant distance. Any mesh is taken; gproj_measure_offset tells how
+   exact the outcome is. Distances are in the mesh's units, positive on the side of the faces' normals. */
 
-/* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
-   orthogonal to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round
-   closes: in a mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without
-   doubled vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices,
-   and with holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes
-   best. Vertices without a face stay. */
+/* Makes a mesh with the vertices v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
+   orthogonal to the edge, gives m at all others. The distance is exact always; edges are parallel if going round
+   closes: for any m at the first vertex in a mesh without holes and handles whose faces are planar and circular and
+   have an even number of sides and no doubled vertices. The first m is chosen so that m goes along the vertex normals;
+   with holes, handles and odd faces, among those that keep the normals, so that going round closes best. Vertices
+   without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
-/* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
-   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis
-   a of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the
-   boundary n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary,
-   which become as parallel as they can. Vertices without a face stay. */
+/* Makes a mesh with the faces moved by `distance` along their normals: vertices v + distance * x, with n_k'x = 1 for
+   the normals n_k of the faces around the vertex. Exact for conical meshes: there x = a / cos(angle) with the vertex's
+   axis a, and edges between two faces are parallel; for others in the least-squares sense. At the boundary, n_1'x =
+   n_2'x = 1 from two faces or n'x = 1 from one leaves freedom, which makes boundary edges as parallel as possible.
+   Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
-/* The panels between a mesh and its offset: face e is the quad v_i v_j o_j o_i of edge e with half-edge 2e from i to j.
-   More than two of them meet at a node's axis, which no manifold mesh has: so each quad has its own four vertices,
-   4e .. 4e + 3, in this order. Refused where the meshes do not have the same faces. */
+/* Makes the panels between a mesh and an offset of it: face e is the quad v_i v_j o_j o_i for edge e with half-edge 2e
+   from i to j. More than two panels meet at a node's axis, which no manifold mesh has: so each quad has its own four
+   vertices, 4e .. 4e + 3, in this order. Refused if the meshes do not have the same faces. */
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error);
 
 typedef struct gproj_offset_measures {
-    /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial
-       area. */
+    /* n_k'(o_i - v_i) for all corners i in all faces k, in the mesh's units; n_k along the vectorial area. */
     double face_distance_min, face_distance_max;
-    double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, of vertices with a face, in the mesh's units */
-    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of
-       gproj_mesh_support, the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge
-       lengths of the mesh. */
+    double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, for vertices with a face, in the mesh's units */
+    /* For offset edges: the largest part of o_j - o_i across the edge v_j - v_i; for the quads of gproj_mesh_support:
+       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths. */
     double parallel_max, support_planarity_max;
-    int32_t reversed_edges; /* they run against their edges: the distance is larger than a radius of curvature */
+    int32_t reversed_edges; /* offset edges against their edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
-/* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
+/* Distances and parallel_max are infinite if a mesh is NULL, or if the two do not have the same faces. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-fill   From a closed curve to a mesh of quads that fills it.
 
    The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
-   numbers can be filled whose sum is even and at least 4: the boundary of a mesh of quads has an even number of edges.
-   Inside, vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite
-   sides of 4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
+   numbers can be filled that have an even sum of at least 4: a quad mesh has an even number of boundary edges. Inside,
+   vertices have valence 4 but for a few with valence 3 and 5. The numbers decide: equal ones on opposite sides of 4
+   give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
 
-   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not meet
-   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are
-   those of the curve at the boundary, and harmonic inside: each vertex is at the mean height of its neighbours. */
+   The combinatorics is found in the projection along the curve's vectorial area, in which the curve must not meet
+   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are the
+   curve's at the boundary, and harmonic inside: each vertex is at the mean height of the neighbours. */
 typedef struct gproj_fill_options {
-    int32_t corner_count;        /* 0: where the curve turns by more than 45 degrees (see gproj_form_is_corner) */
+    int32_t corner_count;        /* 0: corners are points with a turn of more than 45 degrees (see
+                                    gproj_form_is_corner) */
     const int32_t *corners;      /* numbers of points, ascending */
     int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
-    const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
+    const int32_t *subdivisions; /* edges on side j, from corner j to the next, with equal lengths along the curve */
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
-    bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
-    int32_t rings;               /* rows of quads that run around along the whole boundary */
+    bool keep_points;            /* the curve's points are the boundary vertices, whatever is wanted */
+    int32_t rings;               /* rows of quads around along the whole boundary */
     int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
 } gproj_fill_options;
 
-/* What has been made. */
+/* Properties of the mesh that was made. */
 typedef struct gproj_fill_info {
-    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
-    int32_t side_count;      /* polylines of the mesh: side j from its first to its last vertex */
-    int32_t patch_count;     /* patches of at most 6 sides that the curve was cut into */
+    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, ordered like the curve */
+    int32_t side_count;      /* polylines of the mesh: side j from the first to the last vertex */
+    int32_t patch_count;     /* patches with at most 6 sides that the inside was cut into */
     int32_t irregular_count; /* inner vertices whose valence is not 4 */
-    int32_t min_valence;     /* of inner vertices; 0 where there are none */
+    int32_t min_valence;     /* over inner vertices; 0 if there are none */
     int32_t max_valence;
-    double min_angle; /* of the quads' corners, in degrees, seen along the normal */
+    double min_angle; /* at the quads' corners, in degrees, seen along the normal */
     double max_angle;
 } gproj_fill_info;
 
 /* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
-   the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
-   its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
-   fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
-   A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
-   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where
-   the cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this
-   leaves nothing better.
-   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
-   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1
-   or with an odd sum, with what to change, and curves for which no filling was found. */
+   the first corner. Corners of the mesh are exactly points of the curve, other boundary vertices are on the segments.
+   Counter-clockwise curves give faces that look up. The polylines of the mesh are the sides; a curve with fewer than 2
+   corners is given 4 at about equal distances, from its corner or its first point. A corner has one face, or two if it
+   has more than 165 degrees inside or if there are rings. Cuts through the inside end at all corners with more than 195
+   degrees, and at others if a patch would have more than 6; a cut is chosen short, with good angles, and so that the
+   patches need few irregular vertices. Valence 6 is taken if this leaves nothing better. `options`, `info`, `host` and
+   `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for a side: the first one): curves
+   that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or with an odd sum (the
+   sentence says how to change them), and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
