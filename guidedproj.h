@@ -625,15 +625,15 @@ typedef enum gproj_outcome {
 
 /* One iteration; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number; /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
-    double residual;   /* largest |phi| over rows that must hold with weight > 0, after the step */
-    double merit;      /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
-    double energy;     /* the wishes' part of the merit */
-    double step;       /* largest |dx| */
-    double epsilon;    /* the regularisation used */
-    double length;     /* the part of the step that was taken: 1, or another if the merit asked for it */
-    int32_t attempts;  /* factorisations: 1, or more if the step was damped, guarded or met bounds */
-    double optimality; /* nearest: see gproj_result */
+    int32_t number;   /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
+    double residual;  /* largest |phi| over rows that must hold with weight > 0, after the step */
+    double merit;     /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
+    double energy;    /* the wishes' part of the merit */
+    double step;      /* largest |dx| */
+    double epsilon;   /* the regularisation used */
+    double length;    /* the part of the step that was taken: 1, or another if the merit asked for it */
+    int32_t attempts; /* factorisations: 1, or more if the step was damped, guarded or met bounds */
+    double optimality;                 /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
 
@@ -684,11 +684,8 @@ typedef struct gproj_result {
     int32_t iterations; /* gproj_iteration.number of the last one: steps taken and numbers skipped */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
     int32_t attempts;   /* of a smooth gproj_solve: the first and the restarts; 1 otherwise */
-    double residual;    /* largest |phi| over rows that must hold with weight > 0 */ double tolerance;   /* the bound
-                                                                                                            that the
-                                                                                                            residual was
-                                                                                                            compared
-                                                                                                            with */
+    double residual;    /* largest |phi| over rows that must hold with weight > 0 */
+    double tolerance;   /* the bound that the residual was compared with */
     double step;        /* largest |dx| of the last step */
     /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the constraints' tangent space, over the
        norm without projection: 0 at a minimum, 1 if nothing has been gained. Else 0. */
@@ -843,9 +840,9 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    wanted, and gives the new number of each element:
 
        gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
-       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL); // vertex v in the middle of edge 17
-       gproj_edit_split_face(edit, 4, v, 23, NULL); // from there across face 4 to vertex 23 gproj_mesh *after =
-       gproj_edit_mesh(edit, NULL, NULL);
+       int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
+       gproj_edit_split_face(edit, 4, v, 23, NULL);                  // from there across face 4 to vertex 23
+       gproj_mesh *after = gproj_edit_mesh(edit, NULL, NULL);
        handle = edit->vertex_number[handle];                         // a vertex of `mesh`, or v, in `after`
        gproj_edit_destroy(edit);
 
@@ -1207,12 +1204,12 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
 
-   gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled
-   so that its mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives
-   the shape of the same model in km. Every gproj_add_... appends a group of rows to the form's system and
-   returns its number (-1 after an error); after an error they do nothing, so check once, at the solve.
-   Weights: 1 for what must hold. Wishes fade by default after half of the iterations of the solve (schedule
-   with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
+   gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled so
+   that the mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives the same
+   shape as in km. Every gproj_add_... appends a group of rows to the form's system and returns the group's number (-1
+   after an error); after an error they do nothing, so check once, at the solve. Weights: 1 for what must hold. Wishes
+   fade by default after half of the solve's iterations (schedule with last = 0), because a wish that stays on biases
+   the constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
@@ -1231,7 +1228,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* Faces with more than 3 sides are planar: a unit normal n_k per face as variables, n_k'n_k = 1, and
    n_k'(v_i - v_j) = 0 for every edge of the face (paper 3.1). */
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight);
-/* These vertices stay where they were at gproj_form_create: v_i = p_i, 3 rows each. */
+/* These vertices keep their positions at gproj_form_create: v_i = p_i, 3 rows each. */
 GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
 GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight);
 /* The corners of the boundary: see gproj_form_is_corner. */
@@ -1241,26 +1238,25 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
                                     double weight);
 GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions);
 /* The vertices stay on the curve. 3 rows each, anew in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the
-   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only where v_i would
+   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only if v_i would
    leave the curve's end or the segments around a corner, t'(v_i - p) = 0 pins it there (t along the segment). Vertices
    walk from segment to segment, and settle on one after the wishes have faded. The curve must outlive the form. */
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight);
-/* Every boundary vertex glides along the original of its boundary loop; corners stay. */
+/* Every boundary vertex glides along the original boundary loop; corners stay. */
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 
 /* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
-   c_k on the axis of the circle with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are
-   variables that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k.
-   A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled
-   counts them). */
+   c_k on the circle's axis with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are variables
+   that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k. A face with a doubled
+   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
-/* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
-   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting
-   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew
-   in each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
-   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis
-   nearest to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
+/* The face planes around a vertex touch a common cone: their unit normals n_i make one angle with the cone's axis a_v,
+   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows put the axis into the bisecting planes
+   between neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew in
+   each iteration: equivalent if the faces differ, and the condition that an offset needs if they are coplanar. Rows for
+   vertices with 4 or more faces; three planes always touch a cone. a_v are variables that start at the axis nearest to
+   the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
 /* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
@@ -1275,28 +1271,28 @@ GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int3
 /* These vertices are on one unknown line: on two unknown planes with orthogonal normals. Nothing for 2 vertices and
    fewer. */
 GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
-/* Each part of the boundary from corner to corner (gproj_form_is_corner), both with it, is on one unknown plane; a loop
-   without corners as a whole. */
+/* Each part of the boundary from corner to corner (gproj_form_is_corner), both included, is on one unknown plane; a
+   loop without corners as a whole. */
 GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight);
-/* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Where faces are
-   planar quads, all those along a straight part lie in one plane. */
+/* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Planar quads
+   along a straight part all lie in one plane. */
 GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
-/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, of any length > 0:
+/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, a vector of any length > 0:
    u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight);
 /* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the
    line through the neighbours p and q: (t - b)'(q - p) / 2 = 0 (paper, Figure 13: right angles at the ground). */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight);
-/* All vertices keep the x and y of their originals and move in z only (paper, Figure 13: lifting a flat mesh). */
+/* All vertices keep their original x and y and move in z only (paper, Figure 13: lifting a flat mesh). */
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
 /* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
    positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
    iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
-/* The sum of the face areas |a_k| (vectorial areas) is `area`, in the mesh's units squared. One global row, linearised
-   anew in each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
+/* The face areas |a_k| (vectorial areas) sum to `area`, in the mesh's units squared. One global row, linearised anew in
+   each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight);
 /* length_price * (length of all edges) + area_price * (area of all faces) = cost. Prices per unit of the mesh's lengths
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
@@ -1322,19 +1318,19 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 
 /* Closeness to the original: v_i = p_i. */
 GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight);
-/* Closeness to a reference surface: v_i on the tangent plane at its closest point, 1 row each. The surface must
-   outlive the form. */
+/* Closeness to a reference surface: v_i on the tangent plane at the closest point, 1 row each. The surface must outlive
+   the form. */
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight);
-/* Fairness: v = (w1 + w3)/2 and v = (w2 + w4)/2 at interior vertices of valence 4, v = mean of its neighbours at
+/* Fairness: v = (w1 + w3)/2 and v = (w2 + w4)/2 at interior vertices of valence 4, v = mean of the neighbours at
    others; at the boundary v = (u + w)/2 along the boundary, nothing at corners (paper 3.2). */
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight);
-/* The boundary's part of it alone. */
+/* Fairness along the boundary alone. */
 GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight);
-/* The same differences as gproj_add_fairness at interior vertices, projected to a tangent plane that is estimated anew
-   in each iteration. */
+/* Tangential fairness: the differences in gproj_add_fairness at interior vertices, projected to a tangent plane that is
+   estimated anew in each iteration (paper 3.2). */
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight);
-/* Fairness of the Gauss image: the differences of face normals with those of the neighbouring faces, projected to the
-   plane orthogonal to the normal. */
+/* Fairness of the Gauss image: differences between face normals and their neighbours' normals, projected to the plane
+   orthogonal to the normal (paper 3.2). */
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight);
 
 /* Quads are parallelograms: v_1 - v_2 + v_3 - v_4 = 0 (paper, Figure 8). */
@@ -1343,61 +1339,61 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight);
    3.5). */
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
-/* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
+/* Sets a group's weight, decay and last iteration; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
-/* Weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says; elements
-   NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off, 1 on
-   again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a reference
-   has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
+/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says;
+   elements NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off,
+   1 on again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a
+   reference has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
 GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
                                                const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
 
-/* Is the boundary vertex a corner: only one face there, or the boundary turns by more than 45 degrees. */
+/* Is this boundary vertex a corner: with one face only, or with a turn of the boundary by more than 45 degrees? */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* -- solving -- */
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
-   second call goes on from where the first ended, or from where you have moved the vertices to. The system's values of
-   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" of
-   fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
-   the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
-   written.
+   second call goes on from the end of the first, or from the positions that you have set since. The system's values for
+   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" for
+   fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
+   closeness to the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error
+   nothing is written.
 
-   Where only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness,
-   steps are found by the multipliers of the constraints if these are clearly fewer than the variables. With fairness,
+   If only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness, steps
+   are found by the constraints' multipliers, provided that these are clearly fewer than the variables. With fairness,
    circular or conical faces they are not, and options->nearest and drags always need the matrix of all variables; the
-   first of these after a solve by multipliers, and the first such solve after it, analyse anew. The same constraints
-   are met, on paths that differ a little.
+   first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
+   constraints are met, on paths that differ a little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
-   face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
-   the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
-   gproj_measure.
+   face that is about to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts
+   on the steps only, not on residual and verdict. It helps; gproj_measure counts the faces that have turned all the
+   same.
 
    options->smooth (the command line's default) does more for meshes of any resolution:
-   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of
-     by |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that
-     satisfy the linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is
-     biased: no closeness is added. Forces are measured, too, where steps fail.
+   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
+     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). This takes the smoothest
+     change that satisfies the linearised rows: meshes stay fair that way, and move farther for it. Nothing is biased:
+     no closeness is added. Forces are measured, too, if steps fail.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
-     by what the linearised rows have missed: full steps are good ones then, and their number hardly depends on how fine
-     the mesh is.
+     by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
+     mesh is.
    - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50
      iterations or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and
-     edges keep a length. The rows come as they are needed, as the group "corners". Where no step is found with them
-     they are let go; gproj_result.spoiled tells what that has cost.
-   - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to
+     edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
+     are let go; gproj_result.spoiled counts the damage.
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps, up to
      three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
    Iterations are a limit there, no schedule: allow 200.
 
-   For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
+   For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
    face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
-/* The same solve in frames, for programs that draw between its iterations: begin once, step each frame, and as long as
+/* A solve in frames, for programs that draw between iterations: begin once, step each frame, and as long as
    gproj_step_is_on there is more to do.
 
        gproj_step_begin(form, 20, NULL);
@@ -1408,13 +1404,13 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 
    gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step
    takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0
-   seconds: one, without a clock. It writes the positions and returns how the solve stands: GPROJ_TIME_OUT while it is
-   on, then its verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
+   seconds: one, without a clock. It writes the positions and returns the state of the solve: GPROJ_TIME_OUT while it is
+   on, then the verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
    gproj_solve. Between two frames weights may be changed and targets moved; vertices are moved by targets, or before
-   another gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve,
-   gproj_drag_begin and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure,
-   such as seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts
-   the seconds inside all steps. */
+   another gproj_step_begin: positions are only written. gproj_step_stop ends it at the present positions; so do
+   gproj_solve, gproj_drag_begin and another gproj_step_begin. If groups or rows were added in between it fails. After a
+   failure, such as seconds without a clock in the host, or an error of the form, it is no longer on.
+   options->time_budget counts the seconds inside all steps. */
 GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_step_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
@@ -1427,21 +1423,21 @@ GPROJ_API void gproj_step_stop(gproj_form *form);
    so w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
        sum_j w_ij (v_i - v_j) + f_i = 0                     (paper 3.1; with loads that point down, along -z)
    f_i is the load on the vertex. Units are the caller's: lengths as in the mesh, loads in any unit of force, and forces
-   come out in that one. Inside, both are normalised, so units do not change the shape. Edges between two pinned
+   come out in that unit. Inside, both are normalised, so units do not change the shape. Edges between two pinned
    supports have no force: it would be undetermined. */
 
 /* Loads follow the shape: they are linearised anew in each iteration. */
 typedef struct gproj_loads {
     double density;             /* weight per length of every edge (rho A); half of it loads each end */
     const double *edge_density; /* edge_count numbers instead; NULL: `density` for all */
-    double area_load;           /* down, per area of each face: an equal part on each of its corners */
+    double area_load;           /* down, per area of each face: an equal part on each corner */
     double snow;                /* down, per area of each face's projection to the ground */
     const double *point_load;   /* 3 * vertex_count: a force on each vertex; NULL: none */
 } gproj_loads;
 
 /* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
-   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; whether it stays
-   where it is, is another matter: see gproj_add_fixed and gproj_add_gliding_boundary. */
+   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; it may still move:
+   see gproj_add_fixed and gproj_add_gliding_boundary. */
 typedef struct gproj_supports {
     int32_t count;
     const int32_t *vertex;
@@ -1449,9 +1445,9 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces, drawn to those of a shallow dome, so that the shape has to move
-   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a
-   dome first. Later solves go on from the forces they find. */
+   forces start from the solution of gproj_find_forces, drawn to those in a shallow dome, so that the shape has to move
+   little; if it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
+   first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
 /* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
@@ -1462,31 +1458,31 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
    sections: A = 1, bounds of the force. min = -INFINITY or max = INFINITY: no bound on that side. */
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight);
-/* A wish: opposite edges of each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
+/* A wish: opposite edges in each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
 /* The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
-/* Sets them as the start of the next solve; NULL: the next solve finds its own start. */
+/* Sets force densities, edge_count numbers, as the start for the next solve; NULL: the solve finds a start. */
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
-/* The variable of an edge's force in the form's system, for rows of your own: the density in the form's units, which
+/* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
-/* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
+/* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
 
-/* How self-supporting is the mesh as it is? The forces that balance its loads best: densities (edge_count numbers, may
-   be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active gproj_add_compression and
-   gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): what is left in each vertex, over the mean
-   load. Changes nothing. */
+/* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
+   numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
+   gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
+   unbalanced force at each vertex, over the mean load. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
-/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is what those of gproj_find_forces
-   leave in each vertex, over the mean load, 0 along the axes of supports. As virtual displacements of the vertices it
-   is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces w_ij (v_i - v_j)'(d_i - d_j) >= 0,
-   which is never the opposite. It holds for these positions only; others may be balanced. d is 0, but for rounding,
-   where forces are found. */
+/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
+   gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
+   of the vertices it is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces do w_ij (v_i -
+   v_j)'(d_i - d_j) >= 0, never the opposite. It holds for these positions only; others may be balanced. d is 0, but for
+   rounding, if forces are found. */
 GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
 
 typedef struct gproj_forces {
@@ -1499,20 +1495,20 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* The mesh as it is, with the forces of the last solve. */
+/* Measures the mesh as it is, with the forces from the last solve. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-drag   Dragging: a form follows one or several handles at screen rate, and what must hold goes on holding.
+   >>api-drag   Dragging: a form follows one or several handles at screen rate, and constraints go on holding.
 
    gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the
-   meshes that satisfy it (paper, section 2). gproj_drag_move then finds, with what has been prepared,
+   constraints (paper, section 4). gproj_drag_move then finds, from the prepared factorisation,
        the dx with G dx = 0 and S'dv = (S'S) d that has the smallest |dv|^2 + 0.0001 |da|^2
-   where d is how far the handles have been moved, dv the part of dx that belongs to the vertices, da its other part
-   (normals, axes, forces), and S the weights of the handles' vertices, one column a handle. So a vertex goes where it
-   is dragged to, and a point of a coarse cage takes its fine vertices along, S d if nothing stands against it. Where
-   the handles cannot follow fully, they follow in the sense of least squares. The mesh is dragged out of what must hold
-   by the square of the drag only: half a drag, a quarter of the error. gproj_drag_end projects that away.
+   with the handles' displacements d, the vertices' part dv and the other part da of dx (normals, axes, forces), and the
+   weights S of the handles' vertices, one column a handle. So a vertex goes to the place it is dragged to, and a point
+   of a coarse cage takes its fine vertices along, by S d if nothing stands against it. Handles that cannot follow fully
+   do so in the sense of least squares. The constraints' error is proportional to the square of the drag: half a drag, a
+   quarter of the error. gproj_drag_end projects it away.
 
        gproj_drag *drag = gproj_drag_begin(form, &handles, NULL, &error);
        while (mouse_is_down()) {
@@ -1524,8 +1520,8 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
    While it lasts the form must not be solved, restored or destroyed, and nothing be added to it. */
 typedef struct gproj_drag gproj_drag;
 
-/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those
-   of its column of the subdivision. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column,
+/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: for a point of a coarse cage, a
+   column of the subdivision's matrix. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column,
    t->weight, NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL:
    handle k is vertex[k]. weight NULL: all are 1. */
 typedef struct gproj_handles {
@@ -1533,69 +1529,69 @@ typedef struct gproj_handles {
     const int64_t *start; /* count + 1 entries, start[0] >= 0 */
     const int32_t *vertex;
     const double *weight;
-    /* 3 * count: where the handles are now, in the mesh's units; NULL: at the weighted means of their vertices. */
+    /* 3 * count: the handles' positions now, in the mesh's units; NULL: the weighted means of their vertices. */
     const double *position;
 } gproj_handles;
 
 typedef struct gproj_drag_options {
-    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew
-       at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs
-       an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
+       anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
+       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
 
-/* What a drag has come to. */
+/* The state of a drag. */
 typedef struct gproj_drag_info {
     int32_t handles;
-    int32_t freedom;        /* independent motions of the handles that are possible, at most 3 * handles */
+    int32_t freedom;        /* possible independent motions of the handles, at most 3 * handles */
     int32_t linearisations; /* so far: 1, or more with a residual_bound */
-    int32_t solves;         /* right-hand sides solved by all of them */
-    double behind;          /* the largest distance of a handle from where it should be, in the mesh's units */
+    int32_t solves;         /* right-hand sides solved by all linearisations */
+    double behind;          /* the largest distance between a handle and its target, in the mesh's units */
 } gproj_drag_info;
 
-/* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
-   one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6),
-   which stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`,
-   nothing has changed: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER for what is wrong with handles and options,
-   GPROJ_ERROR_NUMBER where what must hold cannot be linearised, GPROJ_ERROR_STATE during a solve or another drag, and
+/* Begins a drag at the mesh's positions as they are, with the forces from the last solve (with equilibrium there must
+   have been one). All groups of constraints with a weight are linearised, and the bounds that are at their limit
+   (within 1e-6), which stay there; other bounds may be passed until the release. A solve in frames that is on ends.
+   NULL: see `error`, nothing has changed: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER for wrong handles and options,
+   GPROJ_ERROR_NUMBER if the constraints cannot be linearised, GPROJ_ERROR_STATE during a solve or another drag, and
    before forces have values. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 6
    right-hand sides for each handle. */
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
                                        const gproj_drag_options *options, gproj_error *error);
-/* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
-   handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position
-   is not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
+/* Moves the handles: positions, 3 a handle, in the mesh's units. Displacements count from the beginning of the drag, so
+   positions in between do not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for each
+   handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
+   not finite or beyond 1e70, or, with a residual_bound, is so far that the constraints cannot be linearised there. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
-/* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation
+/* The largest |phi| over rows that must hold, in mean edge lengths, on the mesh as it has been dragged: an evaluation
    of all rows. */
 GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
-GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* from the last call that failed */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
 /* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over
    under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go
-   to where they are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its
-   shape, so that features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The
-   form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and
-   "drag handles" to the form, so it is analysed anew. Where there was no room to follow (gproj_drag_residual well above
-   0.1) the handles may end far from where they were dragged. Where the result says that 10 iterations were not enough,
-   gproj_solve goes on; after an error the mesh is as before the drag. */
+   to their present positions, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences in the change, not in
+   the shape, so that features stay), and with 0.001 * 0.9^n all vertices keep their positions before the drag; then
+   nothing is wished. The form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups
+   "drag fairness" and "drag handles" to the form, so it is analysed anew. If there was no room to follow
+   (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
+   iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were
-   added during the drag, or the form has met an error, the mesh and all variables are put back. */
+/* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
+   during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
-   weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it
-   is. What follows from a restored state is what would have followed when it was saved: to the bit on the same
-   processor and build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for
-   the last digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same
-   form, or in one that the same calls have made from the same mesh.
+   weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
+   (gproj_step). A restored form goes on as the saved one would have: to the bit on the same processor and build, if no
+   first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The state
+   lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the same
+   calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -1608,13 +1604,14 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 /* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
    error of the form. */
 GPROJ_API size_t gproj_state_size(gproj_form *form);
-/* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. Errors: GPROJ_ERROR_ARGUMENT
-   (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or that of the form. */
+/* Writes the state to buffer[0..size - 1]; size comes from gproj_state_size. Changes nothing. Errors:
+   GPROJ_ERROR_ARGUMENT (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or the
+   form's error. */
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
-/* Restores it. Refused, with a sentence and without a change, where the bytes are no state, are damaged or cut off
+/* Restores a state. Refused, with a sentence and without a change, if the bytes are no state, are damaged or cut off
    (GPROJ_ERROR_SYNTAX), or belong to another form (GPROJ_ERROR_ARGUMENT); and during a solve or a drag
-   (GPROJ_ERROR_STATE). Without memory the form has that error. Callbacks of a solve in frames stay those of the one
-   that is on in the form; there are none where none is on. */
+   (GPROJ_ERROR_STATE). Without memory the form has that error. A restored solve in frames has the callbacks of the
+   solve that is on in the form, or none if none is on. */
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error);
 
 #ifdef __cplusplus
