@@ -5,15 +5,15 @@
      Take a polygon mesh and say what must hold (flat or circular panels, conical nodes, static equilibrium, compression
      only, bounds on forces, lengths and areas, boundaries on curves, fixed vertices, a volume, constraints of your own)
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
-     machine precision, and you get an honest verdict: what holds, how exactly, and where it does not. For editors:
-     vertices are dragged at screen rate while everything holds, solves go on frame by frame, states are saved for undo.
-     Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their combinatorics, closed
-     curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with bounds, and
-     projection onto any system of quadratic equations and inequalities.
+     machine precision, and you get an honest verdict: which constraints hold, how exactly, and the worst element by
+     name. For editors: vertices are dragged at screen rate while everything holds, solves go on frame by frame, states
+     are saved for undo. Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their
+     combinatorics, closed curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with
+     bounds, and projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics as they are (to change them there
-       are >>api-edit, >>api-subdivide and >>api-fill);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics (to change them, see >>api-edit,
+       >>api-subdivide and >>api-fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
        one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
@@ -56,9 +56,107 @@
      gproj_form_units(form, centre, &scale);          // internal = (position - centre) * scale
      gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
 
-   WORDS   A wish is what guides: fairness, closeness. Wishes fade after half of the iterations, so that what must hold
-     can hold exactly: constraints, which are equations, and bounds, which are inequalities. A group is a set of rows of
-     one kind with a common weight. Residuals of a form are in mean edge lengths.
+   WORDS   The few of our own, each with the field's term:
+     must hold        a hard constraint: an equation phi = 0 or a bound (inequality) phi >= 0
+     wish             a soft constraint or energy, such as fairness; guides, then fades so that the rest holds exactly
+     row, group       one scalar equation; the rows of one kind, with a common name, weight and schedule
+     element, place   the vertex, edge or face that a row belongs to; the kind of thing that an index counts
+     schedule         the weight in each iteration (continuation)
+     refresh          relinearisation of rows that are not quadratic, before each iteration
+     merit            sum w^2 phi^2, the objective of the line search
+     settle           variable projection: normals and axes take their best values for the vertices as they are
+     bend             second-order correction of a step
+     stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
+     brake            a damping of single variables that acts only after steps have failed
+     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way
+     attempt          a restart of a smooth solve with other stiffness; within one iteration: a factorisation
+     verdict          the outcome of a solve and a sentence about it
+     spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
+     cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
+     frame            the iterations of a solve between two pictures (gproj_step)
+   Residuals of a form are in mean edge lengths.
+
+   HOW IT WORKS   Guided projection (Tang et al. 2014) is Newton's method for more unknowns than equations.
+
+     1. Quadratic by new variables. "This quad is planar" is a cubic equation in the coordinates. With a unit normal n
+     for the face as three more variables the equations become quadratic, one for each edge i j and one for n:
+         n'(v_i - v_j) = 0,    n'n = 1.
+     Points on the axes of circles, axes of cones, force densities and common lengths are such variables, too. Hence all
+     constraints are rows                                                                                (paper, eq. 1)
+         phi(x) = 1/2 x'H x + b'x + c = 0,    grad phi = H x + b,
+     with a few numbers each: cheap to evaluate, trivial to differentiate. Conditions that stay worse than quadratic (a
+     vertex on a curve, an area, a volume) are replaced by their tangents at x, anew in each iteration.
+     2. Linearise. A step dx should satisfy phi + g'dx = 0 in all rows, g = grad phi(x). Planar quads have 6 unknowns a
+     face (one vertex and one normal, on average) and 5 equations, one of which follows from the others: many dx do.
+     3. The least step. Rounding turns redundant equations into contradictions, so they are not solved literally.
+     Instead
+         sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2                                                           (paper, eq. 3)
+     over the rows of constraints and wishes is made smallest (Levenberg 1944, Marquardt 1963):
+         (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi g,
+     one sparse, symmetric, positive definite matrix and one factorisation (>>cholesky). Among all dx that satisfy the
+     rows, eps chooses the shortest; unknowns that no row mentions stay put.
+     4. Quadratic at the end. A full step leaves exactly 1/2 dx'H dx in each quadratic row, besides a share of about
+     (eps/w)^2 in phi. Near a solution |dx| is proportional to the residual, hence 1e-2 becomes 1e-4, 1e-8, 1e-16. To
+     keep out of the way, eps follows the residual from 1e-3 down to 1e-5. Far from a solution a full step may do harm:
+     the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows (>>loop).
+     5. Weights against eps. A weight multiplies the row and enters squared: with w = 1 and eps = 1e-3 a constraint is a
+     million times stronger than the pull towards staying put, with w = eps it goes half way only. Constraints that
+     agree hold at any weight well above eps. Ratios matter if rows compete: constraints at 1, wishes at 0.01 to 0.3.
+     6. Wishes fade. Fairness and closeness choose among the meshes that satisfy the constraints. A wish that stayed on
+     would bias the end: the sum above balances it against the constraints. So wishes lead in the first half of the
+     iterations, then weigh 0 (unless their schedules say otherwise), and the constraints alone converge as in 4.
+     7. Inequalities. A bound phi >= 0 joins the sum if it is violated, or would be by the step; the step is then found
+     again (an active set). The paper's squared dummy variables are not needed.
+
+     gproj_solve_options.smooth makes this work on fine meshes. The shortest step is a bad guide there: the nearest mesh
+     with flat faces is a sawtooth. So, with a stiffness k,
+     - the smooth metric adds k^2 |dx_i - dx_j|^2 along edges, and a little |dx_i|^2: neighbours move together, nothing
+       is biased. k follows how well the linearised rows foretold the last step, and rests near the solution;
+     - settling (Golub, Pereyra 1973) refits normals and axes to the vertices after each step. Carried along linearly,
+       they would report every rotation as an error and cut good steps short;
+     - bending adds a second-order correction. The error 1/2 dx'H dx of a step is known exactly, and the factor at hand
+       turns it into a correction for the price of a solve;
+     - the corners' safeguards (>>corners) are bounds: each corner keeps a part of its area. Exactly planar faces may be
+       folded, crossed or empty; these may not. If no step exists with the safeguards they let go; the verdict tells.
+
+     Projection ends at some solution near its path, not at the best. gproj_solve_options.nearest goes on to a local
+     minimum of the wishes' sum E, such as closeness, among all x that satisfy the constraints: grad E + sum y g = 0,
+     with multipliers y that hold the constraints against wishes which need not fade. Allow 30 iterations.
+
+   FROM THE PAPER TO THE CODE   Each line: section or equation, function, program in examples/, and GPROJT_TEST(name) in
+   the file tests/test_....c. A dash: no program.
+     (1)     quadratic rows     gproj_system_add_row          custom_constraint    system: values_and_gradients_by_hand
+     (2)     wishes, energy     gproj_system_add_group        -                    loop: schedules
+     (3)     one step           gproj_system_solve            -                    system: steps_of_random_systems
+     3.1     planar faces       gproj_add_planarity           planarize            form: real_meshes_become_planar
+     3.1     edge lengths       gproj_add_lengths             -                    shape: lengths
+     3.1     equilibrium        gproj_add_equilibrium         thrust_network       statics: domes_stand_by_compression
+     3.1     compression alone  gproj_add_compression         self_supporting_roof statics: planar_faces_and_compression
+     3.1     bounds on stress   gproj_add_stress_bounds       -                    statics: stresses_stay_within_bounds
+     3.2     fairness           gproj_add_fairness            boundary_fill        form: fairness_makes_smooth
+     3.2     in tangent planes  gproj_add_tangential_fairness hybrid_fairing       form: tangential_fairness_evens_out
+     3.2     of the Gauss image gproj_add_gauss_fairness      hybrid_fairing       form: gauss_fairness
+     3.3     vertices on curves gproj_add_gliding             courtyard            form: gliding_on_a_curve
+     3.3     near a surface     gproj_add_reference           subdivision_design   form: reference_draws_near
+     3.4     first forces       gproj_find_forces             -                    statics: best_forces
+     3.4     a filled boundary  gproj_mesh_fill               boundary_fill        fill: random_curves
+     3.5     circular faces     gproj_add_circularity         circular_mesh        shape: circular_faces
+     3.5     conical vertices   gproj_add_conicality          conical_mesh         offset: conical_meshes
+     3.5     equal areas        gproj_add_equal_areas         equal_areas          shape: areas_become_more_equal
+     3.5     volume             gproj_add_volume              volume               shape: volume_is_reached
+     3.5     fair forces        gproj_add_force_fairness      courtyard            statics: fair_forces
+     3.5     cost, total area   gproj_add_cost                -                    size: total_area_and_cost_are_reached
+     3.5     bounds on sizes    gproj_add_length_bounds       courtyard            size: lengths_and_areas_in_a_range
+     Fig. 2  coarse handles     gproj_mesh_subdivide          subdivision_design   drag: points_of_a_cage
+     Fig. 8  parallelograms     gproj_add_parallelograms      parallelograms       shape: quads_become_parallelograms
+     Fig. 10 closeness          gproj_add_closeness           planarize_compare    form: closeness_limits_the_way
+     Fig. 13 lifting            gproj_add_lifting             greenhouse           boundary: lifting
+     Fig. 13 right angles       gproj_add_orthogonal_boundary greenhouse           boundary: boundary_at_right_angles
+     4       dragging           gproj_drag_begin              drag                 drag: the_change_is_the_smallest
+
+   Where the paper prints something else: the last term in its normal equations needs eps^2, the sign in its equilibrium
+   is reversed, its volume is exact for triangles only, and its conical rows hold trivially at c = 0. The comments below
+   give the rows that are solved.
 
    CONTENTS (search for the tag)
      the interface
@@ -131,17 +229,18 @@
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
-   MEMORY   Each object takes its memory from the allocator of its gproj_host, counts it, and gives it all back when it
-     is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate nothing, unless
+   MEMORY Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
+   back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
+   nothing, unless
      during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
      sets coefficients of planarity, fairness or their like (which rows have in common before). Every allocation may
-     fail: the call returns an error and nothing leaks. What a call creates from another object (a mesh from a mesh, a
-     curve, a stencil) has its own copy of all it needs; a form alone keeps pointers, to its mesh and to the curves and
-     surfaces that were added to it, and a drag to its form.
+     fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a mesh, a curve, a
+     stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and surfaces added to
+     it, a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
-     by different threads at the same time; one object by one thread at a time. A form, its mesh, its system and its
-     drag are one object in this. Reading an object that no one changes is always safe.
+     by different threads at the same time; one object by one thread at a time. A form with its mesh, system and drag
+     counts as one object. Reading an object that no one changes is always safe.
 
    DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
      run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
@@ -153,7 +252,7 @@
 
    REFERENCES
      Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple. ACM Trans. Graph. 33(4),
-     2014. Others stand in the sections that are based on them. */
+     2014. Other sources are named in the sections based on them. */
 #ifndef GUIDEDPROJ_H
 #define GUIDEDPROJ_H
 
@@ -209,9 +308,9 @@ typedef struct gproj_allocator {
 } gproj_allocator;
 
 /* Threads. `run` calls task(data, index) once for each index in 0..count-1, in any order, on any threads, and
-   returns when all calls have returned. NULL: a plain loop. How work is cut into tasks depends on the problem
-   alone, and so do the results, bit for bit: neither the number of threads nor their speed matters. The same loops
-   come in every iteration: threads that get the same indices again have their data in the cache. */
+   returns when all calls have returned. NULL: a plain loop. The problem alone decides how work is cut into tasks, and
+   so the results, bit for bit: neither the number of threads nor their speed matters. Each iteration runs the same
+   loops: threads that get the same indices again find their data in the cache. */
 typedef void (*gproj_task)(void *data, int32_t index);
 typedef struct gproj_parallel {
     void (*run)(void *user, int32_t count, gproj_task task, void *data);
@@ -231,7 +330,8 @@ typedef struct gproj_host {
     gproj_clock clock;
 } gproj_host;
 
-/* What an object holds, in bytes, and how many allocations and reallocations it has asked for so far. */
+/* The bytes that an object holds and has held at most, and the allocations and reallocations it has asked for so
+   far. */
 typedef struct gproj_memory {
     size_t used;
     size_t peak;
@@ -261,7 +361,7 @@ typedef enum gproj_code {
     GPROJ_CODE_FORCE_INT = 0x7fffffff
 } gproj_code;
 
-/* What the index of an error, of a row or of a group's worst row counts. */
+/* The kind of element that the index of an error, a row or a group's worst row counts. */
 typedef enum gproj_place {
     GPROJ_PLACE_NONE,
     GPROJ_PLACE_VERTEX,
@@ -282,11 +382,11 @@ enum {
 typedef struct gproj_error {
     gproj_code code;
     gproj_place place;
-    int64_t index;                    /* from 0 (lines: from 1); -1 where there is none */
+    int64_t index;                    /* from 0 (lines: from 1); -1: no index */
     char message[GPROJ_MESSAGE_SIZE]; /* one sentence, UTF-8, without a newline; "" for GPROJ_OK */
 } gproj_error;
 
-/* The general sentence of a code ("out of memory"), a constant string. */
+/* The general sentence for a code ("out of memory"), a constant string. */
 GPROJ_API const char *gproj_code_string(gproj_code code);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -297,8 +397,8 @@ enum {
 };
 
 /* Reads a decimal number ([+-]digits[.digits][e[+-]digits], also "inf" and "nan" in any case, so that readers
-   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0
-   where there is no number. Numbers too large become infinite. */
+   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0 if there
+   is no number. Numbers too large become infinite. */
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value);
 
 /* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns its length. */
@@ -307,16 +407,16 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-cholesky   Sparse Cholesky factorisation P A P' = L L' of symmetric positive definite matrices.
 
-   Usable by itself. Analyse a pattern once, then factor any number of matrices that have this pattern; neither
-   the second and later gproj_cholesky_factor nor gproj_cholesky_solve allocates. One object is used by one
-   thread at a time. */
+   Usable by itself. Analyse a pattern once, then factor any matrices with this pattern; neither the second and later
+   gproj_cholesky_factor nor gproj_cholesky_solve allocates. One object is used by one thread at a time. */
 typedef struct gproj_cholesky gproj_cholesky;
 
 typedef enum gproj_ordering {
-    GPROJ_ORDERING_BEST,       /* one of the next two: dissection where it is likely to pay in four factorisations */
+    GPROJ_ORDERING_BEST,       /* one of the next two: dissection if it is likely to pay in four factorisations */
     GPROJ_ORDERING_AMD,        /* approximate minimum degree */
-    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the middle */
-    GPROJ_ORDERING_GIVEN,      /* `permutation` of the options */
+    GPROJ_ORDERING_DISSECTION, /* light nodes first, then nested dissection by the smallest separators near the
+                                  middle */
+    GPROJ_ORDERING_GIVEN,      /* options.permutation */
     GPROJ_ORDERING_NATURAL,    /* as the matrix stands */
     GPROJ_ORDERING_FORCE_INT = 0x7fffffff
 } gproj_ordering;
@@ -328,7 +428,7 @@ typedef struct gproj_cholesky_options {
     bool disable_postorder;     /* keep the given order exactly; supernodes become small */
 } gproj_cholesky_options;
 
-/* What an analysis predicts and a factorisation has done. */
+/* Predictions of an analysis, and the state after a factorisation. */
 typedef struct gproj_cholesky_info {
     int32_t columns;        /* n */
     int32_t supernodes;     /* after relaxation */
@@ -336,8 +436,8 @@ typedef struct gproj_cholesky_info {
     int64_t exact_entries;  /* the same without relaxation */
     double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
     size_t factor_bytes;    /* memory for the values of L */
-    size_t work_bytes;      /* memory for the work arrays of factor and solve */
-    int32_t failed_column;  /* of A, where the last factorisation met a pivot that is not > 0; else -1 */
+    size_t work_bytes;      /* memory for the work arrays in factor and solve */
+    int32_t failed_column;  /* the column of A whose pivot was not > 0 in the last factorisation; else -1 */
     const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
@@ -355,13 +455,13 @@ GPROJ_API const gproj_error *gproj_cholesky_error(const gproj_cholesky *cholesky
 GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky);
 
 /* Analyses the pattern of an n x n symmetric matrix in compressed columns: rows row[start[j]..start[j+1]-1] in
-   column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the
-   lower or in the upper triangle (all in one of the two, or mixed); diagonal entries may be left out (then 0).
-   Repeated entries are summed. `options` may be NULL. The arrays are not needed after the call. */
+   column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the lower or
+   the upper triangle (mixed or not); diagonal entries may be left out (then 0). Repeated entries are summed. `options`
+   may be NULL. The arrays are not needed after the call. */
 GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
                                             const int32_t *row, const gproj_cholesky_options *options);
 
-/* Factors the matrix with these values, in the order of `row` at the analysis. */
+/* Factors the matrix with these values, ordered like `row` at the analysis. */
 GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, const double *values);
 
 /* Solves A X = B for `count` right-hand sides, each of n contiguous numbers. x may be b. */
@@ -382,24 +482,24 @@ GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *choles
 
        minimise  1/2 |A x - b|^2 + 1/2 damping^2 |x|^2   subject to  lower <= x <= upper
 
-   For example the forces of a mesh that stands by compression alone: one variable x_e >= 0 for each edge, three rows
-   for each vertex without support. A may have dependent columns; where the solution is then not unique, one that is
-   in the middle of the possible ones, or near the start, is found. */
+   For example the forces in a mesh that stands by compression alone: one variable x_e >= 0 for each edge, three rows
+   for each vertex without support. A may have dependent columns; if the solution is then not unique, one in the middle
+   of the possible ones, or near the start, is found. */
 typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
-    const int32_t *row;   /* of each entry, in any order; entries of the same place are summed */
+    const int32_t *row;   /* of each entry, in any order; entries at the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
     const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
-    double damping;       /* >= 0, in the units of the entries of A; makes the solution unique */
+    double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
     GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
     GPROJ_LEAST_SQUARES_LIMIT, /* factorisations or digits ran out: x is the best point met, see kkt, which may be small
-                                   where large entries cancel and what is left is less than their rounding */
+                                  if large entries cancel and the rest is less than their rounding */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
     GPROJ_LEAST_SQUARES_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_least_squares_outcome;
@@ -409,24 +509,24 @@ typedef struct gproj_least_squares_result {
     int32_t factorisations;
     int32_t at_bounds; /* variables that are equal to a bound */
     double residual;   /* |A x - b|, Euclidean */
-    /* Optimality (Karush, Kuhn, Tucker): x is within its bounds, exactly, and the gradient g = A'(A x - b) + damping^2 x
-       is 0 where x is between its bounds, >= 0 at a lower and <= 0 at an upper bound. This is the largest violation,
-       divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y|, where y is the point within the bounds that
-       is nearest to 0; both in units of the variables in which the columns of A have length 1. */
+    /* Optimality (Karush, Kuhn, Tucker): x is exactly within the bounds, and each entry of the gradient g = A'(A x - b)
+       + damping^2 x is 0 for a variable between its bounds, >= 0 at a lower and <= 0 at an upper bound. kkt is the
+       largest violation, divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y| for the y nearest to 0
+       within the bounds; both in units of the variables that give the columns of A length 1. */
     double kkt;
-    gproj_memory memory; /* without that of the factorisation: see factor_bytes, work_bytes */
+    gproj_memory memory; /* without the factorisation's: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
     size_t work_bytes;
 } gproj_least_squares_result;
 
-/* Solves the problem. x, `columns` numbers: where to start; at the end the solution. A start of zeros is good. A start
+/* Solves the problem. x, `columns` numbers: the start, and at the end the solution. Zeros are a good start. A start
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
-   zeros. `host`, `result` and `error` may be NULL. The work are factorisations of a matrix with the pattern of A'A, so
-   a row of A must not have very many entries. Usual are 5 to 20; up to 30 where most bounds matter and the residual
-   stays large; there are never more than 80. Where A has dependent columns and damping is 0, nothing is added to the
-   problem: 1e-12 of the diagonal of A'A stands in the matrix of each step, but not in the conditions that the solution
-   satisfies. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
-   for what is wrong with the problem, GPROJ_ERROR_MEMORY. */
+   zeros. `host`, `result` and `error` may be NULL. The work is in factorisations of a matrix with the pattern of A'A,
+   so a row of A must not have very many entries. Usual are 5 to 20; up to 30 if most bounds matter and the residual
+   stays large; there are never more than 80. If A has dependent columns and damping is 0, nothing is added to the
+   problem: the matrix in each step has 1 + 1e-12 times the diagonal of A'A, the conditions that the solution satisfies
+   do not. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for
+   a wrong problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -435,17 +535,16 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Variables x, and rows
        phi(x) = sum_t a_t x_i(t) x_j(t) + sum_t b_t x_i(t) + c                                  (paper, eq. 1)
-   in groups. A group of kind GPROJ_CONSTRAINT must hold: phi = 0. A group of kind GPROJ_BOUND must hold, too, but
-   phi >= 0 is enough. A group of kind GPROJ_WISH guides: the sum of its phi^2 should be small, and it fades so that
-   the constraints can be met exactly. A group's weight multiplies its rows, so it enters squared. One step from x
-   solves                                                                                       (paper, eq. 3)
+   in groups. A GPROJ_CONSTRAINT must hold: phi = 0. A GPROJ_BOUND must hold, too, but phi >= 0 is enough. A GPROJ_WISH
+   guides: the sum of phi^2 over the group should be small, and it fades so that the constraints can be met exactly. A
+   group's weight multiplies its rows, so it enters squared. One step from x solves (paper, eq. 3)
        (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi(x) g,    g = grad phi(x),
    over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
 
-   The row of a bound counts by its violation, min(phi, 0), in residual and merit. It has a part in the sums where it is
-   violated; and where a step would violate it, the step is found again with it, and without rows that would only hold
-   the step back (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some
-   iterations, and nothing where they are far from being reached. */
+   Bounds count by their violation, min(phi, 0), in residual and merit. A row takes part in the sums if it is violated;
+   if a step would violate more rows, the step is found again with these, and without rows that would only hold it back
+   (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some iterations, and nothing as long as
+   they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
 typedef enum gproj_kind {
@@ -456,8 +555,8 @@ typedef enum gproj_kind {
 } gproj_kind;
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
-   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at most).
-   So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
+   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at
+   most). So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
@@ -470,12 +569,12 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
-/* Called before each iteration for groups whose rows depend on x in another way than quadratic (closest points, tangent
-   frames): reads x, and replaces its rows by gproj_system_set_row. Must not add anything to the system. */
+/* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
+   and replaces the rows by gproj_system_set_row. Must not add anything to the system. */
 typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
 
 enum {
-    GPROJ_NAME_SIZE = 32 /* of a group's name, with the final NUL */
+    GPROJ_NAME_SIZE = 32 /* for a group's name, with the final NUL */
 };
 
 typedef struct gproj_group {
@@ -484,14 +583,14 @@ typedef struct gproj_group {
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
        which costs half a solve more per row. */
     bool global;
-    gproj_place place; /* what the element numbers of its rows count */
+    gproj_place place; /* the kind of element that the rows' element numbers count */
     gproj_schedule schedule;
     gproj_refresh refresh; /* NULL: the rows are as they were added */
     void *refresh_user;
 } gproj_group;
 
-/* The state of a group at the current x, in the units of its rows, without weights. phi stands for min(phi, 0) in a
-   bound: how far it is violated. */
+/* A group at the current x, in the units of the rows, without weights. In a bound phi stands for min(phi, 0), the
+   violation. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -499,8 +598,8 @@ typedef struct gproj_group_info {
     gproj_schedule schedule;
     int32_t rows;
     double max;            /* largest |phi| */
-    double rms;            /* root of the mean of phi^2 */
-    int32_t worst_row;     /* where the largest is; -1 without rows */
+    double rms;            /* root mean square of phi */
+    int32_t worst_row;     /* the row with the largest |phi|; -1 without rows */
     int32_t worst_element; /* the element number of that row */
 } gproj_group_info;
 
@@ -508,7 +607,7 @@ typedef enum gproj_phase {
     GPROJ_PHASE_ANALYSE,  /* pattern, ordering, symbolic factorisation: once */
     GPROJ_PHASE_REFRESH,  /* refresh callbacks, evaluation of rows */
     GPROJ_PHASE_ASSEMBLE, /* right-hand sides */
-    GPROJ_PHASE_FACTOR,   /* the matrix, front by front, its factor, and half of the solution */
+    GPROJ_PHASE_FACTOR,   /* the matrix, front by front, the factor, and half of the solution */
     GPROJ_PHASE_SOLVE,
     GPROJ_PHASE_COUNT,
     GPROJ_PHASE_FORCE_INT = 0x7fffffff
@@ -524,17 +623,17 @@ typedef enum gproj_outcome {
     GPROJ_OUTCOME_FORCE_INT = 0x7fffffff
 } gproj_outcome;
 
-/* What one iteration did; given to the callback after it. */
+/* One iteration; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number; /* from 1, through all attempts; some are left out where no step is found before a schedule ends */
-    double residual;   /* largest |phi| of all rows that must hold with weight > 0, after the step */
-    double merit;      /* sum of w^2 phi^2 over what must hold and wishes, after the step */
-    double energy;     /* the wishes' part of it */
-    double step;       /* largest |dx| */
-    double epsilon;    /* the regularisation used */
-    double length;     /* the part of the step that was taken: 1, or another where the merit asked for it */
-    int32_t attempts;  /* factorisations: 1, or more where the step was damped, guarded or met bounds */
-    double optimality; /* nearest: see gproj_result */
+    int32_t number;   /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
+    double residual;  /* largest |phi| over rows that must hold with weight > 0, after the step */
+    double merit;     /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
+    double energy;    /* the wishes' part of the merit */
+    double step;      /* largest |dx| */
+    double epsilon;   /* the regularisation used */
+    double length;    /* the part of the step that was taken: 1, or another if the merit asked for it */
+    int32_t attempts; /* factorisations: 1, or more if the step was damped, guarded or met bounds */
+    double optimality;                 /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
 
@@ -543,62 +642,62 @@ typedef struct gproj_iteration {
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
-    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or what rounding allows where that is more: 8
-       roundings of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4
-       of sum_k |dphi/dx_k x_k| where nothing else keeps a row from holding (large forces). The last gives at most 1e-11,
-       the others 1e-8. */
+    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or more if rounding asks for it: 8 roundings
+       of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4 of sum_k
+       |dphi/dx_k x_k| if nothing else keeps a row from holding (large forces). The last gives at most 1e-11, the others
+       1e-8. */
     double tolerance;
-    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3,
-                           less where steps fall short near the end) */
+    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
+                           steps fall short near the end) */
     double time_budget; /* seconds by the host's clock; 0 means none */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
-    bool skip_closeness; /* gproj_solve only: no default guidance where no wish guides */
+    bool skip_closeness; /* gproj_solve only: no default guidance if no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
-    /* gproj_solve only: measure steps by their smoothness and keep the corners of faces: sound meshes at any resolution.
-       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect where `nearest` is set. */
+    /* gproj_solve only: measure steps by their smoothness and keep the faces' corners: sound meshes at any resolution.
+       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect if `nearest` is set. */
     bool smooth;
-    /* End at the point nearest to the wishes: a minimum of sum w^2 phi^2 over the wishes among all x where holds what
-       must hold (a local minimum, as found from here). Wishes keep the weights of their schedules to the end: decay and
-       last do not apply, only the weights' ratios matter, and nothing is biased. gproj_solve adds closeness to where it
-       begins where nothing is wished: it ends at the mesh nearest to that. Wants about 30 iterations. Converged means
-       here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
+    /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
+       the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
+       weights' ratios matter, and nothing is biased. If nothing is wished, gproj_solve adds closeness to the positions
+       that it begins with, and ends at the mesh nearest to these. Wants about 30 iterations. Converged means here that
+       the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
     bool nearest;
 } gproj_solve_options;
 
-/* How often a mesh is spoiled, compared with its original. Constraints may hold exactly on a mesh that cannot be built. */
+/* Damage to a mesh, compared with the original. Constraints may hold exactly on a mesh that cannot be built. */
 typedef struct gproj_spoiled {
     int32_t turned;          /* faces turned over: vectorial area against the original's */
     int32_t crossed;         /* faces that cross themselves (bow-ties), and did not */
-    int32_t folded;          /* edges whose faces' normals make more than 120 degrees, and did not */
-    int32_t collapsed_edges; /* edges below 0.1 of their original length and 0.1 of the original mean length */
-    int32_t collapsed_faces; /* faces below 0.05 of their original area */
+    int32_t folded;          /* edges between faces whose normals make more than 120 degrees, and did not */
+    int32_t collapsed_edges; /* edges below 0.1 times their original length and 0.1 times the original mean length */
+    int32_t collapsed_faces; /* faces below 0.05 times their original area */
     int32_t spikes;          /* edges above 5 times their original length and 3 times the original mean length */
     int32_t total;           /* the sum of these */
-    gproj_place place;       /* the first element of the first kind that occurs; GPROJ_PLACE_NONE and -1: none does */
+    gproj_place place;       /* the first element of the first kind that occurs; GPROJ_PLACE_NONE and -1: none occurs */
     int32_t element;
 } gproj_spoiled;
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations; /* the number of the last one: steps taken, and what was left out (gproj_iteration.number) */
+    int32_t iterations; /* gproj_iteration.number of the last one: steps taken and numbers skipped */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
-    int32_t attempts;   /* how often a smooth gproj_solve has begun; 1 otherwise */
-    double residual;    /* largest |phi| of all rows that must hold with weight > 0 */
-    double tolerance;   /* what it was compared with */
+    int32_t attempts;   /* of a smooth gproj_solve: the first and the restarts; 1 otherwise */
+    double residual;    /* largest |phi| over rows that must hold with weight > 0 */
+    double tolerance;   /* the bound that the residual was compared with */
     double step;        /* largest |dx| of the last step */
-    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the tangent space of what must hold, over
-       the norm without projection: 0 at a minimum, 1 where nothing has been gained. Else 0. */
+    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the constraints' tangent space, over the
+       norm without projection: 0 at a minimum, 1 if nothing has been gained. Else 0. */
     double optimality;
-    int32_t worst_group; /* where that residual is; -1 where nothing must hold */
+    int32_t worst_group; /* the group with that residual; -1 if nothing must hold */
     int32_t worst_element;
-    /* Of a form, at the end of a solve: compared with the mesh at gproj_form_create, so that whatever moved it since then
-       counts. A result is usable where the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
+    /* For a form, at the end of a solve: compared with the mesh at gproj_form_create, so that all moves since then
+       count. A result is usable if the outcome is GPROJ_CONVERGED and spoiled.total is 0. */
     gproj_spoiled spoiled;
     double seconds[GPROJ_PHASE_COUNT];
-    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; of a form also what else
-                                         has happened: how the mesh is spoiled, a mesh that shrank */
+    char message[GPROJ_MESSAGE_SIZE]; /* the verdict in a sentence, with the worst row by name; for a form also other
+                                         findings: a spoiled mesh, a mesh that shrank */
 } gproj_result;
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host);
@@ -606,9 +705,9 @@ GPROJ_API void gproj_system_destroy(gproj_system *system);
 GPROJ_API const gproj_error *gproj_system_error(const gproj_system *system);
 GPROJ_API gproj_memory gproj_system_memory(const gproj_system *system);
 
-/* Appends count variables with these start values (NULL: zeros), in blocks of `block` (1 to 8; count is a multiple
-   of it): the coordinates of one point, say. A block's variables stay together in the matrix when some row
-   couples them. Returns the number of the first variable, -1 after an error. */
+/* Appends `count` variables with these start values (NULL: zeros), in blocks of `block` (1 to 8; count is a multiple of
+   it): the coordinates of a point, say. A block's variables stay together in the matrix if some row couples them.
+   Returns the number of the first variable, -1 after an error. */
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *system, int32_t count, int32_t block, const double *values);
 GPROJ_API int32_t gproj_system_variable_count(const gproj_system *system);
 /* The variables, to read and to write; valid until variables are added. */
@@ -618,18 +717,18 @@ GPROJ_API double *gproj_system_values(gproj_system *system);
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
-/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets its first weight, where
-   the steps of all others are found by multipliers (see gproj_solve). */
+/* A new weight needs no new analysis; 0 switches a group off. One exception: a group that gets a weight for the first
+   time, if the steps so far were found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
-/* Adds a row of `count` terms and the constant c; `element` is what it belongs to (the face, say), for reports.
-   Returns its number within the group. Rows added after a solve make the next solve analyse anew. */
+/* Adds a row of `count` terms and the constant c; `element` is the number of the face, say, that it belongs to, for
+   reports. Returns the row's number within the group. Rows added after a solve make the next solve analyse anew. */
 GPROJ_API int32_t gproj_system_add_row(gproj_system *system, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element);
 /* Replaces the coefficients (in the order of the row's terms; NULL: as they are) and the constant of a row. */
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *system, int32_t group, int32_t row, const double *coefficients,
                                           double constant);
-/* The weight of one row, times its group's; 1 when it is added, 0 leaves it out. */
+/* Sets the weight of one row, times the group's; 1 when the row is added, 0 leaves it out. */
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *system, int32_t group, int32_t row, double weight);
 /* phi of one row at the current x; with `gradient` (as long as the variables, may be NULL) its dense gradient. */
 GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t group, int32_t row, double *gradient);
@@ -644,12 +743,12 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iteratio
 /* ------------------------------------------------------------------------------------------------------------
    >>api-mesh   Half-edge meshes of any polygons.
 
-   Orientable 2-manifolds, with or without boundary, any number of components and holes, faces of degree >= 3
-   (convex or not), isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has
-   face -1, and those of a boundary loop are linked by next/prev in the direction opposite to the faces.
+   Orientable 2-manifolds with or without boundary, any components and holes, faces of degree >= 3 (convex or not),
+   isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has face -1, and those of a
+   boundary loop are linked by next/prev in the direction opposite to the faces.
 
-   All arrays are owned by the mesh and read-only but for `position`, which you may change at any time.
-   Corner k of face f is the half-edge that follows face_halfedge[f] k times, in the order of the input. */
+   All arrays are owned by the mesh and read-only but for `position`, which you may change at any time. Corner k of face
+   f is the half-edge k times after face_halfedge[f], in the order of the input. */
 typedef struct gproj_mesh {
     int32_t vertex_count;
     int32_t face_count;
@@ -658,31 +757,31 @@ typedef struct gproj_mesh {
     int32_t loop_count;       /* boundary loops */
     int32_t component_count;  /* connected components, isolated vertices not counted */
     int32_t isolated_count;   /* vertices without a face */
-    int32_t reoriented_count; /* faces turned round so that all of a component agree */
+    int32_t reoriented_count; /* faces turned round so that each component is oriented alike */
 
-    double *position;               /* 3 * vertex_count: x y z of each vertex */
+    double *position;               /* 3 * vertex_count: each vertex's x y z */
     const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1; -1: isolated */
     const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
     const int32_t *face_degree;     /* number of corners */
-    const int32_t *loop_halfedge;   /* a half-edge with face -1 of each boundary loop */
+    const int32_t *loop_halfedge;   /* for each boundary loop a half-edge with face -1 */
 
     const int32_t *twin; /* of each half-edge h: the opposite one, h ^ 1 */
     const int32_t *next; /* the following one in the same face or boundary loop */
     const int32_t *prev;
-    const int32_t *origin; /* the vertex where it starts */
+    const int32_t *origin; /* the vertex that it starts from */
     const int32_t *face;   /* the face on its left, or -1 */
     const int32_t *edge;   /* h / 2 */
 
-    int32_t polyline_count;         /* polylines `l` of an OBJ file, by vertices of the mesh (often isolated ones) */
+    int32_t polyline_count;         /* polylines `l` in an OBJ file, by vertices of the mesh (often isolated ones) */
     const int32_t *polyline_start;  /* polyline_count + 1 entries into polyline_vertex */
-    const int32_t *polyline_vertex; /* a closed polyline repeats its first vertex at its end */
+    const int32_t *polyline_vertex; /* a closed polyline ends with its first vertex */
 } gproj_mesh;
 
-/* Builds a mesh of at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
-   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the
-   element: indices out of range, a face with fewer than 3 or with repeated vertices, coordinates that are not finite,
-   edges with more than two faces, vertices whose faces form more than one fan, components without a consistent
-   orientation (the first face of a component gives it; faces against it are turned round and counted). */
+/* Builds a mesh from at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
+   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the element:
+   indices out of range, faces with fewer than 3 or with repeated vertices, coordinates that are not finite, edges with
+   more than two faces, vertices whose faces form more than one fan, components without a consistent orientation (a
+   component's first face gives it; faces against it are turned round and counted). */
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
@@ -690,15 +789,17 @@ GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
 
-/* The number of edges at a vertex. */
+/* For NULL, as for an index out of range, the following give 0, false or zeros.
+
+   The number of edges at a vertex. */
 GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex);
 GPROJ_API bool gproj_mesh_is_boundary_vertex(const gproj_mesh *mesh, int32_t vertex);
 /* The neighbours of a vertex in cyclic order, counter-clockwise seen from outside (at the boundary from the first to
-   the last along the faces). Writes at most `capacity` of them, returns the valence. */
+   the last along the faces). Writes at most `capacity` neighbours, returns the valence. */
 GPROJ_API int32_t gproj_mesh_one_ring(const gproj_mesh *mesh, int32_t vertex, int32_t *neighbours, int32_t capacity);
-/* The vectorial area of a face: 1/2 sum v_i x v_(i+1); its length is the area of a planar face. */
+/* The vectorial area of a face: 1/2 sum v_i x v_(i+1); for a planar face, the length is the area. */
 GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face, double area[3]);
-/* The mean length of all edges; 0 without edges. */
+/* The mean edge length; 0 without edges. */
 GPROJ_API double gproj_mesh_mean_edge_length(const gproj_mesh *mesh);
 
 typedef enum gproj_format {
@@ -714,29 +815,29 @@ typedef enum gproj_format {
 GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_format format, const gproj_host *host,
                                       gproj_error *error);
 
-/* Receives a piece of text; returns false to stop (then the writer returns GPROJ_ERROR_FILE). */
+/* Receives a piece of the text; returns false to stop (then the writer returns GPROJ_ERROR_FILE). */
 typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 /* Writes the mesh with vertices, faces and corners in their order and numbers that read back to the same bits. OFF has
    no polylines. */
 GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
 
 #ifndef GPROJ_NO_STDIO
-/* Reads a file; the format by the name's ending, or by the first word where that is neither .obj nor .off. At most
-   1 GiB is read, or as much as the allocator's limit says where that is more. */
+/* Reads a file; the format by the name's ending, or by the first word if that is neither .obj nor .off. Reads at most 1
+   GiB, or the allocator's limit if that is more. */
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
-/* Replaces the file at `path`, or the one that a symbolic link there leads to, whole or not at all, even if the program
-   or the machine stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and
-   renames it. An existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format
-   follows the ending: .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
+/* Replaces the file at `path`, or a symbolic link's target, whole or not at all, even if the program or the machine
+   stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and renames it. An
+   existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format follows the ending:
+   .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
 
-   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy of them that can be changed, each change in time
-   that depends on its surroundings alone; gproj_edit_mesh makes a mesh of what has become of it, at any time and as
-   often as wanted, and says where each element has gone:
+   The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy that can be changed, each change in time that
+   depends on the neighbourhood alone; gproj_edit_mesh turns the present state into a mesh, at any time and as often as
+   wanted, and gives the new number of each element:
 
        gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
        int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
@@ -746,20 +847,19 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
        gproj_edit_destroy(edit);
 
    NUMBERS  Vertices, edges and faces of the mesh keep their numbers in the edit, whatever is done; new elements get the
-   following ones, and numbers of removed ones are not given again. The number of a vertex or edge that was merged into
-   another one stands for that one, in all functions here; of the two the lower number stays.
-   REFUSALS  After each change the edit is an orientable manifold of the kind that gproj_mesh_create accepts. A change
-   that would end that is refused: it returns -1, with an error that names the element, and the edit is as it was, as it
-   is when there is no memory. A refusal has no consequences for later changes. `error` may be NULL.
-   POLYLINES  Those of the mesh go with their vertices. Where one runs along an edge that is split, it gets the new
-   vertex. */
+   following ones, and numbers of removed ones are not given again. If two vertices or edges are merged the lower number
+   stays, and the other one stands for it in all functions here.
+   REFUSALS After each change the edit is an orientable manifold that gproj_mesh_create would accept. A change that
+   would end that is refused: it returns -1, with an error that names the element, and the edit is as it was; without
+   memory likewise. A refusal has no consequences for later changes. `error` may be NULL.
+   POLYLINES follow their vertices. One that runs along an edge gets the new vertex if the edge is split. */
 
-/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are like those
-   of gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
-   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge
-   h / 2. */
+/* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are as in
+   gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
+   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge h /
+   2. */
 typedef struct gproj_edit {
-    int32_t vertex_count; /* numbers given so far, those of removed elements included */
+    int32_t vertex_count; /* numbers given so far, with removed elements */
     int32_t edge_count;
     int32_t face_count;
 
@@ -767,115 +867,115 @@ typedef struct gproj_edit {
     const int32_t *vertex_halfedge; /* an outgoing half-edge; at the boundary the one with face -1 */
     const int32_t *face_halfedge;   /* the half-edge at the face's first corner */
     const int32_t *face_degree;     /* number of corners */
-    const int32_t *face_parent;     /* the face of the first mesh of which this one is a part */
+    const int32_t *face_parent;     /* the face of the first mesh that this one is a part of */
 
     const int32_t *next; /* of each of the 2 * edge_count half-edges, as in gproj_mesh */
     const int32_t *prev;
     const int32_t *origin;
     const int32_t *face;
 
-    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: for merged
-       elements that of what they were merged into, -1 where nothing is left. NULL before. */
+    /* Numbers in the mesh that gproj_edit_mesh made last, one for each number that the edit had given then: merged
+       elements have the number of the one that stayed, removed ones -1. NULL before. */
     const int32_t *vertex_number;
     const int32_t *edge_number;
     const int32_t *face_number;
 } gproj_edit;
 
-/* An edit of a mesh, which is copied. NULL: there is no mesh, or no memory. */
+/* Begins an edit with a copy of the mesh. NULL: there is no mesh, or no memory. */
 GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit);
 GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
 
-/* A mesh of what the edit is now, its elements in the order of their numbers (edges in that of all meshes: as they
-   appear along the faces), and the maps of numbers. Polylines lose repeated vertices; one of which a single vertex is
-   left is left out. Refused are only positions that were set to what gproj_mesh_create refuses. */
+/* Makes a mesh from the edit as it is, elements ordered by their numbers (edges, as in all meshes, as they appear along
+   the faces), and the maps of numbers. Polylines lose repeated vertices; one with a single vertex left is dropped.
+   Refuses only positions that gproj_mesh_create refuses. */
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
 
-/* The vertex that this number stands for: itself, or what it was merged into; -1 out of range. */
+/* The vertex that this number stands for: itself, or the one it was merged into; -1 out of range. */
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex);
 /* The edge between two vertices; -1: none. */
 GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t other);
 
-/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes from i to j. Its faces get one
+/* Splits an edge at (1 - t) v_i + t v_j, 0 <= t <= 1; half-edge 2 * edge goes from i to j. The faces there get one
    corner more. `edge` is then the part at i; the new edge, the last one, goes from the new vertex to j. Returns the new
    vertex. */
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts a face by a diagonal between two of its corners. `face` is then the part with its first corner; the other part
-   is the last face. Refused where the corners have an edge already. Returns the new edge. */
+/* Cuts a face by a diagonal between two corners. `face` is then the part with the first corner; the other part is the
+   last face. Refused if the corners have an edge already. Returns the new edge. */
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error);
 
-/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1, where half-edge 2 * edge goes
-   from i to j. Its faces lose a corner; of a triangle the other two edges become one. Refused where the mesh would be
+/* Merges the two ends of an edge into one vertex, at (1 - t) v_i + t v_j, 0 <= t <= 1; half-edge 2 * edge goes from i
+   to j. The faces there lose a corner; the other two edges of a triangle become one. Refused if the mesh would be
    pinched or folded onto itself: both ends have an edge to a vertex that is not the third of a triangle at the edge, or
-   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and where a
-   component would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns
-   the vertex. */
+   are corners of a face without being neighbours there, or are at the boundary and the edge is not; and if a component
+   would vanish. (This is the link condition of Dey, Edelsbrunner, Guha, Nekhayev 1999, for polygons.) Returns the
+   vertex. */
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Of all ways to do so, one is taken whose
-   triangles are not turned over in the plane orthogonal to the face's vectorial area (if there is one: the face may be
-   non-convex, but must not cross itself there), and among these the one with the best triangles: the sum of (a^2 + b^2
-   + c^2) / area is least (Klincsek 1980). From faces of more than 128 corners ears are cut first until 128 are left
-   (Meisters 1975). Refused where each way needs a diagonal that is an edge already. Returns the number of new faces. */
+/* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Takes triangles that are not turned over in
+   the plane orthogonal to the face's vectorial area (if possible: the face may be non-convex, but must not cross itself
+   there), and among these the best ones: with the least sum of (a^2 + b^2 + c^2) / area (Klincsek 1980). Faces with
+   more than 128 corners lose ears first until 128 are left (Meisters 1975). Refused if each way needs a diagonal that
+   is an edge already. Returns the number of new faces. */
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
 
 /* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
-   both ways, until the strip closes, the boundary is met, or a face that is no quad. The edges across it are its rungs;
-   all can be given the same direction. A strip may cross itself: such a quad belongs to it twice.
+   both ways, until the strip closes or meets the boundary or a face that is no quad. The edges across are the rungs;
+   all can be given the same direction. If a strip crosses itself, the quad there belongs to it twice.
 
-   Inserts a strip beside the one of an edge: all rungs are split at (1 - t) v_i + t v_j, 0 <= t <= 1, in the direction
-   in which half-edge 2 * edge goes from i to j, and the quads cut in two, where the strip crosses itself in four. Quads
-   stay quads; at the ends of the strip triangles are cut in two, and faces with 5 or more corners get one more. Refused
-   where no quad is at the edge, and where a closed strip has two quads only. Returns the new part of the edge, from the
-   new vertex to j: a rung of the new strip. */
+   Inserts a strip beside the one of an edge: splits all rungs at (1 - t) v_i + t v_j, 0 <= t <= 1, directed like
+   half-edge 2 * edge from i to j, and cuts the quads in two, those that belong to it twice in four. Quads stay quads;
+   at the strip's ends triangles are cut in two, and faces with 5 or more corners get one more. Refused if no quad is at
+   the edge, or a closed strip has two quads only. Returns the new part of the edge, from the new vertex to j: a rung of
+   the new strip. */
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Removes the strip of an edge: all rungs are collapsed to (1 - t) v_i + t v_j in that direction (Daniels, Silva,
-   Shepherd, Cohen 2008). Quads beside it stay quads; other faces at its ends lose a corner, and triangles there vanish.
-   Refused where the mesh would be pinched or folded onto itself, as for a single edge. Takes time in the size of the
-   mesh. After gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for the numbers
-   of faces. Returns the number of rungs. */
+/* Removes the strip of an edge: collapses all rungs to (1 - t) v_i + t v_j in that direction (Daniels, Silva, Shepherd,
+   Cohen 2008). Quads beside it stay quads; other faces at the ends lose a corner, and triangles there vanish. Refused
+   if the mesh would be pinched or folded onto itself, as for a single edge. Takes time proportional to the mesh. After
+   gproj_edit_insert_strip, with the edge that it returned and t = 1, all is as it was, but for face numbers. Returns
+   the number of rungs. */
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* The dual mesh: vertex f is the mean of the corners of face f, and each vertex with faces, in their order, becomes a
-   face whose corners are the faces around it. At the boundary it ends where the mesh does: after those of the faces
-   come, in their order, the midpoints of the boundary edges, which are corners of the dual faces of their two vertices;
-   then the corners of the boundary (gproj_form_is_corner), each in its own dual face; then vertices without a face,
-   which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay where all of their vertices
-   do. `vertex_face`: vertex_count numbers to be filled with the dual face of each vertex, -1 for those without a face;
-   may be NULL. The dual of the dual of a closed mesh has the combinatorics of the mesh. Refused where two faces have
-   more than one edge in common, for their vertices would have two edges. */
+/* Makes the dual mesh: vertex f is the mean of face f's corners, and each vertex with faces, in ascending order,
+   becomes a face whose corners are the faces around it. The dual ends at the boundary of the mesh: after the faces'
+   vertices come, in ascending order, the midpoints of boundary edges, which are corners of the dual faces of their two
+   vertices; then the boundary's corners (gproj_form_is_corner), each in its own dual face; then vertices without a
+   face, which stay as they are. So the dual of a rectangular grid of quads is one. Polylines stay if all their vertices
+   do. `vertex_face`: vertex_count numbers to be filled with each vertex's dual face, -1 for vertices without a face;
+   may be NULL. The dual of a closed mesh's dual has the combinatorics of the mesh. Refused if two faces have more than
+   one edge in common, for their vertices would have two edges. */
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
                                       gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
 
-   The finer mesh of a level has a vertex for each vertex and each edge of the mesh, and with Catmull and Clark's scheme
-   one for each face: vertex v stays vertex v, the one of edge e is vertex_count + e, the one of face f is vertex_count +
-   edge_count + f. Its faces follow the corners of the mesh's faces, in their order and orientation. Corner k of face f,
-   at the vertex v between the edges e (to the next vertex) and d (from the one before), gives
-       Catmull-Clark   the quad      v, e, f, d    which is face (corners of the faces before f) + k
+   Each level gives a finer mesh with a vertex for each vertex and each edge, and with Catmull and Clark's scheme for
+   each face: vertex v stays vertex v, edge e gives vertex_count + e, face f gives vertex_count + edge_count + f. The
+   finer faces follow the corners of the mesh's faces, with the same order and orientation. Corner k of face f, at the
+   vertex v between the edges e (to the next vertex) and d (from the one before), gives
+       Catmull-Clark   the quad      v, e, f, d    which is face (corners of faces before f) + k
        Loop            the triangle  v, e, d       which is face 4 f + k; face 4 f + 3 are the three edges' vertices
-   Several levels are this, repeated. Vertices without a face stay. Edges of the mesh that belong to one of its polylines
-   are refined in it, the rest of the polyline is kept.
+   Several levels are this, repeated. Vertices without a face stay. Polylines are refined along the edges of the mesh
+   and kept elsewhere.
 
-   Where the vertices go (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
-       face            mean of its corners
-       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with its faces' vertices f, g;
+   Positions (S sharp edges meet at v, boundary edges among them; n edges; all weights are > 0):
+       face            mean of the corners
+       edge i-j        Catmull-Clark: (i + j + f + g) / 4, with the adjacent faces' vertices f, g;
                        Loop: (3 i + 3 j + a + b) / 8, with the third corners a, b;   sharp: (i + j) / 2
        vertex, S < 2   Catmull-Clark: (n - 2)/n v + sum (neighbours + faces' vertices) / n^2;
                        Loop: (1 - n b) v + b sum (neighbours), b = (5/8 - (3/8 + cos(2 pi / n) / 4)^2) / n
        vertex, S = 2   (i + 6 v + j) / 8, with the other ends of the sharp edges: a cubic B-spline curve
        vertex, S > 2   v, as for corners
-   A crease of sharpness s is sharp for s levels; then it is smooth. In the last one, of 0 < s < 1, its edges and vertices
-   are s times the sharp ones + (1 - s) times the smooth ones, s the mean of the edges at the vertex that become smooth
-   there (DeRose, Kass, Truong 1998). At the boundary the surface ends in the cubic B-spline curves of the boundary. */
+   A crease of sharpness s is sharp for s levels; then it is smooth. In the last sharp level, 0 < s < 1, positions are s
+   times the sharp ones + (1 - s) times the smooth ones; at a vertex s is the mean over the edges there that become
+   smooth (DeRose, Kass, Truong 1998). The surface ends in the boundary's cubic B-spline curves. */
 typedef enum gproj_scheme {
-    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines where all vertices have 4 quads */
-    GPROJ_LOOP,          /* triangles to triangles; quartic box splines where all vertices have 6 */
+    GPROJ_CATMULL_CLARK, /* any polygons to quads; bicubic B-splines if all vertices have 4 quads */
+    GPROJ_LOOP,          /* triangles to triangles; quartic box splines if all vertices have 6 */
     GPROJ_SCHEME_FORCE_INT = 0x7fffffff
 } gproj_scheme;
 
@@ -883,23 +983,23 @@ typedef struct gproj_subdivide_options {
     gproj_scheme scheme;
     int32_t levels;        /* 1 to 14; 0 means 1 */
     int32_t stencil_level; /* the stencil leads from this level, 0 (the mesh) to levels - 1, to the last one */
-    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all are
-       always. Of an edge that is named twice the larger sharpness counts. Boundary edges are always sharp. */
+    /* Edges that are sharp (NULL: the first `crease_count` ones), and how sharp: >= 0, INFINITY for always; NULL: all
+       are always. If an edge is named twice the larger sharpness counts. Boundary edges are always sharp. */
     int32_t crease_count;
     const int32_t *creases;
     const double *sharpness;
-    /* Vertices that stay where they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
+    /* Vertices that stay as they are (NULL: the first `corner_count` ones). Boundary vertices with one face do so as
        well, unless round_corners. */
     int32_t corner_count;
     const int32_t *corners;
     bool round_corners;
 } gproj_subdivide_options;
 
-/* A sparse matrix by rows: the fine positions are it times the coarse ones. Row i is the vertex i of the finer mesh, with
-   the weights weight[k] > 0 of the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order; their
-   sum is 1. So coarse vertices are handles of the finer mesh. A row has the vertices of all faces around: about 6 entries
-   for one level of a quad mesh, 16 for many; but for each corner of a face of many corners it has as many. All arrays
-   are owned by the stencil. */
+/* A sparse matrix by rows: fine positions = stencil * coarse positions. Row i belongs to vertex i of the finer mesh and
+   has weights weight[k] > 0 for the coarse vertices column[k], k = start[i]..start[i + 1] - 1, in ascending order, with
+   the sum 1. So coarse vertices are handles for the finer mesh. A row has the vertices of all faces around: in a quad
+   mesh about 6 entries for one level, 16 for many; but rows around a face with many corners have all of these. All
+   arrays are owned by the stencil. */
 typedef struct gproj_stencil {
     int32_t row_count;
     int32_t column_count;
@@ -908,37 +1008,37 @@ typedef struct gproj_stencil {
     const double *weight;
 } gproj_stencil;
 
-/* The mesh after some levels of subdivision. `options` may be NULL: one level of Catmull and Clark's scheme. `stencil` may
-   be NULL, else it receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Of
-   one level it gives the same positions to the last bit, of several up to rounding. For handles on several levels take
-   the meshes of 1, 2, ... levels, and for each the stencil from the level before, with stencil_level.
-   Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's scheme
-   GPROJ_ERROR_ARGUMENT where a face is no triangle, and _NON_MANIFOLD where two faces have the same three corners;
-   GPROJ_ERROR_SIZE, before memory is taken, where a level would have more than a mesh can. */
+/* Subdivides a mesh. `options` may be NULL: one level by Catmull and Clark's scheme. `stencil` may be NULL, else it
+   receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Applied to the
+   coarse positions it gives the new ones, to the last bit for one level, up to rounding for several. For handles on
+   several levels take the meshes with 1, 2, ... levels, and for each the stencil from the level before, with
+   stencil_level. Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's
+   scheme GPROJ_ERROR_ARGUMENT if a face is no triangle, and _NON_MANIFOLD if two faces have the same three corners;
+   GPROJ_ERROR_SIZE, before memory is taken, if a level would have more elements than a mesh can. */
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error);
 
 GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil);
 GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil);
-/* fine = stencil * coarse, for any data with `size` numbers a vertex: 3 for positions. coarse: size * column_count
-   numbers, fine: size * row_count others. */
+/* Computes fine = stencil * coarse for any data with `size` numbers a vertex: 3 for positions. coarse: size *
+   column_count numbers, fine: size * row_count numbers, which must not overlap them. */
 GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, const double *coarse, double *fine);
-/* The stencil that leads through both: fine * coarse, where the columns of `fine` are the rows of `coarse`. */
+/* The stencil that leads through both: fine * coarse; the columns of `fine` are the rows of `coarse`. */
 GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
                                                 const gproj_host *host, gproj_error *error);
-/* The transposed matrix: row j is what coarse vertex j moves. When that moves by d, fine vertex column[k] moves by
-   weight[k] * d. Its rows do not sum to 1. */
+/* The transposed matrix: row j has the fine vertices that coarse vertex j moves. When that moves by d, fine vertex
+   column[k] moves by weight[k] * d. Rows of this matrix do not sum to 1. */
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-reference   Curves and surfaces to stay close to. Both are copies: the mesh they come from may change. */
+   >>api-reference   Curves and surfaces to stay close to. They are copies: the mesh they come from may change. */
 typedef struct gproj_curve gproj_curve;
 typedef struct gproj_surface gproj_surface;
 
 typedef struct gproj_curve_hit {
     double point[3];   /* the closest point of the curve */
-    double tangent[3]; /* unit; of the segment on which the point lies */
+    double tangent[3]; /* unit; along the segment with the point */
     double distance;
     int32_t segment;  /* from point[segment] to the next one */
     double parameter; /* 0..1 within the segment */
@@ -948,64 +1048,65 @@ typedef struct gproj_surface_hit {
     double point[3];
     double normal[3]; /* unit; vertex normals interpolated at the point */
     double distance;
-    int32_t face; /* of the mesh that the surface was made from */
+    int32_t face; /* in the mesh that the surface was made from */
 } gproj_surface_hit;
 
 /* A polyline through `count` >= 2 points (3 * count numbers); closed: with a segment from the last to the first. */
 GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, bool closed, const gproj_host *host,
                                           gproj_error *error);
-/* Boundary loop `loop` of a mesh as a closed curve, in the direction of the faces' edges, from the origin of
+/* Boundary loop `loop` of a mesh as a closed curve, directed like the faces' edges, from the origin of
    loop_halfedge[loop]. */
 GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
                                              gproj_error *error);
-/* Polyline `polyline` of a mesh; closed where its last vertex is its first. */
+/* Polyline `polyline` of a mesh; closed if it ends with its first vertex. */
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
+/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
-/* The mesh's faces, cut into triangles. Refused where the mesh has no faces. */
+/* The mesh's faces, cut into triangles. Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
+/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-measure   What a mesh is like. */
+   >>api-measure Measures: sizes, planarity and other shape properties, and damage. */
 typedef struct gproj_measures {
     double mean_edge, min_edge, max_edge;
-    double length;                             /* of all edges */
+    double length;                             /* sum over all edges */
     double area, min_face_area, max_face_area; /* lengths of vectorial areas */
-    /* Of a face: the largest distance of its vertices from their least-squares plane, in mean edge lengths of the
-       mesh. */
+    /* For a face: the largest distance of a vertex from the vertices' least-squares plane, in mean edge lengths. */
     double planarity_max, planarity_mean;
-    int32_t planarity_face; /* where the largest is; -1 without faces */
-    double circularity_max; /* of faces with more than 3 sides: largest difference of the distances of a face's vertices
-                               from its circumcentre, in mean edge lengths */
-    double area_spread;     /* standard deviation of the face areas over their mean */
-    double diagonal_max;    /* quads: distance of the lines through the diagonals, in mean edge lengths */
-    /* Of vertices where 4 or more faces meet: the largest difference of the angles of the faces' normals with the axis
-       that is nearest to the bisecting planes of neighbouring faces, in radians. */
+    int32_t planarity_face; /* the face with planarity_max; -1 without faces */
+    double circularity_max; /* for faces with more than 3 sides: largest difference between a face's vertices in
+                               distance from the circumcentre, in mean edge lengths */
+    double area_spread;     /* standard deviation of face areas over their mean */
+    double diagonal_max;    /* quads: distance between the lines through the diagonals, in mean edge lengths */
+    /* For vertices with 4 or more faces: the largest difference between the angles that the faces' normals make with
+       the axis, in radians. The axis is the one nearest to the bisecting planes of neighbouring faces. */
     double conicality_max;
-    double deviation_max, deviation_rms; /* |v - v_original| / bounding box diagonal of the original */
-    double displacement_mean;            /* mean |v - v_original| in mean edge lengths of the original */
-    int32_t turned_faces;                /* vectorial area against the one of the original face */
+    double deviation_max, deviation_rms; /* |v - v_original| / the original's bounding box diagonal */
+    double displacement_mean;            /* mean |v - v_original| in the original's mean edge lengths */
+    int32_t turned_faces;                /* vectorial area against the original face's */
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
-    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal of its plane */
-    int32_t degenerate_faces;            /* vectorial area below 1e-12 of the squared mean edge */
+    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal */
+    int32_t degenerate_faces;            /* vectorial area below 1e-12 squared mean edges */
     int32_t collapsed_edges;             /* not longer than 1e-6 mean edges */
-    /* Sum over interior vertices of the area of the Gauss image of the vertex star: the spherical polygon of its face
-       normals, as a sum of triangle areas about its mean. */
+    /* Sum over interior vertices: area of the vertex star's Gauss image, the spherical polygon of the face normals, as
+       a sum of triangle areas about their mean. */
     double gauss_variation;
 } gproj_measures;
 
-/* `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are 0).
-   `planarity`: face_count numbers to be filled; may be NULL. */
+/* Measures a mesh. `original`: the positions to compare with, 3 * vertex_count; NULL: no comparison (those members are
+   0). `planarity`: face_count numbers to be filled; may be NULL. */
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity);
-/* What is spoiled, compared with the original positions, 3 * vertex_count. Where every edge has grown, the original counts
-   as scaled by the least of their factors. Takes no memory. */
+/* Counts the spoiled elements, compared with the original positions, 3 * vertex_count. If every edge has grown, the
+   original counts as scaled by the least factor. Takes no memory. */
 GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const double *original);
-/* The planarity of faces alone, a part of the time of all measures: returns planarity_max. `planarity` (as above) and
-   `mean`, planarity_mean, may be NULL. */
+/* Measures only the planarity of faces, in less time than gproj_measure: returns planarity_max. `planarity` (as above)
+   and `mean`, planarity_mean, may be NULL. */
 GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean);
 /* The volume that a closed mesh encloses, or between a mesh with boundary and the plane z = 0: see gproj_add_volume. */
 GPROJ_API double gproj_volume(const gproj_mesh *mesh);
@@ -1013,106 +1114,106 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-offset   Parallel meshes at constant distance, and the support structure between them.
 
-   Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar (Pottmann,
-   Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant distance,
-   conical meshes one with its faces at constant distance. Any mesh is taken; how exact the outcome is, gproj_measure_offset
-   tells. Distances are in the mesh's units, positive on the side of the faces' normals. */
+   Two meshes are parallel when corresponding edges are; then the quads between corresponding edges are planar
+   (Pottmann, Liu, Wallner, Bobenko, Wang 2007). Circular meshes have a parallel mesh with its vertices at constant
+   distance, conical meshes one with its faces at constant distance. Any mesh is taken; gproj_measure_offset tells how
+   exact the outcome is. Distances are in the mesh's units, positive on the side of the faces' normals. */
 
-/* A mesh whose vertices are v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
-   orthogonal to the edge, gives m at all of them. The distance is exact always; edges are parallel where going round
-   closes: in a mesh without holes and handles whose faces are planar, circular, of even numbers of sides and without
-   doubled vertices, whatever m is at the first vertex. It is chosen so that m goes along the normals of the vertices,
-   and with holes, handles and odd faces, as far as that keeps the normals, among those for which going round closes
-   best. Vertices without a face stay. */
+/* Makes a mesh with the vertices v + distance * m, |m| = 1: m at one vertex, mirrored along each edge in the plane
+   orthogonal to the edge, gives m at all others. The distance is exact always; edges are parallel if going round
+   closes: for any m at the first vertex in a mesh without holes and handles whose faces are planar and circular and
+   have an even number of sides and no doubled vertices. The first m is chosen so that m goes along the vertex normals;
+   with holes, handles and odd faces, among those that keep the normals, so that going round closes best. Vertices
+   without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
-/* A mesh whose faces are the faces moved by `distance` along their normals: vertices v + distance * x, where n_k'x = 1
-   for the normals n_k of the faces around the vertex. Exact for conical meshes, where x = a / cos(angle) with the axis
-   a of the vertex, and then edges between two faces are parallel; for others in the least-squares sense. At the
-   boundary n_1'x = n_2'x = 1 of two faces, or the one n'x = 1, leaves freedom: it goes to the edges of the boundary,
-   which become as parallel as they can. Vertices without a face stay. */
+/* Makes a mesh with the faces moved by `distance` along their normals: vertices v + distance * x, with n_k'x = 1 for
+   the normals n_k of the faces around the vertex. Exact for conical meshes: there x = a / cos(angle) with the vertex's
+   axis a, and edges between two faces are parallel; for others in the least-squares sense. At the boundary, n_1'x =
+   n_2'x = 1 from two faces or n'x = 1 from one leaves freedom, which makes boundary edges as parallel as possible.
+   Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
-/* The panels between a mesh and its offset: face e is the quad v_i v_j o_j o_i of edge e with half-edge 2e from i to j.
-   More than two of them meet at a node's axis, which no manifold mesh has: so each quad has its own four vertices,
-   4e .. 4e + 3, in this order. Refused where the meshes do not have the same faces. */
+/* Makes the panels between a mesh and an offset of it: face e is the quad v_i v_j o_j o_i for edge e with half-edge 2e
+   from i to j. More than two panels meet at a node's axis, which no manifold mesh has: so each quad has its own four
+   vertices, 4e .. 4e + 3, in this order. Refused if the meshes do not have the same faces. */
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error);
 
 typedef struct gproj_offset_measures {
-    /* n_k'(o_i - v_i) for all corners i of all faces k, in the mesh's units. The normal is that of the vectorial area. */
+    /* n_k'(o_i - v_i) for all corners i in all faces k, in the mesh's units; n_k along the vectorial area. */
     double face_distance_min, face_distance_max;
-    double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, of vertices with a face, in the mesh's units */
-    /* Of an offset edge: the largest part of o_j - o_i across the edge v_j - v_i; and of the quads of gproj_mesh_support,
-       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths of the mesh. */
+    double vertex_distance_min, vertex_distance_max; /* |o_i - v_i|, for vertices with a face, in the mesh's units */
+    /* For offset edges: the largest part of o_j - o_i across the edge v_j - v_i; for the quads of gproj_mesh_support:
+       the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths. */
     double parallel_max, support_planarity_max;
-    int32_t reversed_edges; /* they run against their edges: the distance is larger than a radius of curvature */
+    int32_t reversed_edges; /* offset edges against their edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
-/* Distances and parallel_max are infinite where there is no mesh, or where the two do not have the same faces. */
+/* Distances and parallel_max are infinite if a mesh is NULL, or if the two do not have the same faces. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-fill   From a closed curve to a mesh of quads that fills it.
 
    The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
-   numbers can be filled whose sum is even and at least 4: the boundary of a mesh of quads has an even number of edges.
-   Inside, vertices have valence 4 but for a few of valence 3 and 5. They depend on the numbers: equal ones on opposite
-   sides of 4 give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
+   numbers can be filled that have an even sum of at least 4: a quad mesh has an even number of boundary edges. Inside,
+   vertices have valence 4 but for a few with valence 3 and 5. The numbers decide: equal ones on opposite sides of 4
+   give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
 
-   The combinatorics is found where the curve is seen along the normal of its vectorial area; so seen it must not meet
-   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are
-   those of the curve at the boundary, and harmonic inside: each vertex is at the mean height of its neighbours. */
+   The combinatorics is found in the projection along the curve's vectorial area, in which the curve must not meet
+   itself. There no quad is turned over, nor has it a corner of 180 degrees or more. The heights over that plane are the
+   curve's at the boundary, and harmonic inside: each vertex is at the mean height of the neighbours. */
 typedef struct gproj_fill_options {
-    int32_t corner_count;        /* 0: where the curve turns by more than 45 degrees (see gproj_form_is_corner) */
+    int32_t corner_count;        /* 0: corners are points with a turn of more than 45 degrees (see
+                                    gproj_form_is_corner) */
     const int32_t *corners;      /* numbers of points, ascending */
     int32_t side_count;          /* as many as corners; 0: numbers of edges follow from edge_length */
-    const int32_t *subdivisions; /* edges of side j, from corner j to the next, of equal lengths along the curve */
+    const int32_t *subdivisions; /* edges on side j, from corner j to the next, with equal lengths along the curve */
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
-    bool keep_points;            /* the points of the curve are the vertices of the boundary, whatever is wanted */
-    int32_t rings;               /* rows of quads that run around along the whole boundary */
+    bool keep_points;            /* the curve's points are the boundary vertices, whatever is wanted */
+    int32_t rings;               /* rows of quads around along the whole boundary */
     int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
 } gproj_fill_options;
 
-/* What has been made. */
+/* Properties of the mesh that was made. */
 typedef struct gproj_fill_info {
-    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, in the order of the curve */
-    int32_t side_count;      /* polylines of the mesh: side j from its first to its last vertex */
-    int32_t patch_count;     /* patches of at most 6 sides that the curve was cut into */
+    int32_t boundary_count;  /* vertices 0 to boundary_count - 1 are the boundary, ordered like the curve */
+    int32_t side_count;      /* polylines of the mesh: side j from the first to the last vertex */
+    int32_t patch_count;     /* patches with at most 6 sides that the inside was cut into */
     int32_t irregular_count; /* inner vertices whose valence is not 4 */
-    int32_t min_valence;     /* of inner vertices; 0 where there are none */
+    int32_t min_valence;     /* over inner vertices; 0 if there are none */
     int32_t max_valence;
-    double min_angle; /* of the quads' corners, in degrees, seen along the normal */
+    double min_angle; /* at the quads' corners, in degrees, seen along the normal */
     double max_angle;
 } gproj_fill_info;
 
 /* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
-   the first corner. The corners of the mesh are exactly points of the curve, the other vertices of its boundary are on
-   its segments. Counter-clockwise curves give faces that look up. The polylines of the mesh are its sides; a curve with
-   fewer than 2 corners is given 4 at about equal distances, from its corner or its first point.
-   A corner has one face; one of more than 165 degrees inside has two, and so have all where there are rings. Corners of
-   more than 195 degrees are ends of cuts through the inside, and so are others where there are more than 6: to where the
-   cut is short, its angles are good, and the patches need few irregular vertices. Valence 6 is taken where this leaves
-   nothing better.
-   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (of a
-   side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or
-   with an odd sum, with what to change, and curves for which no filling was found. */
+   the first corner. Corners of the mesh are exactly points of the curve, other boundary vertices are on the segments.
+   Counter-clockwise curves give faces that look up. The polylines of the mesh are the sides; a curve with fewer than 2
+   corners is given 4 at about equal distances, from its corner or its first point. A corner has one face, or two if it
+   has more than 165 degrees inside or if there are rings. Cuts through the inside end at all corners with more than 195
+   degrees, and at others if a patch would have more than 6; a cut is chosen short, with good angles, and so that the
+   patches need few irregular vertices. Valence 6 is taken if this leaves nothing better. `options`, `info`, `host` and
+   `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for a side: the first one): curves
+   that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or with an odd sum (the
+   sentence says how to change them), and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-form   A mesh, what must hold and what is wished: form-finding.
 
-   gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled
-   so that its mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives
-   the shape of the same model in km. Every gproj_add_... appends a group of rows to the form's system and
-   returns its number (-1 after an error); after an error they do nothing, so check once, at the solve.
-   Weights: 1 for what must hold. Wishes fade by default after half of the iterations of the solve (schedule
-   with last = 0), because a wish that stays on biases the constraints; set a schedule to say otherwise. */
+   gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled so
+   that the mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives the same
+   shape as in km. Every gproj_add_... appends a group of rows to the form's system and returns the group's number (-1
+   after an error); after an error they do nothing, so check once, at the solve. Weights: 1 for what must hold. Wishes
+   fade by default after half of the solve's iterations (schedule with last = 0), because a wish that stays on biases
+   the constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do positions
-   that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
+/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
+   positions that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1127,7 +1228,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* Faces with more than 3 sides are planar: a unit normal n_k per face as variables, n_k'n_k = 1, and
    n_k'(v_i - v_j) = 0 for every edge of the face (paper 3.1). */
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight);
-/* These vertices stay where they were at gproj_form_create: v_i = p_i, 3 rows each. */
+/* These vertices keep their positions at gproj_form_create: v_i = p_i, 3 rows each. */
 GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
 GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight);
 /* The corners of the boundary: see gproj_form_is_corner. */
@@ -1137,26 +1238,25 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
                                     double weight);
 GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions);
 /* The vertices stay on the curve. 3 rows each, anew in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the
-   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only where v_i would
+   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only if v_i would
    leave the curve's end or the segments around a corner, t'(v_i - p) = 0 pins it there (t along the segment). Vertices
    walk from segment to segment, and settle on one after the wishes have faded. The curve must outlive the form. */
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight);
-/* Every boundary vertex glides along the original of its boundary loop; corners stay. */
+/* Every boundary vertex glides along the original boundary loop; corners stay. */
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 
 /* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
-   c_k on the axis of the circle with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are
-   variables that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k.
-   A face with a doubled vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled
-   counts them). */
+   c_k on the circle's axis with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are variables
+   that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k. A face with a doubled
+   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them). */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
-/* The planes of the faces around a vertex touch a common cone: their unit normals n_i make one angle with its axis a_v,
-   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows say that the axis is in the bisecting
-   planes of neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew
-   in each iteration: the same where the faces differ, and what an offset needs where they are coplanar. Rows for the
-   vertices where 4 or more faces meet; three planes always touch a cone. a_v are variables that start at the axis
-   nearest to the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
+/* The face planes around a vertex touch a common cone: their unit normals n_i make one angle with the cone's axis a_v,
+   a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows put the axis into the bisecting planes
+   between neighbouring faces, det(a_v, e, n_i + n_(i+1)) / (2 |e|) = 0 with the edge e between them, linearised anew in
+   each iteration: equivalent if the faces differ, and the condition that an offset needs if they are coplanar. Rows for
+   vertices with 4 or more faces; three planes always touch a cone. a_v are variables that start at the axis nearest to
+   the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
 /* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
    in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
@@ -1171,35 +1271,35 @@ GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int3
 /* These vertices are on one unknown line: on two unknown planes with orthogonal normals. Nothing for 2 vertices and
    fewer. */
 GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
-/* Each part of the boundary from corner to corner (gproj_form_is_corner), both with it, is on one unknown plane; a loop
-   without corners as a whole. */
+/* Each part of the boundary from corner to corner (gproj_form_is_corner), both included, is on one unknown plane; a
+   loop without corners as a whole. */
 GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight);
-/* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Where faces are
-   planar quads, all those along a straight part lie in one plane. */
+/* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Planar quads
+   along a straight part all lie in one plane. */
 GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
-/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, of any length > 0:
+/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, a vector of any length > 0:
    u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight);
 /* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the
    line through the neighbours p and q: (t - b)'(q - p) / 2 = 0 (paper, Figure 13: right angles at the ground). */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight);
-/* All vertices keep the x and y of their originals and move in z only (paper, Figure 13: lifting a flat mesh). */
+/* All vertices keep their original x and y and move in z only (paper, Figure 13: lifting a flat mesh). */
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
 /* The volume V(v) = volume, in the mesh's units cubed: the enclosed volume of a closed mesh (outward normals:
    positive), and of a mesh with boundary the signed volume between it and the plane z = 0. Faces count as fans of
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
    iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
-/* The sum of the face areas |a_k| (vectorial areas) is `area`, in the mesh's units squared. One global row, linearised
-   anew in each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
+/* The face areas |a_k| (vectorial areas) sum to `area`, in the mesh's units squared. One global row, linearised anew in
+   each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight);
 /* length_price * (length of all edges) + area_price * (area of all faces) = cost. Prices per unit of the mesh's lengths
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight);
 
-/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower bound,
-   a max of 0 or INFINITY no upper one.
+/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower
+   bound, a max of 0 or INFINITY no upper one.
 
    Lengths of these edges (as for gproj_add_lengths):
        (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
@@ -1218,19 +1318,19 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 
 /* Closeness to the original: v_i = p_i. */
 GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight);
-/* Closeness to a reference surface: v_i on the tangent plane at its closest point, 1 row each. The surface must
-   outlive the form. */
+/* Closeness to a reference surface: v_i on the tangent plane at the closest point, 1 row each. The surface must outlive
+   the form. */
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight);
-/* Fairness: v = (w1 + w3)/2 and v = (w2 + w4)/2 at interior vertices of valence 4, v = mean of its neighbours at
+/* Fairness: v = (w1 + w3)/2 and v = (w2 + w4)/2 at interior vertices of valence 4, v = mean of the neighbours at
    others; at the boundary v = (u + w)/2 along the boundary, nothing at corners (paper 3.2). */
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight);
-/* The boundary's part of it alone. */
+/* Fairness along the boundary alone. */
 GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight);
-/* The same differences as gproj_add_fairness at interior vertices, projected to a tangent plane that is estimated anew
-   in each iteration. */
+/* Tangential fairness: the differences in gproj_add_fairness at interior vertices, projected to a tangent plane that is
+   estimated anew in each iteration (paper 3.2). */
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight);
-/* Fairness of the Gauss image: the differences of face normals with those of the neighbouring faces, projected to the
-   plane orthogonal to the normal. */
+/* Fairness of the Gauss image: differences between face normals and their neighbours' normals, projected to the plane
+   orthogonal to the normal (paper 3.2). */
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight);
 
 /* Quads are parallelograms: v_1 - v_2 + v_3 - v_4 = 0 (paper, Figure 8). */
@@ -1239,61 +1339,61 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight);
    3.5). */
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
-/* Weight, decay and last iteration of a group; {w, 1, INT32_MAX} keeps a wish on to the end. */
+/* Sets a group's weight, decay and last iteration; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
-/* Weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says; elements
-   NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off, 1 on
-   again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a reference
-   has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
+/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says;
+   elements NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off,
+   1 on again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a
+   reference has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
 GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
                                                const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
 
-/* Is the boundary vertex a corner: only one face there, or the boundary turns by more than 45 degrees. */
+/* Is this boundary vertex a corner: with one face only, or with a turn of the boundary by more than 45 degrees? */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* -- solving -- */
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
-   second call goes on from where the first ended, or from where you have moved the vertices to. The system's values of
-   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" of
-   fixed vertices, gliding boundaries and closeness stays that of gproj_form_create. Where no wish guides, closeness to
-   the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error nothing is
-   written.
+   second call goes on from the end of the first, or from the positions that you have set since. The system's values for
+   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" for
+   fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
+   closeness to the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error
+   nothing is written.
 
-   Where only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness,
-   steps are found by the multipliers of the constraints if these are clearly fewer than the variables. With fairness,
+   If only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness, steps
+   are found by the constraints' multipliers, provided that these are clearly fewer than the variables. With fairness,
    circular or conical faces they are not, and options->nearest and drags always need the matrix of all variables; the
-   first of these after a solve by multipliers, and the first such solve after it, analyse anew. The same constraints
-   are met, on paths that differ a little.
+   first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
+   constraints are met, on paths that differ a little.
 
    With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
-   face that is about to turn over gets a row that asks for 0.4 of its area. It appears as the group "guard", acts on
-   the steps only, and has no part in residual and verdict. It helps; what has turned all the same is counted by
-   gproj_measure.
+   face that is about to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts
+   on the steps only, not on residual and verdict. It helps; gproj_measure counts the faces that have turned all the
+   same.
 
    options->smooth (the command line's default) does more for meshes of any resolution:
-   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little of |d_i|, instead of by
-     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Of all changes that satisfy the
-     linearised rows the smoothest is taken: meshes stay fair that way, and move farther for it. Nothing is biased:
-     no closeness is added. Forces are measured, too, where steps fail.
-   - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent by
-     what the linearised rows have missed: full steps are good ones then, and their number hardly depends on how fine the mesh
-     is.
-   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50 iterations
-     or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and edges keep a
-     length. The rows come as they are needed, as the group "corners". Where no step is found with them they are let go;
-     gproj_result.spoiled tells what that has cost.
-   - Where the solve ends short of what must hold, or with a spoiled mesh, it begins again with stiffer steps, up to three
-     times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
+   - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
+     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). This takes the smoothest
+     change that satisfies the linearised rows: meshes stay fair that way, and move farther for it. Nothing is biased:
+     no closeness is added. Forces are measured, too, if steps fail.
+   - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
+     by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
+     mesh is.
+   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50
+     iterations or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and
+     edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
+     are let go; gproj_result.spoiled counts the damage.
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps, up to
+     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
    Iterations are a limit there, no schedule: allow 200.
 
-   For the mesh that is nearest to the one at the beginning, or the one that serves the wishes best, set
+   For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
    face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
-/* The same solve in frames, for programs that draw between its iterations: begin once, step each frame, and as long as
+/* A solve in frames, for programs that draw between iterations: begin once, step each frame, and as long as
    gproj_step_is_on there is more to do.
 
        gproj_step_begin(form, 20, NULL);
@@ -1302,15 +1402,15 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
            draw(mesh);
        }
 
-   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step takes
-   as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0 seconds: one,
-   without a clock. It writes the positions and returns how the solve stands: GPROJ_TIME_OUT while it is on, then its
-   verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one gproj_solve.
-   Between two frames weights may be changed and targets moved; vertices are moved by targets, or before another
-   gproj_step_begin: positions are only written. gproj_step_stop ends it where it is; so do gproj_solve, gproj_drag_begin
-   and another gproj_step_begin. Where groups or rows were added in between it fails. After a failure, such as
-   seconds without a clock in the host, or an error of the form, it is no longer on. options->time_budget counts the seconds
-   inside all steps. */
+   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step
+   takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0
+   seconds: one, without a clock. It writes the positions and returns the state of the solve: GPROJ_TIME_OUT while it is
+   on, then the verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
+   gproj_solve. Between two frames weights may be changed and targets moved; vertices are moved by targets, or before
+   another gproj_step_begin: positions are only written. gproj_step_stop ends it at the present positions; so do
+   gproj_solve, gproj_drag_begin and another gproj_step_begin. If groups or rows were added in between it fails. After a
+   failure, such as seconds without a clock in the host, or an error of the form, it is no longer on.
+   options->time_budget counts the seconds inside all steps. */
 GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_step_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
@@ -1319,25 +1419,25 @@ GPROJ_API void gproj_step_stop(gproj_form *form);
 /* ------------------------------------------------------------------------------------------------------------
    >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
 
-   Every edge v_i v_j has a force density w_ij, a variable: it pushes v_i by w_ij (v_i - v_j) and v_j by the opposite, so
-   w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
+   Every edge v_i v_j has a force density w_ij, a variable: it pushes v_i by w_ij (v_i - v_j) and v_j by the opposite,
+   so w > 0 is compression and w |v_i - v_j| the axial force. In every vertex without support
        sum_j w_ij (v_i - v_j) + f_i = 0                     (paper 3.1; with loads that point down, along -z)
    f_i is the load on the vertex. Units are the caller's: lengths as in the mesh, loads in any unit of force, and forces
-   come out in that one. Inside, both are normalised, so units do not change the shape. Edges between two pinned
+   come out in that unit. Inside, both are normalised, so units do not change the shape. Edges between two pinned
    supports have no force: it would be undetermined. */
 
 /* Loads follow the shape: they are linearised anew in each iteration. */
 typedef struct gproj_loads {
     double density;             /* weight per length of every edge (rho A); half of it loads each end */
     const double *edge_density; /* edge_count numbers instead; NULL: `density` for all */
-    double area_load;           /* down, per area of each face: an equal part on each of its corners */
+    double area_load;           /* down, per area of each face: an equal part on each corner */
     double snow;                /* down, per area of each face's projection to the ground */
     const double *point_load;   /* 3 * vertex_count: a force on each vertex; NULL: none */
 } gproj_loads;
 
 /* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
-   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; whether it stays
-   where it is, is another matter: see gproj_add_fixed and gproj_add_gliding_boundary. */
+   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; it may still move:
+   see gproj_add_fixed and gproj_add_gliding_boundary. */
 typedef struct gproj_supports {
     int32_t count;
     const int32_t *vertex;
@@ -1345,8 +1445,8 @@ typedef struct gproj_supports {
 } gproj_supports;
 
 /* Equilibrium at all vertices that are not pinned, once for a form; the arrays are copied. At the first solve the
-   forces start from the solution of gproj_find_forces, drawn to those of a shallow dome, so that the shape has to move
-   little; where it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
+   forces start from the solution of gproj_find_forces, drawn to those in a shallow dome, so that the shape has to move
+   little; if it leaves more than nine tenths of the loads, from uniform forces, which bend the shape into such a dome
    first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
@@ -1358,31 +1458,31 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
    sections: A = 1, bounds of the force. min = -INFINITY or max = INFINITY: no bound on that side. */
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight);
-/* A wish: opposite edges of each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
+/* A wish: opposite edges in each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
 /* The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
-/* Sets them as the start of the next solve; NULL: the next solve finds its own start. */
+/* Sets force densities, edge_count numbers, as the start for the next solve; NULL: the solve finds a start. */
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
-/* The variable of an edge's force in the form's system, for rows of your own: the density in the form's units, which
+/* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
-/* What the supports give, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
+/* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
 
-/* How self-supporting is the mesh as it is? The forces that balance its loads best: densities (edge_count numbers, may
-   be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active gproj_add_compression and
-   gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): what is left in each vertex, over the mean
-   load. Changes nothing. */
+/* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
+   numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
+   gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
+   unbalanced force at each vertex, over the mean load. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
-/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is what those of gproj_find_forces leave in
-   each vertex, over the mean load, 0 along the axes of supports. As virtual displacements of the vertices it is a proof
-   (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces w_ij (v_i - v_j)'(d_i - d_j) >= 0, which is never
-   the opposite. It holds for these positions only; others may be balanced. d is 0, but for rounding, where forces are
-   found. */
+/* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
+   gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
+   of the vertices it is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces do w_ij (v_i -
+   v_j)'(d_i - d_j) >= 0, never the opposite. It holds for these positions only; others may be balanced. d is 0, but for
+   rounding, if forces are found. */
 GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
 
 typedef struct gproj_forces {
@@ -1395,20 +1495,20 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* The mesh as it is, with the forces of the last solve. */
+/* Measures the mesh as it is, with the forces from the last solve. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-drag   Dragging: a form follows one or several handles at screen rate, and what must hold goes on holding.
+   >>api-drag   Dragging: a form follows one or several handles at screen rate, and constraints go on holding.
 
-   gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the meshes
-   that satisfy it (paper, section 2). gproj_drag_move then finds, with what has been prepared,
+   gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the
+   constraints (paper, section 4). gproj_drag_move then finds, from the prepared factorisation,
        the dx with G dx = 0 and S'dv = (S'S) d that has the smallest |dv|^2 + 0.0001 |da|^2
-   where d is how far the handles have been moved, dv the part of dx that belongs to the vertices, da its other part
-   (normals, axes, forces), and S the weights of the handles' vertices, one column a handle. So a vertex goes where it is
-   dragged to, and a point of a coarse cage takes its fine vertices along, S d if nothing stands against it. Where the
-   handles cannot follow fully, they follow in the sense of least squares. The mesh is dragged out of what must hold by the
-   square of the drag only: half a drag, a quarter of the error. gproj_drag_end projects that away.
+   with the handles' displacements d, the vertices' part dv and the other part da of dx (normals, axes, forces), and the
+   weights S of the handles' vertices, one column a handle. So a vertex goes to the place it is dragged to, and a point
+   of a coarse cage takes its fine vertices along, by S d if nothing stands against it. Handles that cannot follow fully
+   do so in the sense of least squares. The constraints' error is proportional to the square of the drag: half a drag, a
+   quarter of the error. gproj_drag_end projects it away.
 
        gproj_drag *drag = gproj_drag_begin(form, &handles, NULL, &error);
        while (mouse_is_down()) {
@@ -1420,66 +1520,66 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
    While it lasts the form must not be solved, restored or destroyed, and nothing be added to it. */
 typedef struct gproj_drag gproj_drag;
 
-/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: a point of a coarse cage has those of
-   its column of the subdivision. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column, t->weight,
-   NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL: handle k is
-   vertex[k]. weight NULL: all are 1. */
+/* Handle k has the vertices vertex[start[k]..start[k + 1] - 1] with their weights: for a point of a coarse cage, a
+   column of the subdivision's matrix. With t = gproj_stencil_transpose(stencil), {t->row_count, t->start, t->column,
+   t->weight, NULL} are all points of the cage, and with count 1 and start t->start + j it is point j alone. start NULL:
+   handle k is vertex[k]. weight NULL: all are 1. */
 typedef struct gproj_handles {
     int32_t count;
     const int64_t *start; /* count + 1 entries, start[0] >= 0 */
     const int32_t *vertex;
     const double *weight;
-    /* 3 * count: where the handles are now, in the mesh's units; NULL: at the weighted means of their vertices. */
+    /* 3 * count: the handles' positions now, in the mesh's units; NULL: the weighted means of their vertices. */
     const double *position;
 } gproj_handles;
 
 typedef struct gproj_drag_options {
-    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_info), everything is linearised anew at
-       the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then costs an
-       evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
+       anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
+       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
 
-/* What a drag has come to. */
+/* The state of a drag. */
 typedef struct gproj_drag_info {
     int32_t handles;
-    int32_t freedom;        /* independent motions of the handles that are possible, at most 3 * handles */
+    int32_t freedom;        /* possible independent motions of the handles, at most 3 * handles */
     int32_t linearisations; /* so far: 1, or more with a residual_bound */
-    int32_t solves;         /* right-hand sides solved by all of them */
-    double behind;          /* the largest distance of a handle from where it should be, in the mesh's units */
+    int32_t solves;         /* right-hand sides solved by all linearisations */
+    double behind;          /* the largest distance between a handle and its target, in the mesh's units */
 } gproj_drag_info;
 
-/* Begins at the mesh's positions as they are; forces are those of the last solve (with equilibrium there must have been
-   one). All groups of constraints with a weight are linearised, and the bounds that are at their limit (within 1e-6),
-   which stay there; other bounds may be passed until the release. A solve in frames that is on ends. NULL: see `error`,
-   nothing has changed: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER for what is wrong with handles and options,
-   GPROJ_ERROR_NUMBER where what must hold cannot be linearised, GPROJ_ERROR_STATE during a solve or another drag, and
+/* Begins a drag at the mesh's positions as they are, with the forces from the last solve (with equilibrium there must
+   have been one). All groups of constraints with a weight are linearised, and the bounds that are at their limit
+   (within 1e-6), which stay there; other bounds may be passed until the release. A solve in frames that is on ends.
+   NULL: see `error`, nothing has changed: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER for wrong handles and options,
+   GPROJ_ERROR_NUMBER if the constraints cannot be linearised, GPROJ_ERROR_STATE during a solve or another drag, and
    before forces have values. The arrays are copied; `options` and `error` may be NULL. Work: one factorisation, and 6
    right-hand sides for each handle. */
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
                                        const gproj_drag_options *options, gproj_error *error);
-/* Moves the handles: positions, 3 a handle, in the mesh's units. Counted from the beginning of the drag, so where the
-   handles were in between does not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for
-   each handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
-   not finite or beyond 1e70, or, with a residual_bound, is so far that what must hold cannot be linearised there. */
+/* Moves the handles: positions, 3 a handle, in the mesh's units. Displacements count from the beginning of the drag, so
+   positions in between do not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for each
+   handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
+   not finite or beyond 1e70, or, with a residual_bound, is so far that the constraints cannot be linearised there. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
-/* The largest |phi| of all rows that must hold, in mean edge lengths, of the mesh as it has been dragged: an evaluation of
-   all rows. */
+/* The largest |phi| over rows that must hold, in mean edge lengths, on the mesh as it has been dragged: an evaluation
+   of all rows. */
 GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
-GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call that failed */
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* from the last call that failed */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
-/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over under a
-   pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go to where they
-   are now, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences of its change, not of its shape, so that
-   features stay), and with 0.001 * 0.9^n all vertices stay where they were; then nothing is wished. The form's own wishes
-   rest (see keep_wishes). Destroys the drag. The first release adds the groups "drag fairness" and "drag handles" to the form,
-   so it is analysed anew. Where there was no room to follow (gproj_drag_residual well above 0.1) the handles may end far
-   from where they were dragged. Where the result says that 10 iterations were not enough, gproj_solve goes on; after an error the
-   mesh is as before the drag. */
+/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over
+   under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go
+   to their present positions, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences in the change, not in
+   the shape, so that features stay), and with 0.001 * 0.9^n all vertices keep their positions before the drag; then
+   nothing is wished. The form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups
+   "drag fairness" and "drag handles" to the form, so it is analysed anew. If there was no room to follow
+   (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
+   iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Puts the form back to what it was before the drag, bit for bit, and destroys the drag. Where groups or rows were added
+/* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
    during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
@@ -1487,11 +1587,11 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
    >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
-   weights, schedules, targets, constants and coefficients of all rows, and, of a solve in frames (gproj_step), where it is.
-   What follows from a restored state is what would have followed when it was saved: to the bit on the same processor and
-   build, if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last
-   digits. It does not have the mesh's faces and what has been added to the form: it is restored in the same form, or in
-   one that the same calls have made from the same mesh.
+   weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
+   (gproj_step). A restored form goes on as the saved one would have: to the bit on the same processor and build, if no
+   first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The state
+   lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the same
+   calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -1504,13 +1604,14 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 /* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
    error of the form. */
 GPROJ_API size_t gproj_state_size(gproj_form *form);
-/* Writes it to buffer[0..size - 1]; size is that of gproj_state_size. Changes nothing. Errors: GPROJ_ERROR_ARGUMENT
-   (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or that of the form. */
+/* Writes the state to buffer[0..size - 1]; size comes from gproj_state_size. Changes nothing. Errors:
+   GPROJ_ERROR_ARGUMENT (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or the
+   form's error. */
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
-/* Restores it. Refused, with a sentence and without a change, where the bytes are no state, are damaged or cut off
+/* Restores a state. Refused, with a sentence and without a change, if the bytes are no state, are damaged or cut off
    (GPROJ_ERROR_SYNTAX), or belong to another form (GPROJ_ERROR_ARGUMENT); and during a solve or a drag
-   (GPROJ_ERROR_STATE). Without memory the form has that error. Callbacks of a solve in frames stay those of the one
-   that is on in the form; there are none where none is on. */
+   (GPROJ_ERROR_STATE). Without memory the form has that error. A restored solve in frames has the callbacks of the
+   solve that is on in the form, or none if none is on. */
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error);
 
 #ifdef __cplusplus
