@@ -13,9 +13,10 @@
 
 enum {
     BENCH_SAMPLES_MAX = 400,
-    BENCH_ITERATIONS = 6, /* of a solve; the first one gives no sample */
-    BENCH_SET_UPS = 9,    /* at most */
-    BENCH_CHOSEN = 32,    /* problems and sizes that may be named */
+    BENCH_ITERATIONS = 6,   /* of a solve; the first one gives no sample */
+    BENCH_WHOLE_SOLVE = 50, /* limit of a default solve, which goes to its end */
+    BENCH_SET_UPS = 9,      /* at most */
+    BENCH_CHOSEN = 32,      /* problems and sizes that may be named */
     BENCH_CASES = 256
 };
 
@@ -266,6 +267,7 @@ static bool bench_pair(bench_run *run[2], const bench_mesh *mesh, const bench_ta
     int i;
     for (i = 0; i < 2; ++i) {
         run[i] = bench_begin_run(&bench_simd, samples);
+        if (task[i] == BENCH_DEFAULT) run[i]->iterations = BENCH_WHOLE_SOLVE;
         run[i]->form = bench_set_up(&bench_simd, mesh, task[i], workers[i], 1, &set_up);
     }
     return run[0]->form && run[1]->form && bench_turns(run, samples, 4);
