@@ -7,15 +7,15 @@
      and what is wished (fairness, closeness). In about ten Newton-like steps the mesh satisfies all of it together to
      machine precision, and you get an honest verdict: which constraints hold, how exactly, and the worst element by
      name. For editors: vertices are dragged at screen rate while everything holds, solves go on frame by frame, states
-     are saved for undo. Its parts can be used alone: half-edge meshes with OBJ and OFF, subdivision, changes of their
+     are saved for undo. Usable alone are: half-edge meshes with OBJ and OFF, subdivision, changes of their
      combinatorics, closed curves filled with quads, closest points, a sparse Cholesky factorisation, least squares with
      bounds, and projection onto any system of quadratic equations and inequalities.
 
    WHAT IT DOES NOT DO
-     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics (to change them, see >>api-edit,
-       >>api-subdivide and >>api-fill);
+     - draw, or remesh by itself: solving moves vertices and keeps the combinatorics (to be changed with
+       gproj_edit, gproj_mesh_subdivide and gproj_mesh_fill);
      - find global minima: wishes guide the way to a mesh that satisfies the constraints; on demand it is the nearest
-       one or the one that serves the wishes best (gproj_solve_options.nearest), but among its neighbours only;
+       one or the one that serves the wishes best (gproj_solve_options.nearest), but a local optimum only;
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
      - treat meshes that are no orientable manifolds: they are refused with a sentence that names the place.
 
@@ -229,14 +229,13 @@
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
-   MEMORY Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
-   back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
-   nothing, unless
-     during a solve a group first gets a weight or the guard first acts (then there is one analysis more), or a callback
-     sets coefficients of planarity, fairness or their like (which rows have in common before). Every allocation may
-     fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a mesh, a curve, a
-     stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and surfaces added to
-     it, a drag to its form.
+   MEMORY   Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
+     back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
+     nothing, unless during a solve a group first gets a weight or the guard first acts (then there is one analysis
+     more), or a callback sets coefficients of planarity, fairness or their like (whose rows share them before). Every
+     allocation may fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a
+     mesh, a curve, a stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and
+     surfaces added to it, a drag to its form.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form with its mesh, system and drag
@@ -290,7 +289,7 @@ extern "C" {
 GPROJ_API int32_t gproj_version(void);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-host   What the library asks of the program around it: memory, threads, a clock.
+   >>api-host   Services that the library asks of the program around it: memory, threads, a clock.
 
    A gproj_host is given when an object is created and copied into it. NULL or all zeros mean: malloc, one
    thread, no clock. Nothing is ever process-wide; two objects may have two hosts. */
@@ -522,11 +521,11 @@ typedef struct gproj_least_squares_result {
 /* Solves the problem. x, `columns` numbers: the start, and at the end the solution. Zeros are a good start. A start
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
    zeros. `host`, `result` and `error` may be NULL. The work is in factorisations of a matrix with the pattern of A'A,
-   so a row of A must not have very many entries. Usual are 5 to 20; up to 30 if most bounds matter and the residual
-   stays large; there are never more than 80. If A has dependent columns and damping is 0, nothing is added to the
-   problem: the matrix in each step has 1 + 1e-12 times the diagonal of A'A, the conditions that the solution satisfies
-   do not. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for
-   a wrong problem, GPROJ_ERROR_MEMORY. */
+   so a row of A must not have very many entries. Most problems take 5 to 20, up to 30 if most bounds matter and the
+   residual stays large, and none more than 80. If A has dependent columns and damping is 0, nothing is added to the
+   problem: the matrix in each step has a diagonal larger by a part of 1e-12, but the solution satisfies the conditions
+   without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
+   for a wrong problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -537,7 +536,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
        phi(x) = sum_t a_t x_i(t) x_j(t) + sum_t b_t x_i(t) + c                                  (paper, eq. 1)
    in groups. A GPROJ_CONSTRAINT must hold: phi = 0. A GPROJ_BOUND must hold, too, but phi >= 0 is enough. A GPROJ_WISH
    guides: the sum of phi^2 over the group should be small, and it fades so that the constraints can be met exactly. A
-   group's weight multiplies its rows, so it enters squared. One step from x solves (paper, eq. 3)
+   group's weight multiplies its rows, so it enters squared. One step from x solves             (paper, eq. 3)
        (sum w^2 g g' + eps^2 I) dx = - sum w^2 phi(x) g,    g = grad phi(x),
    over all rows; it is Newton's method on the constraints, led by the wishes. Nothing here knows of meshes.
 
@@ -563,7 +562,7 @@ typedef struct gproj_schedule {
     int32_t last;
 } gproj_schedule;
 
-/* One term of a row: a x_i x_j, or a x_i where j is -1. i = j gives a x_i^2. */
+/* One term of a row: a x_i x_j, or a x_i if j is -1. i = j gives a x_i^2. */
 typedef struct gproj_term {
     int32_t i, j;
     double a;
@@ -643,7 +642,7 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or more if rounding asks for it: 8 roundings
-       of the largest |x| in rows that must hold, in a global row sum_t a_t x_t 16 of sum_t |a_t x_t|, and 4 of sum_k
+       of the largest |x| in rows that must hold; 16 of sum_t |a_t x_t| in a global row sum_t a_t x_t; 4 of sum_k
        |dphi/dx_k x_k| if nothing else keeps a row from holding (large forces). The last gives at most 1e-11, the others
        1e-8. */
     double tolerance;
@@ -683,7 +682,7 @@ typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations; /* gproj_iteration.number of the last one: steps taken and numbers skipped */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
-    int32_t attempts;   /* of a smooth gproj_solve: the first and the restarts; 1 otherwise */
+    int32_t attempts;   /* 1, and in a smooth gproj_solve 1 more for each restart */
     double residual;    /* largest |phi| over rows that must hold with weight > 0 */
     double tolerance;   /* the bound that the residual was compared with */
     double step;        /* largest |dx| of the last step */
@@ -743,12 +742,12 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iteratio
 /* ------------------------------------------------------------------------------------------------------------
    >>api-mesh   Half-edge meshes of any polygons.
 
-   Orientable 2-manifolds with or without boundary, any components and holes, faces of degree >= 3 (convex or not),
-   isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has face -1, and those of a
-   boundary loop are linked by next/prev in the direction opposite to the faces.
+   Orientable 2-manifolds with or without boundary, any number of components and holes, faces of degree >= 3 (convex or
+   not), isolated vertices allowed. Every edge has two half-edges; at the boundary one of them has face -1, and those of
+   a boundary loop are linked by next/prev in the direction opposite to the faces.
 
    All arrays are owned by the mesh and read-only but for `position`, which you may change at any time. Corner k of face
-   f is the half-edge k times after face_halfedge[f], in the order of the input. */
+   f is the half-edge k times `next` after face_halfedge[f], in the order of the input. */
 typedef struct gproj_mesh {
     int32_t vertex_count;
     int32_t face_count;
@@ -849,14 +848,14 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    NUMBERS  Vertices, edges and faces of the mesh keep their numbers in the edit, whatever is done; new elements get the
    following ones, and numbers of removed ones are not given again. If two vertices or edges are merged the lower number
    stays, and the other one stands for it in all functions here.
-   REFUSALS After each change the edit is an orientable manifold that gproj_mesh_create would accept. A change that
+   REFUSALS  After each change the edit is an orientable manifold that gproj_mesh_create would accept. A change that
    would end that is refused: it returns -1, with an error that names the element, and the edit is as it was; without
    memory likewise. A refusal has no consequences for later changes. `error` may be NULL.
-   POLYLINES follow their vertices. One that runs along an edge gets the new vertex if the edge is split. */
+   POLYLINES  They follow their vertices. One that runs along an edge gets the new vertex if the edge is split. */
 
 /* Read-only but for `position`. The arrays move when the edit grows: do not keep their addresses. They are as in
    gproj_mesh, with gaps: a removed edge e has origin[2 * e] = -1, a removed face face_halfedge -1, a vertex that was
-   merged into another one, like one without a face, vertex_halfedge -1. The twin of half-edge h is h ^ 1, its edge h /
+   merged into another one, like one without a face, vertex_halfedge -1. Half-edge h has the twin h ^ 1 and the edge h /
    2. */
 typedef struct gproj_edit {
     int32_t vertex_count; /* numbers given so far, with removed elements */
@@ -1072,7 +1071,7 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
 
 /* ------------------------------------------------------------------------------------------------------------
-   >>api-measure Measures: sizes, planarity and other shape properties, and damage. */
+   >>api-measure   Measures: sizes, planarity and other shape properties, and damage. */
 typedef struct gproj_measures {
     double mean_edge, min_edge, max_edge;
     double length;                             /* sum over all edges */
@@ -1123,8 +1122,8 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh);
    orthogonal to the edge, gives m at all others. The distance is exact always; edges are parallel if going round
    closes: for any m at the first vertex in a mesh without holes and handles whose faces are planar and circular and
    have an even number of sides and no doubled vertices. The first m is chosen so that m goes along the vertex normals;
-   with holes, handles and odd faces, among those that keep the normals, so that going round closes best. Vertices
-   without a face stay. */
+   with holes, handles and odd faces it is one for which going round closes best, as far as that keeps the normals.
+   Vertices without a face stay. */
 GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                                gproj_error *error);
 /* Makes a mesh with the faces moved by `distance` along their normals: vertices v + distance * x, with n_k'x = 1 for
@@ -1147,7 +1146,7 @@ typedef struct gproj_offset_measures {
     /* For offset edges: the largest part of o_j - o_i across the edge v_j - v_i; for the quads of gproj_mesh_support:
        the largest distance of o_j from the plane through v_i, v_j and o_i; both in mean edge lengths. */
     double parallel_max, support_planarity_max;
-    int32_t reversed_edges; /* offset edges against their edges: the distance is larger than a radius of curvature */
+    int32_t reversed_edges; /* they run against the mesh's edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
 /* Distances and parallel_max are infinite if a mesh is NULL, or if the two do not have the same faces. */
@@ -1191,13 +1190,14 @@ typedef struct gproj_fill_info {
 /* Fills the closed curve through `count` >= 3 points (3 * count numbers; the last is joined to the first). Vertex 0 is
    the first corner. Corners of the mesh are exactly points of the curve, other boundary vertices are on the segments.
    Counter-clockwise curves give faces that look up. The polylines of the mesh are the sides; a curve with fewer than 2
-   corners is given 4 at about equal distances, from its corner or its first point. A corner has one face, or two if it
-   has more than 165 degrees inside or if there are rings. Cuts through the inside end at all corners with more than 195
-   degrees, and at others if a patch would have more than 6; a cut is chosen short, with good angles, and so that the
-   patches need few irregular vertices. Valence 6 is taken if this leaves nothing better. `options`, `info`, `host` and
-   `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for a side: the first one): curves
-   that meet themselves or enclose no area, corners out of order, numbers of edges below 1 or with an odd sum (the
-   sentence says how to change them), and curves for which no filling was found. */
+   corners is given 4 at about equal distances, from its corner or its first point.
+   A corner has one face, or two if it has more than 165 degrees inside or if there are rings. Cuts through the
+   inside end at all corners with more than 195 degrees, and at others if there are more than 6; cuts are chosen
+   short, with good angles, and so that the patches need few irregular vertices. Valence 6 is taken if this leaves
+   nothing better.
+   `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for
+   a side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges
+   below 1 or with an odd sum (the sentence says how to change them), and curves for which no filling was found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
