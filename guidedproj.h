@@ -11016,16 +11016,6 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
 }
 
-/* After an attempt that was not good: stiffer steps, or a larger eps if stiffness is no help. */
-GPROJI_INTERNAL void gproji_damp(gproji_loop *loop, double *epsilon) {
-    if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
-        loop->failed = true;
-        gproji_stiffen(loop, gproji_fmax(3 * loop->system->stiffness, gproji_stiffness_least));
-    } else {
-        *epsilon *= 10;
-    }
-}
-
 /* After a good step: the stiffness of the next one. */
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11062,7 +11052,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     }
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.attempts = 0;
-    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt, gproji_damp(loop, &epsilon)) {
+    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
         double before = loop->standing.residual;
         bool stepped = gproji_try_step(loop, epsilon);
         if (stepped) gproji_linearise(loop);
@@ -11076,6 +11066,13 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_linearise(loop);
         }
         gproji_start_bounds(s);
+        /* Stiffer steps, or a larger eps if stiffness is no help. */
+        if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
+            loop->failed = true;
+            gproji_stiffen(loop, gproji_fmax(3 * s->stiffness, gproji_stiffness_least));
+        } else {
+            epsilon *= 10;
+        }
     }
     return false;
 }
@@ -11092,13 +11089,6 @@ GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) 
 
 /* Do the constraints hold? */
 GPROJI_INTERNAL bool gproji_holds(const gproji_loop *loop) { return loop->standing.residual <= loop->tolerance; }
-
-/* Do the constraints hold, with nothing left to be wished for? */
-GPROJI_INTERNAL bool gproji_has_converged(const gproji_loop *loop) {
-    if (!gproji_holds(loop)) return false;
-    if (!gproji_wishes_are_on(loop->system)) return true;
-    return loop->result.iterations > 0 && loop->result.step <= loop->tolerance;
-}
 
 GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
     double spent = loop->spent + gproji_now(loop->system) - loop->started;
@@ -11194,7 +11184,9 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
-        if (gproji_has_converged(loop)) return GPROJ_CONVERGED;
+        if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
+                                   (loop->result.iterations > 0 && loop->result.step <= loop->tolerance)))
+            return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         if (!gproji_iterate(loop)) {
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
@@ -21409,7 +21401,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
         system->group[group].row[i].constant = -(system->sliding ? gproji_guard_small : gproji_guard_wanted);
         if (!(area > gproji_guard_area)) continue;
         gproji_guard_normal(form, system->x, i, n);
-        /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard_row */
+        /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard */
         for (t = 0; t < count; t += 6) {
             for (k = 0; k < 3; ++k) {
                 term[t + 2 * k].a = 0.5 * n[(k + 2) % 3] / area;
@@ -21439,25 +21431,12 @@ GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const gproj_system *system
     return false;
 }
 
-/* The row of a face: for each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
-GPROJI_INTERNAL void gproji_add_guard_row(gproj_form *form, int32_t face) {
-    const gproj_mesh *mesh = form->mesh;
-    gproj_term term[6 * GPROJI_GUARD_DEGREE];
-    int32_t h = mesh->face_halfedge[face], c, k, count = 0;
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
-        for (k = 0; k < 3; ++k) {
-            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
-            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
-        }
-    }
-    gproj_system_add_row(form->system, form->guard->group, count, term, -gproji_guard_wanted, face);
-}
-
 /* The guard's group and rows, once. */
 GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
-    int32_t f, count = 0;
-    for (f = 0; f < form->mesh->face_count; ++f) count += form->mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
+    const gproj_mesh *mesh = form->mesh;
+    gproj_term term[6 * GPROJI_GUARD_DEGREE];
+    int32_t f, h, c, k, terms, count = 0;
+    for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
     form->guard = gproji_new_part(form, count);
     if (!form->guard) return;
     form->guard_area = (double *)gproji_take(&form->own, 3 * (size_t)count, sizeof *form->guard_area);
@@ -21471,10 +21450,18 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     form->system->group[form->guard->group].slack = gproji_guard_slack;
     form->system->refuse_step = gproji_refuse_turned;
     form->system->refuse_user = form;
-    for (f = 0, count = 0; f < form->mesh->face_count; ++f) {
-        if (form->mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
+    for (f = 0, count = 0; f < mesh->face_count; ++f) {
+        if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         form->guard->vertex[count++] = f;
-        gproji_add_guard_row(form, f);
+        /* For each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
+        for (c = 0, terms = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
+            int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
+            for (k = 0; k < 3; ++k) {
+                gproji_set_term(&term[terms++], a + k, b + (k + 1) % 3, 0);
+                gproji_set_term(&term[terms++], a + (k + 1) % 3, b + k, 0);
+            }
+        }
+        gproj_system_add_row(form->system, form->guard->group, terms, term, -gproji_guard_wanted, f);
     }
 }
 
@@ -21617,27 +21604,11 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
     return row;
 }
 
-/* Lets a corner act on steps. Returns whether that is news. */
-GPROJI_INTERNAL bool gproji_wake_corner(gproj_form *form, int32_t corner) {
-    gproji_corners *guard = form->corners;
-    int32_t row = guard->row[corner];
-    gproji_row *rows;
-    if (row < 0) row = gproji_add_corner(form, corner);
-    rows = form->system->group[guard->group].row;
-    if (row < 0 || rows[row].weight > 0) return false;
-    rows[row].weight = sqrt(guard->size[corner / 2]);
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_corner_acts(const gproj_form *form, int32_t corner) {
-    int32_t row = form->corners->row[corner];
-    return row >= 0 && form->system->group[form->corners->group].row[row].weight > 0;
-}
-
 /* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first one
    it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproj_form *form, const gproj_system *s, double margin, bool first) {
     const gproji_corners *guard = form->corners;
+    const gproji_row *rows = s->group[guard->group].row;
     const gproj_mesh *mesh = form->mesh;
     int32_t f, h, c, k;
     bool found = false;
@@ -21650,7 +21621,8 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproj_form *form, const gproj_sys
             if (!(guard->size[h] > 0)) continue;
             gproji_corner_area(mesh, s->x, h, area);
             for (k = 0; k < 2; ++k) {
-                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || gproji_corner_acts(form, 2 * h + k))
+                int32_t row = guard->row[2 * h + k];
+                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || (row >= 0 && rows[row].weight > 0))
                     continue;
                 if (first) return true;
                 guard->marked[2 * h + k] = 1;
@@ -21675,12 +21647,15 @@ GPROJI_INTERNAL bool gproji_inspect_corners(void *user, gproj_system *s) {
 GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *s) {
     gproj_form *form = (gproj_form *)user;
     gproji_corners *guard = form->corners;
-    int32_t corner;
+    int32_t corner, row;
     bool woken = false;
     for (corner = 0; corner < 2 * form->mesh->halfedge_count; ++corner) {
         if (!guard->marked[corner]) continue;
         guard->marked[corner] = 0;
-        woken = gproji_wake_corner(form, corner) || woken;
+        row = guard->row[corner] < 0 ? gproji_add_corner(form, corner) : guard->row[corner];
+        if (row < 0 || s->group[guard->group].row[row].weight > 0) continue;
+        s->group[guard->group].row[row].weight = sqrt(guard->size[corner / 2]);
+        woken = true;
     }
     if (woken) gproji_refresh_corners(form, s, guard->group);
     return woken;
@@ -21731,13 +21706,23 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     if (guard->group >= 0) form->system->group[guard->group].safeguard = true;
 }
 
-/* Measures the corners at the beginning of the solve. */
-GPROJI_INTERNAL void gproji_measure_corners(gproj_form *form) {
-    const double *x = gproj_system_values(form->system);
-    const gproj_mesh *mesh = form->mesh;
-    gproji_corners *guard = form->corners;
-    int32_t f, h, c;
-    for (f = 0; f < mesh->face_count; ++f) {
+/* Sets the guard for a solve that begins: no corner acts yet. */
+GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
+    gproj_schedule schedule = {gproji_corner_weight, 1, INT32_MAX};
+    bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    gproji_corners *guard;
+    int32_t r, f, h, c;
+    if (wanted && !form->corners) gproji_add_corners(form);
+    guard = form->corners;
+    if (!guard || !gproji_form_ready(form)) return;
+    if (!wanted) schedule.weight = 0;
+    gproj_system_set_schedule(form->system, guard->group, schedule);
+    guard->wakings = 0;
+    for (r = 0; r < form->system->group[guard->group].row_count; ++r)
+        form->system->group[guard->group].row[r].weight = 0;
+    for (f = 0; wanted && f < form->mesh->face_count; ++f) { /* the areas that corners have now */
+        const gproj_mesh *mesh = form->mesh;
+        const double *x = gproj_system_values(form->system);
         double area[3], *axis = guard->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
@@ -21746,21 +21731,6 @@ GPROJI_INTERNAL void gproji_measure_corners(gproj_form *form) {
             if (!(guard->size[h] > gproji_corner_none)) guard->size[h] = 0;
         }
     }
-}
-
-/* Sets the guard for a solve that begins: no corner acts yet. */
-GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
-    gproj_schedule schedule = {gproji_corner_weight, 1, INT32_MAX};
-    bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    int32_t r;
-    if (wanted && !form->corners) gproji_add_corners(form);
-    if (!form->corners || !gproji_form_ready(form)) return;
-    if (!wanted) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, form->corners->group, schedule);
-    if (wanted) gproji_measure_corners(form);
-    form->corners->wakings = 0;
-    for (r = 0; r < form->system->group[form->corners->group].row_count; ++r)
-        form->system->group[form->corners->group].row[r].weight = 0;
 }
 
 /* ============================================================================================================
