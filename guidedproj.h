@@ -136,7 +136,7 @@
      3.2     fairness           gproj_add_fairness            boundary_fill        form: fairness_makes_smooth
      3.2     in tangent planes  gproj_add_tangential_fairness hybrid_fairing       form: tangential_fairness_evens_out
      3.2     of the Gauss image gproj_add_gauss_fairness      hybrid_fairing       form: gauss_fairness
-     3.3     vertices on curves gproj_add_gliding             courtyard            form: gliding_on_a_curve
+     3.3     vertices on curves gproj_add_gliding_boundary    courtyard            form: gliding_on_the_own_boundary
      3.3     near a surface     gproj_add_reference           subdivision_design   form: reference_draws_near
      3.4     first forces       gproj_find_forces             -                    statics: best_forces
      3.4     a filled boundary  gproj_mesh_fill               boundary_fill        fill: random_curves

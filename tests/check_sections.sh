@@ -74,4 +74,16 @@ for prefix in "$work"/prefix_*.c; do
     done
 done
 run_jobs
+
+# The manual's table from the paper to the code names functions, examples and tests that exist.
+table() { # table: FUNCTION EXAMPLE FILE TEST of each line
+    sed -n '/^   FROM THE PAPER TO THE CODE/,/^   CONTENTS/p' "$root/guidedproj.h" |
+        sed -nE 's/.* (gproj_[a-z_]+) +([a-z_]+|-) +([a-z_]+): ([a-z_0-9]+)$/\1 \2 \3 \4/p'
+}
+[ "$(table | wc -l)" -ge 25 ] && pass || fail 'the table from the paper to the code was not found'
+clean 'names in the table from the paper to the code' "$(table | while read -r function example file test; do
+    grep -q "^GPROJ_API.*\b$function(" "$root/guidedproj.h" || echo "no function $function"
+    [ "$example" = - ] || grep -q "\b$function(" "$root/examples/$example.c" || echo "$function is not in $example.c"
+    grep -q "^GPROJT_TEST($test)" "$root/tests/test_$file.c" || echo "no test $test in test_$file.c"
+done)"
 report
