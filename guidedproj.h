@@ -10849,11 +10849,13 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
 }
 
 /* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
-   must lower it. 0: none. x is at the end of the full step, `none` the merit before. */
-GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course) {
+   must lower it. 0: none. x is at the end of the full step, `none` the merit before. `bent`: a bend was
+   tried. */
+GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course, bool *bent) {
     gproj_system *s = loop->system;
     double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
-    if (!s->schur.on && none - merit < gproji_bend_below * promised) merit = gproji_bend_step(loop, course, merit);
+    *bent = !s->schur.on && none - merit < gproji_bend_below * promised;
+    if (*bent) merit = gproji_bend_step(loop, course, merit);
     loop->agreement = promised > 0 ? (none - merit) / promised : 1;
     while (t > gproji_shortest && (!(merit <= none) || (s->hooks.refuse && s->hooks.refuse(s->hooks.user, s))))
         merit = gproji_go(loop, t /= 2, course);
@@ -10865,17 +10867,22 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproj_system *s = loop->system;
     gproji_course merit;
     double none, full, t;
+    bool bent = false;
     loop->agreement = 1;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
     gproji_merit_along(s, &merit);
     none = gproji_merit_at(&merit, 0);
-    if (s->hooks.settle) return gproji_backtrack(loop, none, &merit);
-    full = gproji_merit_at(&merit, 1);
-    if (!(full <= DBL_MAX)) return 0;
-    loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
-    if (full > none) {
-        t = gproji_minimise_merit(&merit, 0.05, 1);
-        return gproji_merit_at(&merit, t) < none ? t : 0;
+    if (s->hooks.settle) {
+        t = gproji_backtrack(loop, none, &merit, &bent);
+        if (t < 1 || bent) return t; /* the merit along the straight step says nothing of a bent one */
+    } else {
+        full = gproji_merit_at(&merit, 1);
+        if (!(full <= DBL_MAX)) return 0;
+        loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
+        if (full > none) {
+            t = gproji_minimise_merit(&merit, 0.05, 1);
+            return gproji_merit_at(&merit, t) < none ? t : 0;
+        }
     }
     if (gproji_wishes_are_on(s) || loop->standing.residual > 1e-2) return 1;
     t = gproji_minimise_merit(&merit, 0.1, 2);
@@ -10993,8 +11000,10 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     good = loop->iteration.length > 0;
     if (!good)
         gproji_step_back(s);
-    else if (loop->iteration.length != 1 && !s->hooks.settle)
-        loop->iteration.step = gproji_take_step(s, loop->iteration.length); /* else x is there */
+    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !s->hooks.settle)) { /* else x is there */
+        loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+        gproji_settle(s);
+    }
     if (!good && loop->factored && s->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return good;
