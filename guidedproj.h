@@ -15632,8 +15632,8 @@ GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const
     return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
 }
 
-/* Cuts ears from a large polygon, as gproji_cut_ears does, until it is small enough. Without ears, takes any corner whose
-   neighbours have no edge yet; false without such a corner. */
+/* Cuts ears from a large polygon, as faces of surfaces are cut, until it is small enough. Without ears, takes any corner
+   whose neighbours have no edge yet; false without such a corner. */
 GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
     gproji_polygon *polygon = &work->polygon;
     int64_t budget = 512 * (int64_t)polygon->count;

@@ -4,17 +4,7 @@
 #
 #     TOOL=../tools/guidedproj ./test_save_tool.sh
 
-here=$(cd "$(dirname "$0")" && pwd)
-tool=${TOOL:-$here/../tools/guidedproj}
-case $tool in /*) ;; *) tool=$PWD/$tool ;; esac
-work=$(mktemp -d) || exit 2
-trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
-passed=0 failed=0 skipped=0
-export LC_ALL=C
-
-pass() { passed=$((passed + 1)); }
-fail() { failed=$((failed + 1)); echo "FAILED: $*"; }
-skip() { skipped=$((skipped + 1)); echo "skipped: $*"; }
+. "$(dirname "$0")/tool.sh"
 
 [ -x "$tool" ] || { echo "there is no tool at $tool: build it first, or set TOOL"; exit 2; }
 cd "$work" || exit 2

@@ -6,18 +6,8 @@
 # Results are measured by check_mesh.c, which knows nothing of the library. Prints one line a failure, and at the
 # end `N passed, N failed, N skipped`; exits 1 where something failed.
 
-here=$(cd "$(dirname "$0")" && pwd)
-tool=${TOOL:-$here/../tools/guidedproj}
+. "$(dirname "$0")/tool.sh"
 data=${GPROJ_DATA:-$here/../../shared/data}
-case $tool in /*) ;; *) tool=$PWD/$tool ;; esac
-work=$(mktemp -d) || exit 2
-trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
-passed=0 failed=0 skipped=0
-export LC_ALL=C
-
-pass() { passed=$((passed + 1)); }
-fail() { failed=$((failed + 1)); echo "FAILED: $*"; }
-skip() { skipped=$((skipped + 1)); echo "skipped: $*"; }
 check() { # check NAME COMMAND...: the command succeeds
     local name=$1
     shift

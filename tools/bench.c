@@ -344,26 +344,11 @@ static void bench_measure_others(const bench_mesh *mesh, bench_task task, int sa
     if (mesh->vertex_count > 25000) bench_measure_workers(mesh, task, samples, result);
 }
 
-/* Ours with the volume and without. */
-static bool bench_measure_volume(const bench_mesh *mesh, const bench_options *options, bench_result *result) {
-    static const bench_task task[2] = {BENCH_VOLUME, BENCH_PLANARITY};
+/* Ours beside plain iterations on the same mesh: with the volume, or those of a default solve. */
+static bool bench_measure_beside_plain(const bench_mesh *mesh, bench_task what, const bench_options *options,
+                                       bench_result *result) {
     static const int32_t workers[2] = {0, 0};
-    bench_run *run[2];
-    bool measured = bench_pair(run, mesh, task, workers, options->samples);
-    if (measured) {
-        result->ours = bench_simd.facts(run[0]->form);
-        result->samples = run[0]->ours.count;
-        bench_medians(&run[0]->ours, result->our_seconds);
-        result->without = bench_median_whole(&run[1]->ours);
-    }
-    bench_end_pair(run);
-    return measured;
-}
-
-/* A default solve's iterations beside plain ones. */
-static bool bench_measure_default(const bench_mesh *mesh, const bench_options *options, bench_result *result) {
-    static const bench_task task[2] = {BENCH_DEFAULT, BENCH_PLANARITY};
-    static const int32_t workers[2] = {0, 0};
+    const bench_task task[2] = {what, BENCH_PLANARITY};
     bench_run *run[2];
     bool measured = bench_pair(run, mesh, task, workers, options->samples);
     if (measured) {
@@ -381,9 +366,8 @@ static bool bench_measure_default(const bench_mesh *mesh, const bench_options *o
 static bool bench_case(const bench_mesh *mesh, bench_task task, const bench_options *options, bench_result *result) {
     bool measured, beside = task != BENCH_VOLUME && task != BENCH_DEFAULT; /* CHOLMOD's */
     fprintf(stderr, "%s %d\n", result->problem, (int)result->nominal);
-    measured = task == BENCH_VOLUME    ? bench_measure_volume(mesh, options, result)
-               : task == BENCH_DEFAULT ? bench_measure_default(mesh, options, result)
-                                       : bench_measure_both(mesh, task, options, result);
+    measured = beside ? bench_measure_both(mesh, task, options, result)
+                      : bench_measure_beside_plain(mesh, task, options, result);
     if (!measured) fprintf(stderr, "bench: %s %d: nothing to measure\n", result->problem, (int)result->nominal);
     if (measured && !options->quick && beside) bench_measure_others(mesh, task, options->samples, result);
     if (measured && bench_has_both(result) && !options->markdown)
