@@ -191,6 +191,7 @@
        >>symbolic       elimination tree, column counts, supernodes
        >>cholesky       multifrontal factorisation, solves
        >>least-squares  linear least squares with bounds
+       >>stream         numbers to and from bytes
        >>system         rows, groups, the matrix of the normal equations
        >>schur          steps by multipliers, compilation
        >>loop           steps, damping, verdict
@@ -568,9 +569,18 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
+/* How far a solve is, for refresh callbacks; all 0 outside of one. */
+typedef struct gproj_progress {
+    int32_t iteration;  /* the last one that began, from 1; 0: none has */
+    int32_t iterations; /* the limit */
+    int32_t settling;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From 2
+                           on a refresh should not switch between pieces (of a curve, say): else it may do so for ever */
+    bool tangential;    /* nearest: steps follow the constraints away from the start, and may be long */
+} gproj_progress;
+
 /* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
    and replaces the rows by gproj_system_set_row. Must not add anything to the system. */
-typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group);
+typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group, const gproj_progress *progress);
 
 enum {
     GPROJ_NAME_SIZE = 32 /* for a group's name, with the final NUL */
@@ -7401,6 +7411,155 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 }
 
 /* ============================================================================================================
+   >>stream   Numbers to and from a block of bytes, and hashes of numbers. Uses platform.
+
+   One description of a format counts, writes, checks and reads it, by the stream's mode: a description passes each value
+   by address, and only GPROJI_READ writes to it. Integers are little-endian; a double is its 64 bits, but coefficients,
+   constants and weights, which mostly are small numbers of eighths, have one byte for these. */
+
+enum {
+    GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to its negative, have one byte */
+    GPROJI_SMALL_NONE = 255  /* the byte of other numbers; 8 follow */
+};
+
+typedef enum gproji_mode {
+    GPROJI_COUNT,
+    GPROJI_WRITE,
+    GPROJI_CHECK,
+    GPROJI_READ
+} gproji_mode;
+
+typedef struct gproji_stream {
+    gproji_mode mode;
+    uint8_t *out;      /* written */
+    const uint8_t *in; /* checked or read */
+    size_t at, size;
+    const char *wrong; /* an error; NULL: none */
+    bool exhausted;    /* the error: out of memory */
+} gproji_stream;
+
+GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
+
+/* Notes an error, except while counting, which must go on to the end. */
+GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
+    if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
+}
+
+GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream) {
+    gproji_spoil(stream, "out of memory");
+    stream->exhausted = true;
+}
+
+GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
+    uint64_t value = 0;
+    int32_t i;
+    for (i = 0; i < bytes; ++i) value |= (uint64_t)in[i] << 8 * i;
+    return value;
+}
+
+/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 behind the end. */
+GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
+    size_t at = stream->at;
+    int32_t i;
+    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
+        gproji_spoil(stream, "it ends too early");
+        return 0;
+    }
+    for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
+    if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
+    stream->at += (size_t)bytes;
+    return value;
+}
+
+/* The following pass a value, set it when it is read, and return the passed one. */
+
+GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
+    int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
+    if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
+    if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
+    return (int32_t)passed;
+}
+
+GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
+    uint64_t passed = gproji_pass_bytes(stream, *value, 1);
+    if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
+    return passed == 1;
+}
+
+/* A number between `least` and `most`, which may be infinite. */
+GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
+    uint64_t bits;
+    double passed;
+    memcpy(&bits, value, sizeof bits);
+    bits = gproji_pass_bytes(stream, bits, 8);
+    memcpy(&passed, &bits, sizeof passed);
+    if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
+    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed;
+    return passed;
+}
+
+GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, size_t count) {
+    size_t i;
+    for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
+}
+
+/* Passes a number that often is a small one of eighths, in one byte; others have 8 bytes more. */
+GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
+    uint64_t small = GPROJI_SMALL_NONE;
+    double passed;
+    if (!gproji_comes_in(stream) && 8 * fabs(*value) <= (double)GPROJI_SMALL_MOST) {
+        int32_t whole = (int32_t)(8 * *value);
+        /* -0 has 8 bytes: as eighths it would lose the sign. */
+        if (whole == 8 * *value && !(whole == 0 && 1 / *value < 0)) small = (uint64_t)(whole + GPROJI_SMALL_MOST);
+    }
+    small = gproji_pass_bytes(stream, small, 1);
+    passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
+    if (small == GPROJI_SMALL_NONE) {
+        gproji_pass_double(stream, value, least, most);
+    } else if (!(passed >= least && passed <= most)) {
+        gproji_spoil(stream, "a number is out of its range");
+    } else if (stream->mode == GPROJI_READ) {
+        *value = passed;
+    }
+}
+
+/* -- hashes -- */
+
+/* A hash by 64 bits at once, with the constants of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and
+   in the hash: a change in one value never goes unnoticed. */
+GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
+
+GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
+    hash = (hash ^ value) * 1099511628211u;
+    return hash ^ hash >> 29;
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_doubles(uint64_t hash, const double *value, size_t count) {
+    size_t i;
+    uint64_t bits;
+    for (i = 0; value && i < count; ++i) {
+        memcpy(&bits, &value[i], sizeof bits);
+        hash = gproji_hash_step(hash, bits);
+    }
+    return gproji_hash_step(hash, value ? count : 0);
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_integers(uint64_t hash, const int32_t *value, size_t count) {
+    size_t i;
+    for (i = 0; i < count; ++i) hash = gproji_hash_step(hash, (uint32_t)value[i]);
+    return gproji_hash_step(hash, count);
+}
+
+GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, size_t count) {
+    size_t i;
+    for (i = 0; i + 8 <= count; i += 8) hash = gproji_hash_step(hash, gproji_get_bytes(byte + i, 8));
+    for (; i < count; ++i) hash = gproji_hash_step(hash, byte[i]);
+    return hash;
+}
+
+/* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
    error, parallel, vector, dense, symbolic, cholesky.
 
@@ -7443,10 +7602,10 @@ typedef struct gproji_row {
     double weight; /* times the group's; 0: the row counts nowhere */
     double phi;    /* value at the last evaluation */
     int32_t element;
-    bool wide;   /* dense: not in the sparse matrix */
-    bool run;    /* contiguous linear row: global, with linear terms in consecutive variables */
-    bool active; /* acts on the next step: has a weight, and is no bound that the step keeps anyway */
-    bool waits;  /* dormant: a guard's row that has not come near to acting, and has no multiplier */
+    bool wide;    /* dense: not in the sparse matrix */
+    bool run;     /* contiguous linear row: global, with linear terms in consecutive variables */
+    bool active;  /* acts on the next step: has a weight, and is no bound that the step keeps anyway */
+    bool dormant; /* a guard's row that has not come near to acting, and has no multiplier */
 } gproji_row;
 
 /* Factors in a row's weight, for a group whose elements have weights. */
@@ -7467,6 +7626,15 @@ typedef struct gproji_tally {
     int32_t row;    /* the first that has it; -1: there are no rows */
 } gproji_tally;
 
+/* What a group's rows are to steps. All but ordinary ones are not in merit, residual and verdict. */
+typedef enum gproji_role {
+    GPROJI_ORDINARY,
+    GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
+    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added on demand and are no structure */
+    GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
+    GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
+} gproji_role;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7475,18 +7643,15 @@ typedef struct gproji_group {
     gproj_schedule schedule;
     gproj_refresh refresh;
     void *refresh_user;
-    double weight;   /* in the present iteration */
-    bool idle;       /* without weight at each compilation so far */
-    int32_t closing; /* zero-sum rows come first, so many: gradients with the same local unknowns add up to nothing
+    double weight;    /* in the present iteration */
+    bool idle;        /* without weight at each compilation so far */
+    int32_t zero_sum; /* rows that come first, so many: gradients with the same local unknowns add up to nothing
                         at the other nodes, as n'(v_i - v_j) does around a face */
-    bool has_wide;   /* some rows are dense */
-    bool guard;      /* a bound on steps only: not in merit, residual and verdict */
-    double slack;    /* guard: steps may violate its rows by so much */
-    bool lazy;       /* a bound for whose sake a good step is not found again, however near steps lead */
-    int32_t wakings; /* guard: how often dormant rows were activated */
-    bool safeguard;  /* a bound like the guard, with rows that are added on demand and are no structure */
-    bool metric;     /* measures steps: only gradients count, see >>loop */
-    bool brake;      /* a metric that acts after steps have failed, at a stiffness above 1 */
+    bool has_wide;    /* some rows are dense */
+    gproji_role role;
+    double slack;        /* guard: steps may violate its rows by so much */
+    bool lazy;           /* a bound for whose sake a good step is not found again, however near steps lead */
+    int32_t activations; /* guard: how often dormant rows were activated */
 
     int32_t row_count;
     gproji_row *row;
@@ -7512,18 +7677,6 @@ typedef struct gproji_group {
 typedef struct gproji_row_name {
     int32_t group, row;
 } gproji_row_name;
-
-/* Callbacks by which a system's owner takes part in steps; any may be NULL. */
-typedef struct gproji_hooks {
-    void (*settle)(void *user, gproj_system *system);       /* gives local unknowns (normals) their best values at x */
-    bool (*inspect)(void *user, gproj_system *system);      /* does the step to x violate a safeguard without a row? */
-    bool (*wake)(void *user, gproj_system *system);         /* gives those rows, at the x before; are there new ones? */
-    bool (*refuse)(void *user, const gproj_system *system); /* is x no good, seen from s->saved? */
-    void *user;
-} gproji_hooks;
-
-/* Nearest: is x no good, seen from s->saved? */
-typedef bool (*gproji_refuse_step)(void *user, const gproj_system *system);
 
 /* A bound's row along a step adds w^2 min(0, phi + t h + t^2 q)^2 to the merit. */
 typedef struct gproji_hinge {
@@ -7601,24 +7754,19 @@ struct gproj_system {
     gproj_cholesky *cholesky;
 
     int32_t variable_count;
-    int32_t default_last; /* in this solve: the last iteration for wishes whose schedule names none; 0: for ever */
-    int32_t late; /* iterations since the wishes have faded, or since half the iterations; refreshes may settle then */
-    bool sliding; /* nearest: away from the start, where faces may become small */
-    gproji_hooks hooks;
-    double stiffness;               /* in steps: factor on the weights of metric groups; 0: they rest */
-    gproji_refuse_step refuse_step; /* NULL: none is refused */
-    void *refuse_user;
-    double rounding; /* tolerated rounding in a row's value; 0: as little as can be */
+    gproj_progress progress;
+    double stiffness; /* in steps: factor on the weights of metric groups; 0: they rest */
+    double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     int32_t *block;     /* variables: the first variable in the same block */
     int32_t *place;     /* the first `places` variables: local number in a row being added; else -1 */
-    uint8_t *coupled;   /* first variable in each block: has a narrow row several variables in it? */
+    uint8_t *joined;    /* first variable in each block: has a narrow row several variables in it? */
     uint8_t *auxiliary; /* variables: local unknown, eliminated within an element and not regularised? */
     int32_t places;
     gproji_group *group;
     int32_t group_count;
     struct {
-        size_t x, block, place, coupled, auxiliary, group;
+        size_t x, block, place, joined, auxiliary, group;
     } capacity; /* entries that these arrays have room for */
 
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
@@ -7656,6 +7804,15 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     }
     return s;
 }
+
+/* A group for reading; callers change it by functions of this section. */
+GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t group) { return &s->group[group]; }
+
+/* Is a solve under way, so that nothing may be added? */
+GPROJI_INLINE bool gproji_is_solving(const gproj_system *s) { return s->solving; }
+
+/* Two arrays for work, a number a variable, between solves of a compiled system: the step, and x before it. */
+GPROJI_INLINE double *gproji_spare(gproj_system *s, int32_t which) { return which ? s->saved : s->step; }
 
 /* Counts tasks in a group's evaluation. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
@@ -7756,7 +7913,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
     gproji_give(&s->own, s->block, s->capacity.block, sizeof *s->block);
     gproji_give(&s->own, s->place, s->capacity.place, sizeof *s->place);
-    gproji_give(&s->own, s->coupled, s->capacity.coupled, sizeof *s->coupled);
+    gproji_give(&s->own, s->joined, s->capacity.joined, sizeof *s->joined);
     gproji_give(&s->own, s->auxiliary, s->capacity.auxiliary, sizeof *s->auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
@@ -7792,15 +7949,15 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 /* Makes room for `count` further variables. */
 GPROJI_NOINLINE bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->block, *place = s->place, *coupled = s->coupled, *auxiliary = s->auxiliary;
+    void *x = s->x, *block = s->block, *place = s->place, *joined = s->joined, *auxiliary = s->auxiliary;
     bool enough = gproji_reserve(&s->own, &x, &s->capacity.x, wanted, sizeof *s->x);
     s->x = (double *)x;
     enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->block);
     s->block = (int32_t *)block;
     enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->place);
     s->place = (int32_t *)place;
-    enough = enough && gproji_reserve(&s->own, &coupled, &s->capacity.coupled, wanted, sizeof *s->coupled);
-    s->coupled = (uint8_t *)coupled;
+    enough = enough && gproji_reserve(&s->own, &joined, &s->capacity.joined, wanted, sizeof *s->joined);
+    s->joined = (uint8_t *)joined;
     enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->auxiliary);
     s->auxiliary = (uint8_t *)auxiliary;
     return enough;
@@ -7834,7 +7991,7 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
         s->block[first + i] = first + i - i % block;
-        s->coupled[first + i] = s->auxiliary[first + i] = 0;
+        s->joined[first + i] = s->auxiliary[first + i] = 0;
     }
     s->variable_count += count;
     return first;
@@ -7953,6 +8110,27 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
+/* Declares that the gradients of all rows so far sum to zero over each element with local unknowns, as n'(v_i - v_j) does
+   around a face: `zero_sum` in >>schur. */
+GPROJI_INTERNAL void gproji_declare_zero_sum(gproj_system *s, int32_t group) {
+    s->group[group].zero_sum = s->group[group].row_count;
+}
+
+/* Declares that rows to come are dense, and known by few numbers each (gproj_group.global). */
+GPROJI_INTERNAL void gproji_declare_global(gproj_system *s, int32_t group) { s->group[group].global = true; }
+
+/* Declares bounds for whose sake a good step is not found again, however near steps lead. */
+GPROJI_INTERNAL void gproji_declare_lazy(gproj_system *s, int32_t group) { s->group[group].lazy = true; }
+
+/* Declares what the rows are to steps. slack: steps may violate a guard's rows by so much. */
+GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_role role, double slack) {
+    s->group[group].role = role;
+    s->group[group].slack = slack;
+}
+
+/* Declares that a row has several variables of the block that begins with this one. */
+GPROJI_INLINE void gproji_join_block(gproj_system *s, int32_t first) { s->joined[first] = 1; }
+
 /* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
    so equal counts mean equal structure. */
 typedef struct gproji_structure {
@@ -7963,7 +8141,8 @@ typedef struct gproji_structure {
 GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
     gproji_structure structure = {s->variable_count, s->group_count, 0};
     int32_t i;
-    for (i = 0; i < s->group_count; ++i) structure.rows += s->group[i].safeguard ? 0 : s->group[i].row_count;
+    for (i = 0; i < s->group_count; ++i)
+        structure.rows += s->group[i].role == GPROJI_SAFEGUARD ? 0 : s->group[i].row_count;
     return structure;
 }
 
@@ -8047,7 +8226,7 @@ GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32
     row->constant = constant;
     row->weight = 1;
     row->element = element;
-    row->waits = g->guard;
+    row->dormant = g->role == GPROJI_GUARD;
     if (g->share) g->share[g->row_count].own = g->share[g->row_count].factor = 1;
     memset(row + 1, 0, sizeof row[1]);
     return row;
@@ -8110,17 +8289,29 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     /* 4. Couples blocks that have several variables in the row. */
     for (i = 0; !row->wide && i < named; ++i) {
         int32_t block = s->block[local[i]];
-        if (s->coupled[block]) continue;
+        if (s->joined[block]) continue;
         for (v = block; v < s->variable_count && s->block[v] == block; ++v)
-            if (v != local[i] && place[v] >= 0) s->coupled[block] = 1;
+            if (v != local[i] && place[v] >= 0) s->joined[block] = 1;
     }
     for (i = 0; i < named; ++i) place[local[i]] = -1;
     return r;
 }
 
+/* Adds a row without weight to a safeguard, which gets rows during a solve, when nothing else may. */
+GPROJI_INTERNAL int32_t gproji_add_safeguard_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
+                                                 double constant, int32_t element) {
+    bool solving = s->solving;
+    int32_t row;
+    s->solving = false;
+    row = gproj_system_add_row(s, group, count, terms, constant, element);
+    s->solving = solving;
+    if (row >= 0) s->group[group].row[row].weight = 0;
+    return row;
+}
+
 /* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not global.
    Terms name locals by number. The builder writes the variables to the address returned unless that is NULL, row after
-   row: different ones, in the order in which terms name them; a block with several in one row must be coupled already.
+   row: different ones, in the order in which terms name them; a block with several in one row must be joined already.
    (Copied from an array they would be read again right after they were written.) like: a row in the group whose terms
    are shared if they are equal; -1: none. */
 GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
@@ -8193,9 +8384,9 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
-    if (coefficients && row < g->closing) {
+    if (coefficients && row < g->zero_sum) {
         /* With other coefficients gradients need not add up to nothing any more. */
-        g->closing = 0;
+        g->zero_sum = 0;
         s->schur.stale = true;
     }
     for (t = 0; coefficients && t < count; ++t) gproji_set_coefficient(g, &g->row[row], t, coefficients[t]);
@@ -8235,6 +8426,27 @@ GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
     if (!g->share) return false;
     g->capacity.share = g->capacity.row;
     for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
+    return true;
+}
+
+/* Sets the weight and constant of a row of the library's own, whose elements have no factors. */
+GPROJI_INLINE void gproji_place_row(gproj_system *s, int32_t group, int32_t row, double weight, double constant) {
+    s->group[group].row[row].weight = weight;
+    s->group[group].row[row].constant = constant;
+}
+
+/* Gives rows the factors of their elements, `count` of them; a negative one: as it is. False: out of memory. */
+GPROJI_INTERNAL bool gproji_set_factors(gproj_system *s, int32_t group, int32_t count, const double *factor) {
+    gproji_group *g = &s->group[group];
+    int32_t r;
+    if (!gproji_share_weights(s, g)) return false;
+    for (r = 0; r < g->row_count; ++r) {
+        gproji_row *row = &g->row[r];
+        if (row->element < 0 || row->element >= count || factor[row->element] < 0) continue;
+        g->share[r].factor = factor[row->element];
+        row->weight = g->share[r].own * g->share[r].factor;
+    }
+    s->changed = true;
     return true;
 }
 
@@ -8290,7 +8502,7 @@ GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capaci
     return true;
 }
 
-/* Step 1: joins the variables in coupled blocks to nodes. */
+/* Step 1: the variables of a joined block are a node. */
 GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
     int32_t i, v;
@@ -8314,7 +8526,7 @@ GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     if (!done) return false;
     s->node_count = 0;
     for (v = 0; v < s->variable_count; ++v)
-        if (v == s->block[v] || !s->coupled[s->block[v]]) s->node_first[s->node_count++] = v;
+        if (v == s->block[v] || !s->joined[s->block[v]]) s->node_first[s->node_count++] = v;
     s->node_first[s->node_count] = s->variable_count;
     for (i = 0; i < s->node_count; ++i)
         for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
@@ -8755,9 +8967,10 @@ GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group
     }
     /* Large terms that cancel leave rounding: it would look like a residual. */
     if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
-    row->phi = g->metric ? 0 : phi;
+    row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
     /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
-    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && !g->guard && !g->safeguard);
+    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
+                  (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
 }
 
 /* Partial merit and largest residual in one chunk, for the weight `tallied`. */
@@ -8802,7 +9015,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
             gproji_group *g = &s->group[i];
             if (g->global != (global == 1)) continue;
             g->first_task = INT32_MAX;
-            if ((g->guard || g->safeguard || g->metric) && !(g->weight > 0)) continue;
+            if (g->role != GPROJI_ORDINARY && !(g->weight > 0)) continue;
             g->tallied = g->weight;
             g->first_task = tasks;
             tasks += gproji_group_tasks(g);
@@ -8814,7 +9027,8 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
 GPROJI_INTERNAL void gproji_refresh_groups(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].refresh && s->group[i].weight > 0) s->group[i].refresh(s->group[i].refresh_user, s, i);
+        if (s->group[i].refresh && s->group[i].weight > 0)
+            s->group[i].refresh(s->group[i].refresh_user, s, i, &s->progress);
 }
 
 /* Squared weight in this iteration. */
@@ -9168,7 +9382,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
     bool many = false;
     int64_t l;
     *belongs = GPROJI_NOWHERE;
-    if (g->idle || row->waits) return true;
+    if (g->idle || row->dormant) return true;
     for (l = row->local; l < row[1].local; ++l) {
         int32_t node = s->node[g->local_variable[l]];
         int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
@@ -9209,7 +9423,7 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
             const int32_t *local = g->local_variable + g->row[r].local, *end = g->local_variable + g->row[r + 1].local;
             int32_t first = local < end ? s->node[*local] : -1;
             bool counts = false;
-            if (g->row[r].waits || g->row[r].wide) continue;
+            if (g->row[r].dormant || g->row[r].wide) continue;
             /* A row that joins nodes has a multiplier, unless it may go to a face's element. */
             for (; local < end && !s->auxiliary[*local]; ++local) counts = counts || s->node[*local] != first;
             counts = counts && g->place != GPROJ_PLACE_FACE;
@@ -9252,7 +9466,7 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
         int32_t left;
         d->zero_sum[e] = 0;
         for (k = d->row_start[e]; d->auxiliary[e] >= 0 && k < d->row_start[e + 1]; ++k)
-            if (d->row[k].row < s->group[d->row[k].group].closing) d->zero_sum[e] = 1;
+            if (d->row[k].row < s->group[d->row[k].group].zero_sum) d->zero_sum[e] = 1;
         left = (int32_t)(d->row_start[e + 1] - d->row_start[e]) - gproji_schur_columns(s, e);
         if (left < 1 || left > limit - d->first[e]) return false;
         d->first[e + 1] = d->first[e] + left;
@@ -9560,7 +9774,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) {
         if (!s->group[i].idle || s->group[i].schedule.weight == 0) continue;
         /* Metric groups count from the first iteration in which steps are stiff enough for them. */
-        if (s->group[i].metric && s->stiffness <= (s->group[i].brake ? 1 : 0)) continue;
+        if (s->group[i].role >= GPROJI_METRIC && s->stiffness <= (s->group[i].role == GPROJI_BRAKE ? 1 : 0)) continue;
         s->group[i].idle = false;
         woken = true;
     }
@@ -9655,7 +9869,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
         }
         if (own) heaviest = gproji_fmax(heaviest, w);
         /* Zero-sum rows join nodes; any other row at the face is free. */
-        if (!a->zero_sum || !joins || name[i].row >= g->closing) continue;
+        if (!a->zero_sum || !joins || name[i].row >= g->zero_sum) continue;
         if (!(w > 0)) idle = i;
         column[i * GPROJI_LANES] = w > 0 ? 1 / w : 0;
     }
@@ -10271,7 +10485,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need 25
    iterations without it need 9 (test_smooth).
 
-   A safeguard (gproji_group.safeguard) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound,
+   A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound,
    and is let go if no step is found with it: constraints come first, and the verdict tells the damage. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
@@ -10287,16 +10501,16 @@ static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
 static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffer steps are no help */
-static const double gproji_brake_most = 9;   /* of the stiffness above 1, for brakes */
-static const double gproji_settled = 1e-3;   /* residual below which refreshes may settle */
-static const double gproji_shortest = 0.125; /* part of a step whose local unknowns are settled */
+static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
+static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
+static const double gproji_shortest = 0.125;      /* part of a step whose local unknowns are settled */
 enum {
     GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
     GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again with other active bounds */
     GPROJI_PATIENCE = 5,        /* iterations without progress before the loop stops, */
     GPROJI_PATIENCE_STIFF = 12, /* and with a metric */
     GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
-    GPROJI_WAKINGS = 4,         /* from then on no row of the guard waits */
+    GPROJI_ACTIVATIONS = 4,     /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
     GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
     GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
@@ -10314,11 +10528,22 @@ typedef struct gproji_standing {
     int32_t row;
 } gproji_standing;
 
+/* Callbacks by which the owner of a system takes part in steps; any may be NULL. */
+typedef struct gproji_hooks {
+    void (*settle)(void *user, double *x); /* gives local unknowns (normals) their best values at x */
+    bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
+    bool (*wake)(void *user, gproj_system *system); /* gives those rows, at the x before; are there new ones? */
+    bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
+    void *user;
+} gproji_hooks;
+
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
+    gproji_hooks hooks;
     int32_t iterations; /* at most */
+    int32_t wish_last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
     double tolerance;
     double started, lap; /* clock readings */
     double spent;        /* seconds in earlier runs */
@@ -10335,13 +10560,13 @@ typedef struct gproji_loop {
     int32_t waited;       /* iterations since then */
     double
         epsilon_least; /* lower end of the eps that follows the residual: gproji_epsilon_min, less if steps fall short */
-    bool stiff;           /* metric groups have a weight in this solve */
-    double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
-    bool factored;        /* the last attempt found a step, whether good or not */
-    bool failed;          /* an attempt of this iteration was not good */
-    int32_t wary;         /* iterations in which the stiffness does not fall fast */
-    double shift;         /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    bool stiff;        /* metric groups have a weight in this solve */
+    double agreement;  /* the merit's decrease by the full step, over the one predicted by the linearised rows */
+    bool factored;     /* the last attempt found a step, whether good or not */
+    bool failed;       /* an attempt of this iteration was not good */
+    int32_t wary;      /* iterations in which the stiffness does not fall fast */
+    double shift;      /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum;      /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells the
@@ -10389,26 +10614,28 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
 }
 
 /* The last iteration in which a group has a weight; 0: it keeps one for ever. */
-GPROJI_INTERNAL int32_t gproji_last_iteration(const gproj_system *s, const gproji_group *g) {
-    return g->schedule.last == 0 && g->kind == GPROJ_WISH ? s->default_last : g->schedule.last;
+GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
+    return g->schedule.last == 0 && g->kind == GPROJ_WISH ? loop->wish_last : g->schedule.last;
 }
 
 /* The weight of a group in iteration n. */
-GPROJI_INTERNAL double gproji_weight_in(const gproj_system *s, const gproji_group *g, int32_t n) {
-    int32_t last = gproji_last_iteration(s, g);
-    if (g->brake)
-        return g->schedule.weight * s->stiffness * gproji_fmin(gproji_fmax(s->stiffness - 1, 0), gproji_brake_most);
-    if (g->metric) return g->schedule.weight * s->stiffness;
+GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
+    int32_t last = gproji_last_iteration(loop, g);
+    if (g->role == GPROJI_BRAKE)
+        return g->schedule.weight * loop->system->stiffness *
+               gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
+    if (g->role >= GPROJI_METRIC) return g->schedule.weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
     return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
 /* Sets the weights of iteration n; true when a group came back that had none before. */
-GPROJI_INTERNAL bool gproji_set_weights(gproj_system *s, int32_t n) {
+GPROJI_INTERNAL bool gproji_set_weights(gproji_loop *loop, int32_t n) {
+    gproj_system *s = loop->system;
     bool back = false;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
-        double weight = gproji_weight_in(s, &s->group[i], n);
+        double weight = gproji_weight_in(loop, &s->group[i], n);
         back = back || (s->group[i].weight == 0 && weight > 0);
         s->group[i].weight = weight;
     }
@@ -10416,9 +10643,7 @@ GPROJI_INTERNAL bool gproji_set_weights(gproj_system *s, int32_t n) {
 }
 
 /* Does the group count in merit and residual? */
-GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) {
-    return g->weight > 0 && !g->guard && !g->safeguard && !g->metric;
-}
+GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && g->role == GPROJI_ORDINARY; }
 
 GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
     int32_t i;
@@ -10690,7 +10915,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
             const int32_t *variable = g->local_variable + row->local;
             double w2 = gproji_weight2(g, row), phi = row->phi, h, q = 0;
-            if (!(w2 > 0) || g->metric || (g->guard && !row->active)) continue;
+            if (!(w2 > 0) || g->role >= GPROJI_METRIC || (g->role == GPROJI_GUARD && !row->active)) continue;
             h = gproji_row_times(g, row, s->step);
             /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference; runs are linear */
             for (; !row->run && term < end; ++term)
@@ -10766,7 +10991,7 @@ GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && !g->metric && r < g->row_count; ++r) {
+        for (r = 0; g->weight > 0 && g->role < GPROJI_METRIC && r < g->row_count; ++r) {
             double w2 = gproji_weight2(g, &g->row[r]), phi;
             if (!(w2 > 0)) continue;
             phi = gproji_counted(g, gproji_row_value(g, r, s->x));
@@ -10776,8 +11001,8 @@ GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
     return sum;
 }
 
-GPROJI_INTERNAL void gproji_settle(gproj_system *s) {
-    if (s->hooks.settle) s->hooks.settle(s->hooks.user, s);
+GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
+    if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
 }
 
 /* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is above
@@ -10793,7 +11018,7 @@ GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_c
     plain = gproji_merit_here(s);
     if (plain <= merit) return plain;
     gproji_take_step(s, t);
-    gproji_settle(s);
+    gproji_settle(loop);
     gproji_refresh_groups(s);
     return merit;
 }
@@ -10801,7 +11026,7 @@ GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_c
 /* For owners that settle local unknowns: goes t of the step and settles them there. Returns the true merit. */
 GPROJI_INTERNAL double gproji_go(gproji_loop *loop, double t, const gproji_course *course) {
     loop->iteration.step = gproji_take_step(loop->system, t);
-    gproji_settle(loop->system);
+    gproji_settle(loop);
     return gproji_arrive(loop, t, course);
 }
 
@@ -10827,7 +11052,7 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
-            bool acts = row->active && !g->metric;
+            bool acts = row->active && g->role < GPROJI_METRIC;
             row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->step) : 0;
         }
     }
@@ -10857,7 +11082,8 @@ GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gp
     *bent = !s->schur.on && none - merit < gproji_bend_below * promised;
     if (*bent) merit = gproji_bend_step(loop, course, merit);
     loop->agreement = promised > 0 ? (none - merit) / promised : 1;
-    while (t > gproji_shortest && (!(merit <= none) || (s->hooks.refuse && s->hooks.refuse(s->hooks.user, s))))
+    while (t > gproji_shortest &&
+           (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->saved, s->x))))
         merit = gproji_go(loop, t /= 2, course);
     return merit <= none ? t : 0;
 }
@@ -10872,7 +11098,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
     gproji_merit_along(s, &merit);
     none = gproji_merit_at(&merit, 0);
-    if (s->hooks.settle) {
+    if (loop->hooks.settle) {
         t = gproji_backtrack(loop, none, &merit, &bent);
         if (t < 1 || bent) return t; /* the merit along the straight step says nothing of a bent one */
     } else {
@@ -10910,11 +11136,11 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->guard && round > 0)) continue;
+        if (g->kind != GPROJ_BOUND || !(g->weight > 0) || (g->role == GPROJI_GUARD && round > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             bool active = false;
-            if (row->weight > 0 && g->guard) {
+            if (row->weight > 0 && g->role == GPROJI_GUARD) {
                 active = row->active || gproji_row_value(g, r, s->x) < -g->slack;
             } else if (row->weight > 0) {
                 double ahead = row->phi + gproji_row_times(g, row, s->step);
@@ -10941,14 +11167,14 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     for (i = 0; s->schur.on && i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         double reach;
-        if (!g->guard || !(g->weight > 0)) continue;
-        for (r = 0; r < g->row_count && !(g->row[r].active && g->row[r].waits); ++r) continue;
+        if (g->role != GPROJI_GUARD || !(g->weight > 0)) continue;
+        for (r = 0; r < g->row_count && !(g->row[r].active && g->row[r].dormant); ++r) continue;
         if (r == g->row_count) continue;
-        reach = ++g->wakings < GPROJI_WAKINGS ? g->wakings * g->slack : HUGE_VAL;
+        reach = ++g->activations < GPROJI_ACTIVATIONS ? g->activations * g->slack : HUGE_VAL;
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             bool is_near = gproji_fmin(row->phi, gproji_row_value(g, r, s->x)) < reach;
-            if (row->active || (row->weight > 0 && is_near)) row->waits = false;
+            if (row->active || (row->weight > 0 && is_near)) row->dormant = false;
         }
         woken = true;
     }
@@ -10977,15 +11203,16 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(s, 1);
         if (!(loop->iteration.step <= DBL_MAX)) return false;
-        gproji_settle(s);
-        violated = s->hooks.inspect && violations < GPROJI_VIOLATIONS && s->hooks.inspect(s->hooks.user, s);
+        gproji_settle(loop);
+        violated = loop->hooks.inspect && violations < GPROJI_VIOLATIONS &&
+                   loop->hooks.inspect(loop->hooks.user, s->saved, s->x);
         again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
         round += round < GPROJI_BOUND_ROUNDS;
         if (!violated && !again) return true;
         guard = gproji_wake_guard(s);
         gproji_step_back(s);
         violations += violated;
-        if (gproji_place_woken(loop, guard || (violated && s->hooks.wake(s->hooks.user, s)))) round = 0;
+        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user, s)))) round = 0;
     }
     return false;
 }
@@ -11000,11 +11227,11 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     good = loop->iteration.length > 0;
     if (!good)
         gproji_step_back(s);
-    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !s->hooks.settle)) { /* else x is there */
+    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) { /* else x is there */
         loop->iteration.step = gproji_take_step(s, loop->iteration.length);
-        gproji_settle(s);
+        gproji_settle(loop);
     }
-    if (!good && loop->factored && s->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
+    if (!good && loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
     return good;
 }
@@ -11018,12 +11245,15 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     s->stiffness = stiffness;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        double weight = g->metric ? gproji_weight_in(s, g, 1) : g->weight;
+        double weight = g->role >= GPROJI_METRIC ? gproji_weight_in(loop, g, 1) : g->weight;
         back = back || (g->weight == 0 && weight > 0);
         g->weight = weight;
     }
     if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
 }
+
+/* Lets the first step of a solve have this stiffness. */
+GPROJI_INTERNAL void gproji_begin_stiff(gproj_system *s, double stiffness) { s->stiffness = stiffness; }
 
 /* After a good step: the stiffness of the next one. */
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
@@ -11045,7 +11275,7 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
         gproji_stiffen(loop, gproji_stiffness_least);
     else if (s->stiffness > 0) { /* the metric rests: then steps are found by multipliers, if that pays */
         gproji_stiffen(loop, 0);
-        for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].metric;
+        for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].role >= GPROJI_METRIC;
         if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
     }
 }
@@ -11120,10 +11350,11 @@ GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
     gproji_place_woken(loop, gproji_wake_guard(s));
     if (s->error.code != GPROJ_OK) return;
-    if (gproji_set_weights(s, n)) gproji_linearise(loop);
-    s->late = n <= half && (gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled))
-                  ? 0
-                  : s->late + 1;
+    if (gproji_set_weights(loop, n)) gproji_linearise(loop);
+    s->progress.settling =
+        n <= half && (gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled))
+            ? 0
+            : s->progress.settling + 1;
     loop->standing = gproji_take_standing(s);
 }
 
@@ -11140,7 +11371,7 @@ GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
    were any. */
 GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     if (!loop->system->changed) return false;
-    gproji_set_weights(loop->system, gproji_max(1, loop->result.iterations));
+    gproji_set_weights(loop, gproji_max(1, loop->result.iterations));
     gproji_linearise(loop);
     return true;
 }
@@ -11152,8 +11383,8 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     int32_t end = INT32_MAX, i;
     for (i = 0; i < s->group_count && end > n; ++i) {
         const gproji_group *g = &s->group[i];
-        int32_t last = gproji_last_iteration(s, g);
-        if (!(g->weight > 0) || g->metric || g->row_count == 0) continue;
+        int32_t last = gproji_last_iteration(loop, g);
+        if (!(g->weight > 0) || g->role >= GPROJI_METRIC || g->row_count == 0) continue;
         if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1)
             end = n;
         else if (last > 0)
@@ -11172,7 +11403,7 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        if (!g->safeguard || !(g->weight > 0)) continue;
+        if (g->role != GPROJI_SAFEGUARD || !(g->weight > 0)) continue;
         g->weight = g->schedule.weight = 0;
         released = true;
     }
@@ -11384,13 +11615,13 @@ enum {
 GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     double largest = 0;
     int32_t i;
-    s->sliding = scale == gproji_nearest_scale;
+    s->progress.tangential = scale == gproji_nearest_scale;
     for (i = 0; i < s->group_count; ++i)
         if (s->group[i].kind == GPROJ_WISH) largest = gproji_fmax(largest, s->group[i].schedule.weight);
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
-        if (g->guard && !s->sliding) g->weight = 0;
+        if (g->role == GPROJI_GUARD && !s->progress.tangential) g->weight = 0;
         if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
     }
 }
@@ -11480,7 +11711,8 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
                 double phi = gproji_row_value(g, r, s->saved) + gproji_row_times(g, row, s->step);
-                active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0 : !g->guard && phi < -1e-12;
+                active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0
+                                     : g->role != GPROJI_GUARD && phi < -1e-12;
             }
             changed = changed || active != row->active;
             row->active = active;
@@ -11588,7 +11820,7 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
         after = gproji_lagrangian(s, s->x, NULL);
         if (!(after <= DBL_MAX)) continue;
         if (loop->iteration.step > 1e-7 && after > before + 0.1 * t * slope) continue; /* below, rounding decides */
-        if (s->refuse_step && s->refuse_step(s->refuse_user, s)) continue;
+        if (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->saved, s->x)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
             for (r = 0; r < s->group[i].row_count; ++r)
@@ -11684,7 +11916,8 @@ GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_
     if (n > guided && gproji_holds(loop)) return false;
     gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
     for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].guard && n <= guided) s->group[i].weight = gproji_weight_in(s, &s->group[i], n);
+        if (s->group[i].role == GPROJI_GUARD && n <= guided)
+            s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
     gproji_linearise(loop);
     if (!gproji_iterate(loop)) return false;
     /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a symmetric
@@ -11715,7 +11948,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         if (gproji_is_nearest(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-        s->late = n <= half ? 0 : s->late + 1;
+        s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
         if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
         gproji_see_nearest(loop);
         gproji_report_iteration(loop, n);
@@ -11768,7 +12001,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     gproji_error_clear(&refused);
     if (gproji_system_is_open(s)) {
         for (i = 0; i < s->group_count; ++i)
-            loop->stiff = loop->stiff || (s->group[i].metric && s->group[i].schedule.weight > 0);
+            loop->stiff = loop->stiff || (s->group[i].role >= GPROJI_METRIC && s->group[i].schedule.weight > 0);
         s->stiffness = loop->stiff;
         if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
             o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
@@ -11788,7 +12021,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
 /* The first run begins. */
 GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    s->late = 0;
+    s->progress.settling = 0;
     if (loop->options.nearest) {
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
@@ -11796,7 +12029,7 @@ GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
         }
         gproji_see_nearest(loop);
     } else {
-        gproji_set_weights(s, 1);
+        gproji_set_weights(loop, 1);
         gproji_linearise(loop);
     }
     gproji_start_bounds(s);
@@ -11807,7 +12040,7 @@ GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
 GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
-    s->sliding = nearest;
+    s->progress.tangential = nearest;
     if (nearest && !s->sum) { /* a solve of the system in between has taken them */
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
@@ -11839,7 +12072,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         else
             gproji_start_loop(loop);
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
-        s->solving = s->sliding = false;
+        s->solving = s->progress.tangential = false;
         loop->spent += loop->lap - loop->started;
         if (loop->result.outcome == GPROJ_CONVERGED) gproji_values_are_valid(s);
     }
@@ -11894,9 +12127,12 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
 
 GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     double worst = 0, *gradient;
+    gproji_loop loop;
     int32_t i, r;
     size_t n;
     if (!gproji_system_is_open(s)) return HUGE_VAL;
+    memset(&loop, 0, sizeof loop);
+    loop.system = s;
     n = (size_t)s->variable_count;
     gradient = (double *)gproji_take_zeroed(&s->own, n, sizeof *gradient);
     if (!gradient) {
@@ -11904,7 +12140,7 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
         return HUGE_VAL;
     }
     s->solving = true;
-    gproji_set_weights(s, 1);
+    gproji_set_weights(&loop, 1);
     gproji_refresh_groups(s);
     s->solving = false;
     for (i = 0; i < s->group_count; ++i)
@@ -11913,6 +12149,278 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     gproji_give(&s->own, gradient, n, sizeof *gradient);
     return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
+/* -- saving: see >>stream -- */
+
+/* The part of a solve that is passed. */
+typedef enum gproji_passing {
+    GPROJI_PASS_NONE,
+    GPROJI_PASS_SOLVE,
+    GPROJI_PASS_NEAREST /* with multipliers */
+} gproji_passing;
+
+/* Passes the rows' weights and, if `numbers`, their constants and coefficients. */
+GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_system *s, gproji_group *g, bool numbers) {
+    bool shared = g->share != NULL;
+    uint32_t t;
+    int32_t r;
+    for (r = 0; numbers && r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
+    for (r = 0; numbers && r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
+            double *a = &g->term[g->row[r].term + t].a, now = *a;
+            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
+            if (memcmp(&now, a, sizeof now) == 0) continue;
+            /* Terms that rows share stay shared until a different coefficient comes in. */
+            if (g->common && !gproji_own_terms(s, g)) {
+                gproji_spoil_memory(stream);
+                return;
+            }
+            gproji_set_coefficient(g, &g->row[r], t, now);
+        }
+    for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_number(stream, &g->row[r].weight, 0, 1e100);
+    /* The factors of weights, if elements have weights. */
+    if (!gproji_pass_bool(stream, &shared)) {
+        for (r = 0; stream->mode == GPROJI_READ && g->share && r < g->row_count; ++r)
+            g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
+        return;
+    }
+    if (gproji_comes_in(stream) && !gproji_share_weights(s, g)) {
+        gproji_spoil_memory(stream);
+        return;
+    }
+    for (r = 0; r < g->row_count && !stream->wrong; ++r) {
+        gproji_pass_number(stream, &g->share[r].own, 0, 1e50);
+        gproji_pass_number(stream, &g->share[r].factor, 0, 1e50);
+    }
+}
+
+/* Passes how a row stands in a solve under way: whether it acts, and the multiplier. */
+GPROJI_INTERNAL void gproji_pass_standing(gproji_stream *stream, gproj_system *s, int32_t group, int32_t row,
+                                          gproji_passing passing) {
+    gproji_group *g = &s->group[group];
+    double none = 0;
+    if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[row].active);
+    if (passing == GPROJI_PASS_NEAREST)
+        gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
+}
+
+/* Passes a safeguard's row, which the system may have among others: see gproji_rest_safeguard. */
+GPROJI_INTERNAL void gproji_pass_safeguard_row(gproji_stream *stream, gproj_system *s, int32_t group, int32_t row,
+                                               gproji_passing passing) {
+    gproji_pass_number(stream, &s->group[group].row[row].weight, 0, 1e100);
+    gproji_pass_standing(stream, s, group, row, passing);
+}
+
+/* Before a safeguard's rows come in: those that do not come get no weight. */
+GPROJI_INTERNAL void gproji_rest_safeguard(gproji_stream *stream, gproj_system *s, int32_t group) {
+    gproji_group *g = &s->group[group];
+    int32_t r;
+    for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
+}
+
+/* Passes a group but for a safeguard's rows: during a solve all numbers; else neither those in rows that a refresh makes
+   anew, nor any in a group whose rows are set when a solve begins (`anew`). */
+GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, int32_t group, bool anew,
+                                       gproji_passing passing) {
+    gproji_group *g = &s->group[group];
+    gproj_schedule schedule = g->schedule;
+    bool idle = g->idle, reading = stream->mode == GPROJI_READ, same;
+    int32_t zero_sum = g->zero_sum, r;
+    gproji_pass_number(stream, &schedule.weight, 0, 1e50);
+    gproji_pass_number(stream, &schedule.decay, 0, 1);
+    gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
+    if (reading) g->schedule = schedule;
+    gproji_pass_number(stream, &g->weight, 0, 1e50);
+    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows sum to zero,
+       and which rows of the guard are dormant: if they change, it is decided anew. */
+    gproji_pass_bool(stream, &idle);
+    gproji_pass_integer(stream, &zero_sum, 0, g->row_count);
+    same = idle == g->idle && zero_sum == g->zero_sum;
+    if (reading) g->idle = idle, g->zero_sum = zero_sum;
+    if (g->role == GPROJI_GUARD) gproji_pass_integer(stream, &g->activations, 0, INT32_MAX / 2);
+    for (r = 0; g->role == GPROJI_GUARD && r < g->row_count && !stream->wrong; ++r) {
+        bool dormant = g->row[r].dormant;
+        gproji_pass_bool(stream, &dormant);
+        same = same && dormant == g->row[r].dormant;
+        if (reading) g->row[r].dormant = dormant;
+    }
+    if (reading && !same) s->schur.stale = true;
+    if ((anew && !passing) || g->role == GPROJI_SAFEGUARD) return;
+    gproji_pass_rows(stream, s, g, passing || !g->refresh);
+    for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) gproji_pass_standing(stream, s, group, r, passing);
+}
+
+/* Passes a solve under way. Returns which part of the groups belongs to it. */
+GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_system *s, gproji_loop *loop) {
+    gproji_passing passing;
+    bool nearest, begun, ready = s->compiled && s->sum;
+    int32_t i;
+    gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
+    gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->options.time_budget, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->options.skip_damping);
+    gproji_pass_bool(stream, &loop->options.skip_closeness);
+    gproji_pass_bool(stream, &loop->options.skip_guard);
+    nearest = gproji_pass_bool(stream, &loop->options.nearest);
+    gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
+    gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
+    begun = gproji_pass_bool(stream, &loop->begun);
+    gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX / 2);
+    gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->best.residual, 0, HUGE_VAL);
+    gproji_pass_double(stream, &loop->best.merit, 0, HUGE_VAL);
+    gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX / 2);
+    gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->minimum);
+    gproji_pass_bool(stream, &loop->options.smooth);
+    gproji_pass_bool(stream, &loop->stiff);
+    gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
+    gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
+    gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
+    passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
+    /* Multipliers that are about to come in need their room. */
+    for (i = 0; i < s->group_count; ++i) ready = ready && s->group[i].multiplier;
+    if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
+        !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
+        gproji_spoil_memory(stream);
+    if (stream->mode != GPROJI_READ) return passing;
+    loop->system = s;
+    loop->restored = loop->begun;
+    loop->paused = false;
+    memset(loop->result.seconds, 0, sizeof loop->result.seconds);
+    return passing;
+}
+
+/* -- the tangent space of what must hold, see >>drag -- */
+
+static const double gproji_touch = 1e-6; /* bounds so near to their limit stay there */
+
+/* Compiles the system for projections of `sides` columns at once. */
+GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
+    memset(&s->progress, 0, sizeof s->progress);
+    return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
+}
+
+/* Linearises at x, where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
+   Returns the residual. */
+GPROJI_INTERNAL double gproji_see_hard(gproj_system *s) {
+    gproji_loop loop;
+    int32_t i, r;
+    memset(&loop, 0, sizeof loop);
+    loop.system = s;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && gproji_weight_in(&loop, g, 1) > 0;
+    }
+    s->solving = true;
+    gproji_linearise(&loop);
+    s->solving = false;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r)
+            g->row[r].active = g->weight > 0 && g->row[r].weight > 0 && !(g->row[r].phi > gproji_touch);
+    }
+    return loop.standing.residual;
+}
+
+/* A projection to G dx = 0 with the metric D, 1 for the first `light_from` variables and light^2 for others. */
+typedef struct gproji_tangent {
+    double epsilon, light;
+    int32_t light_from;
+    int32_t rounds;
+    int32_t sides; /* solved together: see gproji_begin_tangent */
+} gproji_tangent;
+
+/* Replaces the columns Q by (G'G + eps^2 D)^-1 eps^2 D Q, `rounds` times. base: moves by a step that takes the residual off,
+   too; or NULL. False: the matrix cannot be factored. */
+GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, int32_t columns, double *motion,
+                                    double *base) {
+    size_t n = (size_t)s->variable_count, i;
+    double heavy = how->epsilon * how->epsilon, light = heavy * how->light * how->light;
+    int32_t batch = s->cholesky->batch, first, wide = 0, round, j;
+    gproji_loading loading;
+    s->cholesky->batch = gproji_max(batch, how->sides);
+    first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, columns);
+    for (round = 0; round < how->rounds; ++round, first = 0) {
+        double *column = motion;
+        /* 1. Q = eps^2 D Q */
+        for (j = 0; j < columns; ++j, column += n)
+            for (i = 0; i < n; ++i) column[i] *= i < (size_t)how->light_from ? heavy : light;
+        /* 2. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the
+           factorisation, up to the batch's size. */
+        if (round == 0) {
+            loading.system = s, loading.epsilon = how->epsilon, loading.curved = false;
+            loading.light_from = how->light_from, loading.light = how->light * how->epsilon;
+            if (gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, first, motion) !=
+                GPROJ_FACTORED) {
+                s->cholesky->batch = batch;
+                return false;
+            }
+            if (first > 0) gproji_cholesky_finish(s->cholesky, motion);
+            if (s->wide_count > 0 || base) {
+                gproji_merit_gradient(s);
+                wide = gproji_step_sides(s);
+                gproji_finish_step(s, wide, false);
+            }
+            for (i = 0; base && i < n; ++i) base[i] += s->step[i];
+        }
+        /* 3. Q = (A + U U')^-1 Q, the dense rows being the columns of U: see gproji_wide_correct. */
+        column = motion + n * (size_t)first;
+        if (wide == 0) {
+            gproj_cholesky_solve(s->cholesky, columns - first, column, column);
+            continue;
+        }
+        gproji_cholesky_forward(s->cholesky, columns - first, column, column);
+        for (j = first; j < columns; ++j, column += n) {
+            memset(s->wide.vector, 0, (size_t)wide * sizeof *s->wide.vector);
+            gproji_wide_correct(s, wide, column);
+            gproji_cholesky_backward(s->cholesky, column, column);
+        }
+    }
+    s->cholesky->batch = batch;
+    return true;
+}
+
+/* Evaluates all rows at x, between solves. */
+GPROJI_INTERNAL void gproji_see_here(gproj_system *s) {
+    s->solving = true;
+    gproji_refresh_groups(s);
+    gproji_evaluate(s);
+    s->solving = false;
+}
+
+/* Ends reading a state: the system's numbers are as saved. */
+GPROJI_INTERNAL void gproji_end_restoring(gproj_system *s) { s->changed = false; }
+
+/* Hashes how many variables there are, and their blocks. */
+GPROJI_INTERNAL uint64_t gproji_hash_variables(uint64_t hash, const gproj_system *s) {
+    return gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
+}
+
+/* Hashes a group: name, kind, rows with the variables of their terms, without the numbers that a state has. */
+GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
+    uint64_t terms = 0;
+    uint32_t t;
+    int32_t r;
+    hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
+    hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
+    hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
+    for (r = 0; r < g->row_count; ++r) {
+        terms += g->row[r].terms;
+        hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
+    }
+    for (r = 0; r < g->row_count; ++r)
+        for (t = 0; t < g->row[r].terms; ++t) {
+            const gproj_term *term = g->term + g->row[r].term + t;
+            uint32_t first = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
+            uint32_t second = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
+            hash = gproji_hash_step(hash, (uint64_t)first << 32 | second);
+        }
+    return gproji_hash_step(hash, (uint64_t)g->row_count);
+}
+
 /* ============================================================================================================
    >>mesh   Half-edge meshes from any polygons. Uses platform, memory, error, vector.
 
@@ -18544,28 +19052,58 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    3i..3i+2; others, such as face normals, come behind when a builder needs them. A group whose rows change between
    iterations has a gproji_part with all that the refresh needs. Parts never move: the system points to them. */
 
-typedef struct gproji_part {
-    struct gproji_part *next;
-    struct gproj_form *form;
+typedef struct gproji_part gproji_part;
+
+/* The groups that the library adds to a form itself; the numbers stand in saved states. */
+typedef enum gproji_own {
+    GPROJI_OWN_NONE, /* the caller's */
+    GPROJI_OWN_CLOSENESS,
+    GPROJI_OWN_GUARD,
+    GPROJI_OWN_FORCES,
+    GPROJI_OWN_DRAG_FAIRNESS,
+    GPROJI_OWN_DRAG_HANDLES,
+    GPROJI_OWN_METRIC,
+    GPROJI_OWN_CORNERS,
+    GPROJI_OWN_BRAKE,
+    GPROJI_OWN_COUNT
+} gproji_own;
+
+/* What a constraint or wish does besides having rows; NULL: nothing. */
+typedef struct gproji_acts {
+    gproj_refresh refresh; /* linearises the rows at x before each iteration; user: the part */
+    /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. */
+    void (*start)(gproji_part *part);
+    /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps. */
+    void (*settle)(const gproji_part *part, double *x, int32_t from, int32_t to);
+    /* Passes what a saved state keeps besides rows and variables. */
+    void (*pass)(gproji_part *part, gproji_stream *stream, gproji_passing passing);
+} gproji_acts;
+
+/* What a constraint or wish is: one constant beside each builder. Solves, drags and states know no more of it. */
+typedef struct gproji_rule {
+    const char *name;
+    gproj_kind kind;
+    gproj_place place;
+    gproji_own own;
+    const gproji_acts *acts; /* NULL: it has rows, and that is all */
+} gproji_rule;
+
+/* A constraint or wish that was added to a form: a rule, the group with the rows, and what the rule needs to know. */
+struct gproji_part {
+    gproji_part *next;
+    const gproji_rule *rule;
+    gproj_form *form;
     int32_t group;
-    int32_t count;                /* entries in use, in `vertex` and the lists below */
-    int32_t capacity;             /* entries that `vertex` has room for */
-    int32_t *vertex;              /* the elements with rows: vertices, edges, faces, for cones half-edges */
-    const gproj_surface *surface; /* the caller's, in the mesh's units */
-    const gproj_curve *curve;     /* the caller's, in the mesh's units; or NULL: */
-    int32_t curve_count;          /* or own curves, in internal units */
-    gproj_curve **own_curve;
-    int32_t *curve_of; /* per vertex: an own curve; -1: it stays */
-    double target;     /* the volume, internal units */
-    double *gradient;  /* volume, cost: 3 numbers a vertex of the mesh */
-    double bound[2];   /* at least and at most, internal units (stresses: the caller's); 0 and infinite: none */
-    double price[2];   /* for lengths and areas in internal units */
-    double unit;       /* the cost's change when the mesh grows by a mean edge length */
-    int32_t *segment;  /* per vertex: the segment it glides on; -1: to be found */
-    double *factor;    /* per row (`capacity`) of stress bounds: +A or -A, A the cross-section */
-    int32_t planes;    /* 1: vertices on an unknown plane; 2: on a line, which is two; 0: neither */
-    int32_t *plane;    /* per vertex (`capacity`): the first variable of the plane or planes; -1: none */
-} gproji_part;
+    int32_t count;       /* entries in use, in `vertex` and in lists by entry */
+    int32_t capacity;    /* entries that these have room for */
+    int32_t *vertex;     /* the elements with rows: vertices, edges, faces, or half-edges */
+    double given[4];     /* numbers from the caller, in internal units: a target, bounds, prices */
+    double *factor;      /* more of them, one per entry; or NULL */
+    int32_t curve_count; /* curves that the part owns, in internal units */
+    gproj_curve **curve; /* NULL: none; an entry may be NULL */
+    void *data;          /* what the rule keeps; from the pool */
+    gproji_pool pool;    /* has all blocks */
+};
 
 /* A form's forces and loads: see statics. */
 typedef struct gproji_statics {
@@ -18582,24 +19120,9 @@ typedef struct gproji_statics {
     int32_t *queue;    /* work: 2 numbers a vertex */
     double load_scale; /* internal loads = loads in internal lengths * load_scale */
     int32_t group;     /* equilibrium */
-    int32_t guidance;  /* the group that draws the forces to their start; -1: none yet */
-    int32_t brake;     /* the group that measures how forces change; -1: none yet */
     bool started;      /* the forces have values */
     double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
 } gproji_statics;
-
-/* Corners that are kept: see corners. Corner 2 h + k is the one behind half-edge h, seen along the face's normal (k =
-   0) or the first one (k = 1). */
-typedef struct gproji_corners {
-    int32_t group;
-    double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
-    double *axis;    /* per face: the unit normal then */
-    int32_t *row;    /* per corner; -1: none */
-    uint8_t *marked; /* corners that are to act */
-    int32_t *corner; /* per row */
-    size_t capacity; /* entries that `corner` has room for */
-    int32_t wakings; /* in this solve */
-} gproji_corners;
 
 /* A solve in frames (gproj_step). */
 typedef struct gproji_solve {
@@ -18607,7 +19130,6 @@ typedef struct gproji_solve {
     bool finished; /* it has ended: the loop's result is the verdict */
     gproji_loop loop;
     gproji_structure structure; /* of the system at the beginning */
-    int32_t default_last;       /* see gproj_system */
 } gproji_solve;
 
 /* Arrays that builders and refreshes fill in and use at once. */
@@ -18616,11 +19138,6 @@ typedef struct gproji_form_work {
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
 } gproji_form_work;
-
-/* The groups that release a drag; -1: none yet. */
-typedef struct gproji_release {
-    int32_t fairness, handles;
-} gproji_release;
 
 struct gproj_form {
     gproji_heap own;
@@ -18635,53 +19152,30 @@ struct gproj_form {
     int32_t *axis;    /* per face: the axis point's first variable; -1: none; NULL: no face has one */
     int32_t *cone;    /* per vertex: the cone axis' first variable; -1: none; NULL: no vertex has one */
     gproji_form_work work;
-    int32_t closeness;       /* the default guidance's group; -1: none yet */
     int32_t planarity;       /* the planar faces' group; -1: none */
-    gproji_part *guard;      /* the faces that are kept from turning over; NULL: none yet */
-    double *guard_area;      /* their vectorial areas when the solve began */
-    bool guard_on;           /* in this solve */
-    int32_t smooth;          /* the group that measures steps by smoothness; -1: none yet */
-    gproji_corners *corners; /* keeps corners of faces; NULL: none yet */
     gproji_statics *statics; /* NULL: no forces */
-    gproji_part *part;
+    gproji_part *part;       /* the last one added */
     gproji_solve solve;
     gproj_drag *drag; /* under way; NULL: none */
-    gproji_release release;
 };
 
 /* -- life -- */
 
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_heap *own;
-    size_t vertices, faces, corners;
+    size_t vertices, faces;
     int32_t i;
     if (!form) return;
     own = &form->own;
     vertices = form->mesh ? (size_t)form->mesh->vertex_count : 0;
     faces = form->mesh ? (size_t)form->mesh->face_count : 0;
-    corners = form->mesh ? 2 * (size_t)form->mesh->halfedge_count : 0;
-    if (form->corners) {
-        gproji_give(own, form->corners->size, corners / 2, sizeof *form->corners->size);
-        gproji_give(own, form->corners->axis, 3 * faces, sizeof *form->corners->axis);
-        gproji_give(own, form->corners->row, corners, sizeof *form->corners->row);
-        gproji_give(own, form->corners->marked, corners, 1);
-        gproji_give(own, form->corners->corner, form->corners->capacity, sizeof *form->corners->corner);
-        gproji_give(own, form->corners, 1, sizeof *form->corners);
-    }
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
     gproji_give(own, form->statics, 1, sizeof *form->statics);
-    if (form->guard) gproji_give(own, form->guard_area, 3 * (size_t)form->guard->count, sizeof *form->guard_area);
     while (form->part) {
         gproji_part *part = form->part;
         form->part = part->next;
-        for (i = 0; part->own_curve && i < part->curve_count; ++i) gproj_curve_destroy(part->own_curve[i]);
-        gproji_give(own, part->own_curve, (size_t)part->curve_count, sizeof *part->own_curve);
-        gproji_give(own, part->curve_of, (size_t)part->count, sizeof *part->curve_of);
-        gproji_give(own, part->gradient, 3 * vertices, sizeof *part->gradient);
-        gproji_give(own, part->segment, (size_t)part->count, sizeof *part->segment);
-        gproji_give(own, part->factor, (size_t)part->capacity, sizeof *part->factor);
-        gproji_give(own, part->plane, (size_t)part->capacity, sizeof *part->plane);
-        gproji_give(own, part->vertex, (size_t)part->capacity, sizeof *part->vertex);
+        for (i = 0; i < part->curve_count; ++i) gproj_curve_destroy(part->curve[i]);
+        gproji_pool_give_all(&part->pool);
         gproji_give(own, part, 1, sizeof *part);
     }
     gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
@@ -18771,7 +19265,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
-    form->closeness = form->smooth = form->planarity = form->release.fairness = form->release.handles = -1;
+    form->planarity = -1;
     gproji_form_begin(form);
     return form;
 }
@@ -18793,8 +19287,8 @@ GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
     gproji_add_memory(&sum, form->own.account);
     gproji_add_memory(&sum, gproj_system_memory(form->system));
     for (part = form->part; part; part = part->next)
-        for (i = 0; part->own_curve && i < part->curve_count; ++i)
-            if (part->own_curve[i]) gproji_add_memory(&sum, part->own_curve[i]->heap.account);
+        for (i = 0; i < part->curve_count; ++i)
+            if (part->curve[i]) gproji_add_memory(&sum, part->curve[i]->heap.account);
     return sum;
 }
 
@@ -18808,35 +19302,101 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 
 /* -- what the builders share -- */
 
-GPROJI_NOINLINE int32_t gproji_new_group(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
-                                         double weight, gproj_refresh refresh, void *user) {
-    gproj_group group;
-    memset(&group, 0, sizeof group);
-    group.name = name;
-    group.kind = kind;
-    group.place = place;
-    group.schedule.weight = weight;
-    group.refresh = refresh;
-    group.refresh_user = user;
-    return gproj_system_add_group(form->system, &group);
-}
-
-/* A part for `count` vertices or faces, which the caller then fills in; NULL after an error. */
-GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, int32_t count) {
+/* Adds a part for `count` entries, which the builder fills in; NULL after an error. */
+GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
     part = (gproji_part *)gproji_take_zeroed(&form->own, 1, sizeof *part);
-    if (part) part->vertex = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof *part->vertex);
+    if (part) {
+        gproji_pool_start(&part->pool, &form->own);
+        part->vertex = (int32_t *)gproji_pool_take(&part->pool, count, sizeof *part->vertex);
+    }
     if (!part || !part->vertex) {
         gproji_give(&form->own, part, 1, sizeof *part);
         gproji_fail_memory(&form->error);
         return NULL;
     }
+    part->rule = rule;
     part->form = form;
+    part->group = -1;
     part->count = part->capacity = count;
     part->next = form->part;
     form->part = part;
     return part;
+}
+
+/* Takes a zeroed block that lives as long as the part; NULL after an error, or if there is no part. */
+GPROJI_INTERNAL void *gproji_part_take(gproji_part *part, int64_t count, size_t size) {
+    void *block = part ? gproji_pool_take_zeroed(&part->pool, count, size) : NULL;
+    if (part && !block) gproji_fail_memory(&part->form->error);
+    return block;
+}
+
+/* Adds unknowns of the part, all 0; data: the first one. NULL after an error. */
+GPROJI_INTERNAL int32_t *gproji_part_unknowns(gproji_part *part, int32_t count) {
+    int32_t *first = (int32_t *)gproji_part_take(part, 1, sizeof *first);
+    if (!first) return NULL;
+    part->data = first;
+    *first = gproj_system_add_variables(part->form->system, count, 1, NULL);
+    return *first < 0 ? NULL : first;
+}
+
+/* Adds the group of a part, which has no rows yet. Returns the group, -1 after an error, or if there is no part. */
+GPROJI_NOINLINE int32_t gproji_add_group(gproji_part *part, double weight) {
+    const gproji_rule *rule = part ? part->rule : NULL;
+    gproj_group group;
+    if (!part) return -1;
+    memset(&group, 0, sizeof group);
+    group.name = rule->name;
+    group.kind = rule->kind;
+    group.place = rule->place;
+    group.schedule.weight = weight;
+    group.refresh = rule->acts ? rule->acts->refresh : NULL;
+    group.refresh_user = part;
+    part->group = gproj_system_add_group(part->form->system, &group);
+    return part->group;
+}
+
+/* Adds the group of a rule that needs no entries. */
+GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const gproji_rule *rule, double weight) {
+    return gproji_add_group(gproji_new_part(form, rule, 0), weight);
+}
+
+/* What a builder returns: the group, or -1 after an error. */
+GPROJI_INTERNAL int32_t gproji_built(const gproj_form *form, int32_t group) {
+    return gproji_form_ready(form) ? group : -1;
+}
+
+/* The part with this group; NULL: none. */
+GPROJI_INTERNAL gproji_part *gproji_part_of(const gproj_form *form, int32_t group) {
+    gproji_part *part = form->part;
+    while (part && part->group != group) part = part->next;
+    return part;
+}
+
+/* The part that the library has added for this purpose; NULL: none yet. */
+GPROJI_INTERNAL gproji_part *gproji_own_part(const gproj_form *form, gproji_own own) {
+    gproji_part *part = form->part;
+    while (part && (part->rule->own != own || part->group < 0)) part = part->next;
+    return part;
+}
+
+GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
+    const gproji_part *part = gproji_own_part(form, own);
+    return part ? part->group : -1;
+}
+
+/* Has the group a weight, in some iteration? */
+GPROJI_INTERNAL bool gproji_is_on(const gproj_form *form, int32_t group) {
+    return group >= 0 && gproji_group_at(form->system, group)->schedule.weight > 0;
+}
+
+/* Is there a group with a weight by this rule? */
+GPROJI_INTERNAL bool gproji_rule_is_on(const gproj_form *form, const gproji_rule *rule) {
+    const gproji_part *part;
+    for (part = form->part; part; part = part->next)
+        if (part->rule == rule && gproji_is_on(form, part->group)) return true;
+    return false;
 }
 
 GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
@@ -18869,17 +19429,17 @@ GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *nam
 }
 
 /* Copies the caller's list of vertices to a new part; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const char *name, int32_t count,
+GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const gproji_rule *rule, int32_t count,
                                                     const int32_t *vertices) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
     if (count < 0 || (count > 0 && !vertices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the list of %d vertices is no list",
-                    name, count);
+                    rule->name, count);
         return NULL;
     }
-    if (!gproji_vertices_are_valid(form, name, count, vertices)) return NULL;
-    part = gproji_new_part(form, count);
+    if (!gproji_vertices_are_valid(form, rule->name, count, vertices)) return NULL;
+    part = gproji_new_part(form, rule, count);
     if (part && count) memcpy(part->vertex, vertices, (size_t)count * sizeof *vertices);
     return part;
 }
@@ -18887,12 +19447,12 @@ GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const char
 typedef bool (*gproji_select)(const gproj_form *form, int32_t vertex);
 
 /* A new part with the vertices that `select` takes. */
-GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, gproji_select select) {
+GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, const gproji_rule *rule, gproji_select select) {
     gproji_part *part;
     int32_t v, count = 0;
     if (!gproji_form_ready(form)) return NULL;
     for (v = 0; v < form->mesh->vertex_count; ++v) count += select(form, v);
-    part = gproji_new_part(form, count);
+    part = gproji_new_part(form, rule, count);
     for (v = 0, count = 0; part && v < form->mesh->vertex_count; ++v)
         if (select(form, v)) part->vertex[count++] = v;
     return part;
@@ -18927,13 +19487,24 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* -- points: fixed vertices, handles, closeness -- */
 
+static const gproji_rule gproji_fixed_rule = {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                              NULL};
+static const gproji_rule gproji_fixed_boundary_rule = {"fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                       GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_fixed_corners_rule = {"fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                      GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_targets_rule = {"targets", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_closeness_rule = {"closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_default_closeness_rule = {"closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_CLOSENESS, NULL};
+
 /* Rows v - p = 0, one a coordinate, for each vertex of the part; p = targets[3 k..] in the mesh's units, or NULL: the
    original places. */
-GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
-                                          const double *targets, double weight) {
-    int32_t i, k, group;
+GPROJI_INTERNAL int32_t gproji_add_points(gproji_part *part, const double *targets, double weight) {
+    int32_t group = gproji_add_group(part, weight), i, k;
+    gproj_form *form;
     if (!part) return -1;
-    group = part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    form = part->form;
     gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
@@ -18945,42 +19516,40 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproj_form *form, gproji_part *part, c
             gproj_system_add_row(form->system, group, 1, &term, -p[k], part->vertex[i]);
         }
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
-    return gproji_add_points(form, gproji_new_vertex_part(form, "fixed vertices", count, vertices), "fixed vertices",
-                             GPROJ_CONSTRAINT, NULL, weight);
+    return gproji_add_points(gproji_new_vertex_part(form, &gproji_fixed_rule, count, vertices), NULL, weight);
 }
 
 GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight) {
-    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_boundary), "fixed boundary",
-                             GPROJ_CONSTRAINT, NULL, weight);
+    return gproji_add_points(gproji_new_selected_part(form, &gproji_fixed_boundary_rule, gproji_select_boundary), NULL,
+                             weight);
 }
 
 GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
-    return gproji_add_points(form, gproji_new_selected_part(form, gproj_form_is_corner), "fixed corners",
-                             GPROJ_CONSTRAINT, NULL, weight);
+    return gproji_add_points(gproji_new_selected_part(form, &gproji_fixed_corners_rule, gproj_form_is_corner), NULL,
+                             weight);
 }
 
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, "targets", count, vertices);
+    gproji_part *part = gproji_new_vertex_part(form, &gproji_targets_rule, count, vertices);
     if (part && count > 0 && !positions) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
         return -1;
     }
     if (part && gproji_check_positions(count, positions, "target", &form->error)) return -1;
-    return gproji_add_points(form, part, "targets", GPROJ_CONSTRAINT, positions, weight);
+    return gproji_add_points(part, positions, weight);
 }
 
 GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions) {
     const gproji_part *part;
     int32_t i, k;
     if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    for (part = form->part; part; part = part->next)
-        if (part->group == group && strcmp(gproj_system_group_info(form->system, group).name, "targets") == 0) break;
-    if (!part || !positions)
+    part = gproji_part_of(form, group);
+    if (!part || part->rule != &gproji_targets_rule || !positions)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "group %d has no targets, or there are no positions", group);
     if (gproji_check_positions(part->count, positions, "target", &form->error)) return form->error.code;
@@ -18993,8 +19562,12 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
 }
 
 GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
-    return gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all), "closeness", GPROJ_WISH, NULL,
-                             weight);
+    return gproji_add_points(gproji_new_selected_part(form, &gproji_closeness_rule, gproji_select_all), NULL, weight);
+}
+
+/* The library's own guidance. */
+GPROJI_INTERNAL void gproji_add_default_closeness(gproj_form *form) {
+    gproji_add_points(gproji_new_selected_part(form, &gproji_default_closeness_rule, gproji_select_all), NULL, 0);
 }
 
 /* -- planar faces -- */
@@ -19029,29 +19602,67 @@ GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, do
         gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
 }
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). A
-   group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by pairs, then
-   v_j. */
-GPROJI_INTERNAL void gproji_add_normal(gproj_form *form, int32_t group, int32_t face) {
+GPROJI_INTERNAL void gproji_start_normals(gproji_part *part) {
+    double *x = gproj_system_values(part->form->system);
+    int32_t i;
+    for (i = 0; i < part->count; ++i)
+        gproji_face_normal(part->form, part->vertex[i], x + part->form->normal[part->vertex[i]]);
+}
+
+static const double gproji_settle_shift = 1e-9; /* relative to the trace, in the inverse iteration for normals */
+enum {
+    GPROJI_SETTLE_ROUNDS = 3
+};
+
+/* Settles normals: the unit n with the least sum (n'e)^2 over a face's edges e, by a few steps of inverse iteration from the
+   n at hand, which keeps its side. */
+GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, int32_t from, int32_t to) {
+    const gproj_mesh *mesh = part->form->mesh;
+    for (; from < to; ++from) {
+        double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3], *n = x + part->form->normal[part->vertex[from]];
+        int32_t face = part->vertex[from], h = mesh->face_halfedge[face], c, round;
+        for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
+            gproji_add_square3(e, a);
+        }
+        for (round = 0; round < GPROJI_SETTLE_ROUNDS && gproji_solve_square3(a, gproji_settle_shift, n, b); ++round) {
+            gproji_normalise3(b, n);
+            gproji_copy3(b, n);
+        }
+    }
+}
+
+static const gproji_acts gproji_normal_acts = {NULL, gproji_start_normals, gproji_settle_normals, NULL};
+static const gproji_rule gproji_planarity_rule = {"planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                  &gproji_normal_acts};
+static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
+                                                         GPROJI_OWN_NONE, &gproji_normal_acts};
+
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). The
+   part's group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by
+   pairs, then v_j. */
+GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
+    gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], *local, n, c, k;
     double normal[3];
-    if (group < 0) return;
+    if (part->group < 0) return;
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
     gproji_set_auxiliary(s, n, 3);
     form->normal[face] = n;
-    s->coupled[n] = 1;
-    local = gproji_add_placed_rows(s, group, 0, 1, 3, unit, 3, -1, face);
+    part->vertex[part->count++] = face;
+    gproji_join_block(s, n);
+    local = gproji_add_placed_rows(s, part->group, 0, 1, 3, unit, 3, -1, face);
     for (k = 0; k < 3 && local; ++k) local[k] = n + k;
-    local = gproji_add_placed_rows(s, group, 1, mesh->face_degree[face], 6, edge, 9, 0, face);
+    local = gproji_add_placed_rows(s, part->group, 1, mesh->face_degree[face], 6, edge, 9, 0, face);
     for (c = 0; c < mesh->face_degree[face] && local; ++c, h = mesh->next[h], local += 9) {
         int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
-        s->coupled[i] = 1;
+        gproji_join_block(s, i);
         for (k = 0; k < 3; ++k) {
             local[2 * k] = n + k;
             local[2 * k + 1] = i + k;
@@ -19064,24 +19675,27 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     gproj_schedule schedule = {weight, 0, 0};
     const gproj_mesh *mesh;
     size_t faces = 0, corners = 0;
-    int32_t group, f;
+    gproji_part *part;
+    int32_t f;
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
         gproj_system_set_schedule(form->system, form->planarity, schedule);
         return gproji_form_ready(form) ? form->planarity : -1;
     }
     mesh = form->mesh;
-    group = gproji_new_group(form, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    part = gproji_new_part(form, &gproji_planarity_rule, mesh->face_count);
+    if (!part) return -1;
+    part->count = 0;
+    gproji_add_group(part, weight);
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f)
         if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
-    gproji_expect_group(form, group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
+    gproji_expect_group(form, part->group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f)
-        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(form, group, f);
-    form->planarity = group;
-    /* Zero-sum rows: their gradients sum to zero over each face. */
-    if (gproji_form_ready(form)) form->system->group[group].closing = form->system->group[group].row_count;
-    return gproji_form_ready(form) ? group : -1;
+        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(part, f);
+    form->planarity = part->group;
+    if (gproji_form_ready(form)) gproji_declare_zero_sum(form->system, part->group);
+    return gproji_built(form, part->group);
 }
 
 /* -- curves and surfaces -- */
@@ -19134,107 +19748,138 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Does vertex i of a gliding part stay? */
-GPROJI_INTERNAL bool gproji_stays(const gproji_part *part, int32_t i) {
-    return part->curve_of && part->curve_of[i] < 0;
+/* Vertices on curves: one of the caller's, in the mesh's units, or curves of the part. */
+typedef struct gproji_gliding {
+    const gproj_curve *curve; /* the caller's; NULL: the part's, and: */
+    int32_t *curve_of;        /* per vertex: one of the part's curves; -1: it stays */
+    int32_t *segment;         /* per vertex: the segment it glides on; -1: to be found */
+} gproji_gliding;
+
+GPROJI_INTERNAL gproji_gliding *gproji_gliding_of(const gproji_part *part) { return (gproji_gliding *)part->data; }
+
+/* The curve of the i-th vertex; NULL: it stays. */
+GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int32_t i) {
+    const gproji_gliding *g = gproji_gliding_of(part);
+    return g->curve ? g->curve : g->curve_of[i] < 0 ? NULL : part->curve[g->curve_of[i]];
 }
 
 /* Keeps each vertex to the line of a segment, from which it walks to neighbouring segments. */
-GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group,
+                                            const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    bool settled = system->late >= 2;
+    gproji_gliding *gliding = gproji_gliding_of(part);
+    int32_t *segment = gliding->segment;
+    bool settled = progress->settling >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        const gproj_curve *curve = part->curve;
+        const gproj_curve *curve = gproji_curve_at(part, i);
         const double *tangent;
         double p[3], end[3];
         bool after, before;
-        if (gproji_stays(part, i)) continue;
-        if (!curve) curve = part->own_curve[part->curve_of[i]];
+        if (!curve) continue;
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
-        if (part->curve) gproji_from_internal(part->form, p, p);
+        if (gliding->curve) gproji_from_internal(part->form, p, p);
         /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
            between two segments for ever. */
-        if (part->segment[i] < 0) {
-            part->segment[i] = gproj_curve_closest(curve, p).segment;
+        if (segment[i] < 0) {
+            segment[i] = gproj_curve_closest(curve, p).segment;
         } else if (!settled) {
-            part->segment[i] = gproji_walk(curve, part->segment[i], p);
-        } else if (gproji_own_weight(&system->group[group], 3 * i + 2) > 0) {
+            segment[i] = gproji_walk(curve, segment[i], p);
+        } else if (gproji_own_weight(gproji_group_at(system, group), 3 * i + 2) > 0) {
             continue;
         }
-        after = gproji_along(curve, part->segment[i], p, true) > 0;
-        before = gproji_along(curve, part->segment[i], p, false) < 0;
-        tangent = curve->tangent + 3 * (size_t)part->segment[i];
-        gproji_copy3(curve->point + 3 * ((size_t)part->segment[i] + after), end);
-        if (part->curve) gproji_to_internal(part->form, end, end);
+        after = gproji_along(curve, segment[i], p, true) > 0;
+        before = gproji_along(curve, segment[i], p, false) < 0;
+        tangent = curve->tangent + 3 * (size_t)segment[i];
+        gproji_copy3(curve->point + 3 * ((size_t)segment[i] + after), end);
+        if (gliding->curve) gproji_to_internal(part->form, end, end);
         gproji_set_gliding(system, group, 3 * i, tangent, end, after || before);
     }
 }
 
 /* Makes all vertices look for their segments anew. */
-GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
-    gproji_part *part;
+GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     int32_t i;
-    for (part = form->part; part; part = part->next) {
-        for (i = 0; part->segment && i < part->count; ++i) {
-            if (gproji_stays(part, i)) continue;
-            part->segment[i] = -1;
-            gproj_system_set_row_weight(form->system, part->group, 3 * i + 2, 0);
-        }
+    for (i = 0; i < part->count; ++i) {
+        if (!gproji_curve_at(part, i)) continue;
+        gproji_gliding_of(part)->segment[i] = -1;
+        gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
 }
 
-GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *part, const char *name, double weight) {
-    static const double axis[3] = {1, 0, 0};
-    int32_t i, k, c;
-    part->segment = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->segment);
-    if (!part->segment) {
-        gproji_fail_memory(&form->error);
-        return -1;
+GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
+    int32_t i;
+    (void)passing;
+    for (i = 0; i < part->count && !stream->wrong; ++i) {
+        const gproj_curve *curve = gproji_curve_at(part, i);
+        gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
     }
-    part->group =
-        gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_gliding, part);
+}
+
+static const gproji_acts gproji_gliding_acts = {gproji_refresh_gliding, gproji_start_gliding, NULL,
+                                                gproji_pass_gliding};
+static const gproji_rule gproji_gliding_rule = {"gliding", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                                &gproji_gliding_acts};
+static const gproji_rule gproji_gliding_boundary_rule = {"gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                         GPROJI_OWN_NONE, &gproji_gliding_acts};
+
+/* Takes what gliding keeps; NULL after an error. */
+GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
+    gproji_gliding *gliding = (gproji_gliding *)gproji_part_take(part, 1, sizeof *gliding);
+    if (!gliding) return NULL;
+    part->data = gliding;
+    gliding->segment = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->segment);
+    return gliding->segment ? gliding : NULL;
+}
+
+/* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
+   refresh. */
+GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight) {
+    static const double axis[3] = {1, 0, 0};
+    gproj_form *form = part->form;
+    int32_t i, k, c;
+    gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         const double *place = form->original + 3 * (size_t)part->vertex[i];
         gproj_term term[3];
-        part->segment[i] = -1;
+        gproji_gliding_of(part)->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
-        /* Vertices that stay are pinned to their places for good; others get a line from the refresh. */
         if (gproji_form_ready(form))
-            gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
+            gproji_set_gliding(form->system, part->group, 3 * i, axis, place, !gproji_curve_at(part, i));
     }
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, "gliding", count, vertices);
-    if (!part) return -1;
+    gproji_part *part = gproji_new_vertex_part(form, &gproji_gliding_rule, count, vertices);
+    gproji_gliding *gliding = gproji_take_gliding(part);
+    if (!gliding) return -1;
     if (!curve) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "gliding: there is no curve");
         return -1;
     }
-    part->curve = curve;
-    return gproji_add_gliding_part(form, part, "gliding", weight);
+    gliding->curve = curve;
+    return gproji_add_gliding_rows(part, weight);
 }
 
 GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
-    gproji_part *part = gproji_new_selected_part(form, gproji_select_boundary);
+    gproji_part *part = gproji_new_selected_part(form, &gproji_gliding_boundary_rule, gproji_select_boundary);
+    gproji_gliding *gliding = gproji_take_gliding(part);
     const gproj_mesh *mesh;
     size_t vertices;
     int32_t *loop_of, l, i;
     double *points;
-    if (!part) return -1;
+    if (!gliding) return -1;
     mesh = form->mesh;
     vertices = (size_t)mesh->vertex_count;
-    part->curve_count = mesh->loop_count;
-    part->own_curve =
-        (gproj_curve **)gproji_take_zeroed(&form->own, (size_t)part->curve_count, sizeof *part->own_curve);
-    part->curve_of = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->curve_of);
+    part->curve = (gproj_curve **)gproji_part_take(part, mesh->loop_count, sizeof *part->curve);
+    gliding->curve_of = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->curve_of);
+    if (part->curve) part->curve_count = mesh->loop_count;
     loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
-    if (!part->own_curve || !part->curve_of || !loop_of || !points) gproji_fail_memory(&form->error);
+    if (!loop_of || !points) gproji_fail_memory(&form->error);
     /* 1. Each boundary loop of the original as a curve in internal units; NULL for one without extent. */
     for (l = 0; l < mesh->loop_count && gproji_form_ready(form); ++l) {
         int32_t h = mesh->loop_halfedge[l], count = 0;
@@ -19245,53 +19890,61 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
             gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[l]);
-        part->own_curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
-        if (!part->own_curve[l] && error.code != GPROJ_ERROR_DEGENERATE)
+        part->curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
+        if (!part->curve[l] && error.code != GPROJ_ERROR_DEGENERATE)
             gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
     }
     /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
     for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
         l = loop_of[part->vertex[i]];
-        part->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->own_curve[l] ? -1 : l;
+        gliding->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->curve[l] ? -1 : l;
     }
     gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->own, points, 3 * vertices, sizeof *points);
-    return gproji_form_ready(form) ? gproji_add_gliding_part(form, part, "gliding boundary", weight) : -1;
+    return gproji_form_ready(form) ? gproji_add_gliding_rows(part, weight) : -1;
 }
 
 /* Rows n'(v - p) = 0: p the closest point to v on the surface, n the normal there. */
-GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, int32_t group,
+                                              const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
+    const gproj_surface *const *surface = (const gproj_surface *const *)part->data;
     const double *x = gproj_system_values(system);
     int32_t i;
+    (void)progress;
     for (i = 0; i < part->count; ++i) {
         double point[3];
         gproj_surface_hit hit;
         /* The surface is in the mesh's units. */
         gproji_from_internal(part->form, x + 3 * (size_t)part->vertex[i], point);
-        hit = gproj_surface_closest(part->surface, point);
+        hit = gproj_surface_closest(*surface, point);
         gproji_to_internal(part->form, hit.point, point);
         gproj_system_set_row(system, group, i, hit.normal, -gproji_dot3(hit.normal, point));
     }
 }
 
+static const gproji_acts gproji_reference_acts = {gproji_refresh_reference, NULL, NULL, NULL};
+static const gproji_rule gproji_reference_rule = {"reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                                  &gproji_reference_acts};
+
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
-    gproji_part *part = gproji_new_selected_part(form, gproji_select_all);
+    gproji_part *part = gproji_new_selected_part(form, &gproji_reference_rule, gproji_select_all);
+    const gproj_surface **kept = (const gproj_surface **)gproji_part_take(part, 1, sizeof *kept);
     int32_t i, c;
-    if (!part) return -1;
+    if (!kept) return -1;
     if (!surface) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "reference: there is no surface");
         return -1;
     }
-    part->surface = surface;
-    part->group =
-        gproji_new_group(form, "reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, gproji_refresh_reference, part);
+    *kept = surface;
+    part->data = kept;
+    gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
     }
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 /* -- fairness -- */
@@ -19319,7 +19972,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
     }
     if (!gproji_system_has_group(form->system, group)) return;
     /* Successive rows share their terms if they have equally many points. */
-    last = form->system->group[group].row_count - 1;
+    last = gproji_group_at(form->system, group)->row_count - 1;
     for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
     local = gproji_add_placed_rows(form->system, group, last, 3, points, term, points, 0, d->element);
     for (k = 0; k < 3 && local; ++k, local += points) {
@@ -19383,11 +20036,14 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
     }
 }
 
+static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_NONE, NULL};
+
 GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
     gproj_term *term;
     int32_t group;
     if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_boundary_fairness_rule, weight);
     term = gproji_take_terms(form);
     if (!term) return -1;
     gproji_add_boundary_differences(form, group, term);
@@ -19395,13 +20051,14 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
+static const gproji_rule gproji_fairness_rule = {"fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+
+GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
     gproj_term *term;
-    int32_t group, v;
+    int32_t group = gproji_new_group(form, rule, weight), v;
     size_t vertices;
-    if (!gproji_form_ready(form)) return -1;
+    if (group < 0) return -1;
     vertices = (size_t)form->mesh->vertex_count;
-    group = gproji_new_group(form, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
     gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
     term = gproji_take_terms(form);
     if (!term) return -1;
@@ -19411,7 +20068,11 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     }
     gproji_add_boundary_differences(form, group, term);
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
+}
+
+GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_fairness_rule, weight);
 }
 
 /* Fills in rows `row` and `row` + 1, u'd and w'd for a difference d: u, w span the plane orthogonal to `normal`. */
@@ -19429,10 +20090,12 @@ GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t gro
     }
 }
 
-GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group,
+                                               const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     double normal[3] = {0, 0, 1};
     int32_t i;
+    (void)progress;
     gproji_update_areas(part->form);
     for (i = 0; i < part->count; ++i) {
         /* The differences at one vertex follow each other. */
@@ -19441,17 +20104,20 @@ GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system,
     }
 }
 
+static const gproji_acts gproji_tangential_acts = {gproji_refresh_tangential, NULL, NULL, NULL};
+static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
+                                                   GPROJI_OWN_NONE, &gproji_tangential_acts};
+
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
     gproj_term *term;
     int32_t v;
-    if (!form || !gproji_form_ready(form)) return -1;
-    part = gproji_new_part(form, 2 * form->mesh->vertex_count);
+    if (!gproji_form_ready(form)) return -1;
+    part = gproji_new_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count);
     term = part ? gproji_take_terms(form) : NULL;
     if (!term) return -1;
     part->count = 0;
-    part->group = gproji_new_group(form, "tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, weight,
-                                   gproji_refresh_tangential, part);
+    gproji_add_group(part, weight);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
         if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
@@ -19460,10 +20126,12 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group,
+                                          const gproj_progress *progress) {
     static const double up[3] = {0, 0, 1};
     const gproji_part *part = (const gproji_part *)user;
     int32_t i;
+    (void)progress;
     for (i = 0; i < part->count; ++i) {
         double normal[3];
         gproji_copy3(gproj_system_values(system) + part->form->normal[part->vertex[i]], normal);
@@ -19474,36 +20142,44 @@ GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int3
 
 /* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
    planarity. */
-GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const char *name) {
-    int32_t f, group = -1;
+GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_rule *rule) {
+    gproji_part *part = NULL;
+    int32_t f;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         if (form->normal[f] >= 0) continue;
         if (form->mesh->face_degree[f] > 3) {
             gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
-                        "%s needs the normals of planar faces: call gproj_add_planarity before", name);
+                        "%s needs the normals of planar faces: call gproj_add_planarity before", rule->name);
             return false;
         }
-        if (group < 0)
-            group = gproji_new_group(form, "triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, 1, NULL, NULL);
-        gproji_add_normal(form, group, f);
+        if (!part) {
+            part = gproji_new_part(form, &gproji_triangle_normals_rule, form->mesh->face_count);
+            if (!part) return false;
+            part->count = 0;
+            gproji_add_group(part, 1);
+        }
+        gproji_add_normal(part, f);
     }
     return gproji_form_ready(form);
 }
+
+static const gproji_acts gproji_gauss_acts = {gproji_refresh_gauss, NULL, NULL, NULL};
+static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                              &gproji_gauss_acts};
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
     gproji_part *part;
     gproj_term *term;
     int32_t f, k;
-    if (!form || !gproji_form_ready(form) || !gproji_add_missing_normals(form, "Gauss image fairness")) return -1;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, &gproji_gauss_rule)) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, 2 * mesh->face_count);
+    part = gproji_new_part(form, &gproji_gauss_rule, 2 * mesh->face_count);
     term = part ? gproji_take_terms(form) : NULL;
     if (!term) return -1;
     part->count = 0;
-    part->group = gproji_new_group(form, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
-                                   gproji_refresh_gauss, part);
+    gproji_add_group(part, weight);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
         for (k = 0; k < degree; ++k, h = mesh->next[h]) {
@@ -19540,7 +20216,6 @@ GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t
 GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
                                                const double *weights) {
     gproj_group_info info;
-    gproji_group *g;
     double *of; /* per element: the new weight; -1: unchanged */
     int32_t have, k;
     if (!form) return GPROJ_ERROR_ARGUMENT;
@@ -19548,7 +20223,8 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
     /* 1. Refuse lists that do not fit the group. */
     if (!gproji_system_has_group(form->system, group))
         return gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                           "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
+                           "element weights: there is no group %d (the form has %d)", group,
+                           gproj_system_group_count(form->system));
     info = gproj_system_group_info(form->system, group);
     have = info.place == GPROJ_PLACE_VERTEX ? form->mesh->vertex_count
            : info.place == GPROJ_PLACE_EDGE ? form->mesh->edge_count
@@ -19570,23 +20246,12 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                                gproji_place_word(info.place), element, info.name);
     }
     /* 2. A row's weight is own x factor: own by builder or refresh, the factor by this function. */
-    g = &form->system->group[group];
     of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
-    if (!of || !gproji_share_weights(form->system, g)) {
-        gproji_give(&form->own, of, (size_t)have, sizeof *of);
-        return gproji_fail_memory(&form->error);
-    }
-    for (k = 0; k < have; ++k) of[k] = -1;
-    for (k = 0; k < count; ++k) of[elements ? elements[k] : k] = weights[k];
-    for (k = 0; k < g->row_count; ++k) {
-        gproji_row *row = &g->row[k];
-        if (row->element < 0 || row->element >= have || of[row->element] < 0) continue;
-        g->share[k].factor = of[row->element];
-        row->weight = g->share[k].own * g->share[k].factor;
-    }
+    for (k = 0; of && k < have; ++k) of[k] = -1;
+    for (k = 0; of && k < count; ++k) of[elements ? elements[k] : k] = weights[k];
+    if (!of || !gproji_set_factors(form->system, group, have, of)) gproji_fail_memory(&form->error);
     gproji_give(&form->own, of, (size_t)have, sizeof *of);
-    form->system->changed = true;
-    return GPROJ_OK;
+    return form->error.code;
 }
 
 /* -- lengths of edges -- */
@@ -19630,12 +20295,14 @@ GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t ed
     return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
 }
 
+static const gproji_rule gproji_lengths_rule = {"lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE, NULL};
+
 /* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight) {
     int32_t group, k;
     if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "lengths", count, edges)) return -1;
-    group = gproji_new_group(form, "lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_lengths_rule, weight);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         double length = lengths ? lengths[k] * form->scale : gproji_original_length(form, edge);
@@ -19651,22 +20318,40 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
     return gproji_form_ready(form) ? group : -1;
 }
 
-GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    int32_t group, common, k;
-    double mean = 0;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "equal lengths", count, edges)) return -1;
-    for (k = 0; k < count; ++k) mean += gproji_original_length(form, edges ? edges[k] : k) / count;
-    common = gproj_system_add_variables(form->system, 1, 1, &mean);
-    group = gproji_new_group(form, "equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
-    for (k = 0; k < count && gproji_form_ready(form); ++k) {
-        int32_t edge = edges ? edges[k] : k;
-        gproj_term term[10];
-        /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l, at first the mean length. */
-        gproji_set_length_terms(form->mesh, edge, 0.5, term);
-        gproji_set_term(&term[9], common, common, -0.5);
-        gproj_system_add_row(form->system, group, 10, term, 0, edge);
+/* The common length starts at the mean. */
+GPROJI_INTERNAL void gproji_start_length(gproji_part *part) {
+    double *x = gproj_system_values(part->form->system), mean = 0;
+    int32_t k;
+    for (k = 0; k < part->count; ++k) {
+        const int32_t *end = part->form->mesh->origin + 2 * (size_t)part->vertex[k];
+        mean += gproji_distance3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1]) / part->count;
     }
-    return gproji_form_ready(form) ? group : -1;
+    x[*(const int32_t *)part->data] = mean;
+}
+
+static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_length, NULL, NULL};
+static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
+                                                      GPROJI_OWN_NONE, &gproji_equal_lengths_acts};
+
+/* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
+GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    gproji_part *part;
+    int32_t *common, k;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, gproji_equal_lengths_rule.name, count, edges))
+        return -1;
+    part = gproji_new_part(form, &gproji_equal_lengths_rule, count);
+    common = gproji_part_unknowns(part, 1);
+    if (!common) return -1;
+    for (k = 0; k < count; ++k) part->vertex[k] = edges ? edges[k] : k;
+    gproji_start_length(part);
+    gproji_add_group(part, weight);
+    for (k = 0; k < count && gproji_form_ready(form); ++k) {
+        gproj_term term[10];
+        gproji_set_length_terms(form->mesh, part->vertex[k], 0.5, term);
+        gproji_set_term(&term[9], *common, *common, -0.5);
+        gproj_system_add_row(form->system, part->group, 10, term, 0, part->vertex[k]);
+    }
+    return gproji_built(form, part->group);
 }
 
 /* -- vertices on unknown planes and lines -- */
@@ -19713,28 +20398,36 @@ GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, i
     for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
 }
 
+/* Vertices on unknown planes, or on lines, each of which is two planes. */
+typedef struct gproji_planes {
+    int32_t planes; /* 1: a plane; 2: a line */
+    int32_t *first; /* per entry: the first variable of the plane or planes; -1: none */
+} gproji_planes;
+
 /* Gives the part's vertices from..count-1 a plane, or two for a line: variables n, d with n'n = 1, orthogonal normals,
    and the rows n'(v - m) - d = 0. A set too small to leave one gets none. */
-GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, int32_t from) {
+GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
+    gproj_form *form = part->form;
+    gproji_planes *set = (gproji_planes *)part->data;
     const int32_t *vertex = part->vertex + from;
     int32_t count = part->count - from, first = -1, i, p, q, k;
     double plane[8], middle[3];
     gproj_term term[7];
-    if (count > (part->planes == 1 ? 3 : 2)) {
-        gproji_fit_planes(form, part->planes, count, vertex, plane);
+    if (count > (set->planes == 1 ? 3 : 2)) {
+        gproji_fit_planes(form, set->planes, count, vertex, plane);
         gproji_original_mean(form, count, vertex, middle);
-        first = gproj_system_add_variables(form->system, 4 * part->planes, 4, plane);
+        first = gproj_system_add_variables(form->system, 4 * set->planes, 4, plane);
     }
-    for (i = 0; i < count; ++i) part->plane[from + i] = first;
+    for (i = 0; i < count; ++i) set->first[from + i] = first;
     if (first < 0) return;
-    for (p = 0; p < part->planes; ++p) {
+    for (p = 0; p < set->planes; ++p) {
         for (q = 0; q <= p; ++q) {
             for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
             gproj_system_add_row(form->system, part->group, 3, term, p == q ? -1 : 0, vertex[0]);
         }
     }
     for (i = 0; i < count; ++i) {
-        for (p = 0; p < part->planes; ++p) {
+        for (p = 0; p < set->planes; ++p) {
             for (k = 0; k < 3; ++k) {
                 gproji_set_term(&term[2 * k], 3 * vertex[i] + k, first + 4 * p + k, 1);
                 gproji_set_term(&term[2 * k + 1], first + 4 * p + k, -1, -middle[k]);
@@ -19745,52 +20438,60 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproj_form *form, gproji_part *part, i
     }
 }
 
-/* Puts planes and lines back to a best fit, before a solve. */
-GPROJI_INTERNAL void gproji_restart_planes(gproj_form *form) {
-    gproji_part *part;
+/* Puts planes and lines to a best fit. */
+GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
+    const gproji_planes *set = (const gproji_planes *)part->data;
     int32_t from, to;
-    for (part = form->part; part; part = part->next) {
-        for (from = 0; part->plane && from < part->count; from = to) {
-            double plane[8];
-            for (to = from + 1; to < part->count && part->plane[to] == part->plane[from]; ++to) continue;
-            if (part->plane[from] < 0) continue;
-            gproji_fit_planes(form, part->planes, to - from, part->vertex + from, plane);
-            memcpy(gproj_system_values(form->system) + part->plane[from], plane,
-                   4 * (size_t)part->planes * sizeof *plane);
-        }
+    for (from = 0; from < part->count; from = to) {
+        double plane[8];
+        for (to = from + 1; to < part->count && set->first[to] == set->first[from]; ++to) continue;
+        if (set->first[from] < 0) continue;
+        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane);
+        memcpy(gproj_system_values(part->form->system) + set->first[from], plane,
+               4 * (size_t)set->planes * sizeof *plane);
     }
 }
 
-/* Makes a part one with planes (1) or lines (2), its group without rows. */
-GPROJI_INTERNAL bool gproji_begin_planes(gproj_form *form, gproji_part *part, int32_t planes, const char *name,
-                                         double weight) {
-    if (!part) return false;
-    part->plane = (int32_t *)gproji_take(&form->own, (size_t)part->capacity, sizeof *part->plane);
-    if (!part->plane) {
-        gproji_fail_memory(&form->error);
-        return false;
-    }
-    part->planes = planes;
-    part->group = gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
-    return gproji_form_ready(form);
+static const gproji_acts gproji_plane_acts = {NULL, gproji_start_planes, NULL, NULL};
+static const gproji_rule gproji_coplanar_rule = {"coplanar", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                                 &gproji_plane_acts};
+static const gproji_rule gproji_collinear_rule = {"collinear", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                                  &gproji_plane_acts};
+static const gproji_rule gproji_planar_boundary_rule = {"planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                        GPROJI_OWN_NONE, &gproji_plane_acts};
+static const gproji_rule gproji_straight_boundary_rule = {"straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_NONE, &gproji_plane_acts};
+
+/* Makes a part one with planes (1) or lines (2), with a group without rows. */
+GPROJI_INTERNAL bool gproji_begin_planes(gproji_part *part, int32_t planes, double weight) {
+    gproji_planes *set = (gproji_planes *)gproji_part_take(part, 1, sizeof *set);
+    if (!set) return false;
+    part->data = set;
+    set->planes = planes;
+    set->first = (int32_t *)gproji_part_take(part, part->capacity, sizeof *set->first);
+    return set->first && gproji_add_group(part, weight) >= 0;
+}
+
+/* A set of the caller's. */
+GPROJI_INTERNAL int32_t gproji_add_set(gproj_form *form, const gproji_rule *rule, int32_t planes, int32_t count,
+                                       const int32_t *vertices, double weight) {
+    gproji_part *part = gproji_new_vertex_part(form, rule, count, vertices);
+    if (!gproji_begin_planes(part, planes, weight)) return -1;
+    gproji_add_plane_set(part, 0);
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, "coplanar", count, vertices);
-    if (!gproji_begin_planes(form, part, 1, "coplanar", weight)) return -1;
-    gproji_add_plane_set(form, part, 0);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_add_set(form, &gproji_coplanar_rule, 1, count, vertices, weight);
 }
 
 GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, "collinear", count, vertices);
-    if (!gproji_begin_planes(form, part, 2, "collinear", weight)) return -1;
-    gproji_add_plane_set(form, part, 0);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_add_set(form, &gproji_collinear_rule, 2, count, vertices, weight);
 }
 
 /* Adds a boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
-GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, int32_t loop) {
+GPROJI_INTERNAL void gproji_add_loop_sets(gproji_part *part, int32_t loop) {
+    gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
     do {
@@ -19798,7 +20499,7 @@ GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, i
         h = mesh->next[h];
     } while (h != mesh->loop_halfedge[loop]);
     h = start; /* the half-edge that leaves a corner, if there is one */
-    if (part->planes == 2 && corners < 3) {
+    if (((const gproji_planes *)part->data)->planes == 2 && corners < 3) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
                     "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
                     "between them",
@@ -19810,34 +20511,37 @@ GPROJI_INTERNAL void gproji_add_loop_sets(gproj_form *form, gproji_part *part, i
         h = mesh->next[h];
         if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
             part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
-            gproji_add_plane_set(form, part, from);
+            gproji_add_plane_set(part, from);
             from = part->count;
         }
     } while (h != start);
-    if (corners == 0) gproji_add_plane_set(form, part, from);
+    if (corners == 0) gproji_add_plane_set(part, from);
 }
 
-GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, int32_t planes, const char *name, double weight) {
+GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_rule *rule, int32_t planes,
+                                                 double weight) {
     gproji_part *part;
     int32_t v, most = 0, loop;
     if (!gproji_form_ready(form)) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) /* corners are in two sets */
         most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
-    part = gproji_new_part(form, most);
-    if (!gproji_begin_planes(form, part, planes, name, weight)) return -1;
+    part = gproji_new_part(form, rule, most);
+    if (!gproji_begin_planes(part, planes, weight)) return -1;
     part->count = 0;
-    for (loop = 0; loop < form->mesh->loop_count && gproji_form_ready(form); ++loop)
-        gproji_add_loop_sets(form, part, loop);
-    return gproji_form_ready(form) ? part->group : -1;
+    for (loop = 0; loop < form->mesh->loop_count && gproji_form_ready(form); ++loop) gproji_add_loop_sets(part, loop);
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight) {
-    return gproji_add_boundary_sets(form, 1, "planar boundary", weight);
+    return gproji_add_boundary_sets(form, &gproji_planar_boundary_rule, 1, weight);
 }
 
 GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
-    return gproji_add_boundary_sets(form, 2, "straight boundary", weight);
+    return gproji_add_boundary_sets(form, &gproji_straight_boundary_rule, 2, weight);
 }
+
+static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
+                                                         GPROJI_OWN_NONE, NULL};
 
 /* -- directions of edges, lifting -- */
 
@@ -19855,7 +20559,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     }
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
-    group = gproji_new_group(form, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_orthogonal_edges_rule, weight);
     for (i = 0; i < 2 * count && gproji_form_ready(form); ++i) {
         int32_t edge = edges ? edges[i / 2] : i / 2;
         gproj_term term[6];
@@ -19868,12 +20572,15 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_form_ready(form) ? group : -1;
 }
 
+static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                            GPROJI_OWN_NONE, NULL};
+
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
    and v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
     int32_t group, v, k, ring[3];
     if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
         gproj_term term[12];
         /* A boundary vertex's ring begins and ends along the boundary. */
@@ -19889,10 +20596,12 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
     return gproji_form_ready(form) ? group : -1;
 }
 
+static const gproji_rule gproji_lifting_rule = {"lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     int32_t group, i;
     if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_lifting_rule, weight);
     for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
         gproj_term term;
         if (i % 3 == 2) continue; /* z is free */
@@ -19927,20 +20636,57 @@ GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t
     return *list != NULL;
 }
 
+GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
+    double *x = gproj_system_values(part->form->system);
+    int32_t i;
+    for (i = 0; i < part->count; ++i)
+        gproji_start_axis_point(part->form, part->vertex[i], x + part->form->axis[part->vertex[i]]);
+}
+
+static const double gproji_settle_free = 1e-4; /* relative to the trace: axis points are free along the axis */
+
+/* Settles axis points: the p with the least sum (e'(m - p))^2 over a face's edges e with midpoints m, as near as can be to the
+   p at hand. */
+GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *x, int32_t from, int32_t to) {
+    const gproj_mesh *mesh = part->form->mesh;
+    for (; from < to; ++from) {
+        double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, *p = x + part->form->axis[part->vertex[from]];
+        double e[3], m[3], change[3];
+        int32_t face = part->vertex[from], h = mesh->face_halfedge[face], c, k;
+        for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+            const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
+            gproji_sub3(w, v, e);
+            for (k = 0; k < 3; ++k) m[k] = (v[k] + w[k]) / 2 - p[k];
+            gproji_add_square3(e, a);
+            gproji_add_scaled3(gproji_dot3(e, m), e, b);
+        }
+        if (gproji_solve_square3(a, gproji_settle_free, b, change)) gproji_add_scaled3(1, change, p);
+    }
+}
+
+static const gproji_acts gproji_circularity_acts = {NULL, gproji_start_axis_points, gproji_settle_axis_points, NULL};
+static const gproji_rule gproji_circularity_rule = {"circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                    &gproji_circularity_acts};
+
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
-    int32_t group, f, k, c, h;
+    gproji_part *part;
+    int32_t f, k, c, h;
     if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
     mesh = form->mesh;
-    group = gproji_new_group(form, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    part = gproji_new_part(form, &gproji_circularity_rule, mesh->face_count);
+    if (!part) return -1;
+    part->count = 0;
+    gproji_add_group(part, weight);
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
         double start[3];
         if (mesh->face_degree[f] == 3) continue;
         gproji_start_axis_point(form, f, start);
         if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
+        part->vertex[part->count++] = f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
             int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
@@ -19951,25 +20697,27 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
                 gproji_set_term(&term[4 * c + 2], form->axis[f] + c, j + c, -1);
                 gproji_set_term(&term[4 * c + 3], form->axis[f] + c, i + c, 1);
             }
-            gproj_system_add_row(form->system, group, 12, term, 0, f);
+            gproj_system_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, part->group);
 }
 
-/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge in part->vertex: a the axis at v_i, e = v_j -
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex; ~v stands for the row a'a = 1: a the axis at v_i, e = v_j -
    v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
-GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group,
+                                          const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     const gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(system), *a;
     double e[3], m[3], slope[5][3], scale;
     int32_t i, count, k, c;
+    (void)progress;
     for (i = 0; i < part->count; ++i) {
         int32_t h = part->vertex[i];
         gproj_term *term = gproji_row_terms(system, group, i, &count);
-        if (h < 0) continue; /* a'a = 1 */
+        if (h < 0) continue;
         a = x + form->cone[mesh->origin[h]];
         gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], x + 3 * (size_t)mesh->origin[h], e);
         gproji_copy3(x + form->normal[mesh->face[h]], m);
@@ -19986,6 +20734,22 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
     }
 }
 
+/* Gives cone axes the values that fit the vertices at x best. */
+GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int32_t from, int32_t to) {
+    for (; from < to; ++from) {
+        int32_t v = ~part->vertex[from];
+        if (v >= 0) gproji_cone_axis(part->form->mesh, x, v, x + part->form->cone[v]);
+    }
+}
+
+GPROJI_INTERNAL void gproji_start_cones(gproji_part *part) {
+    gproji_settle_cones(part, gproj_system_values(part->form->system), 0, part->count);
+}
+
+static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, gproji_start_cones, gproji_settle_cones, NULL};
+static const gproji_rule gproji_conicality_rule = {"conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
+                                                   &gproji_conicality_acts};
+
 /* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
    edge e between faces f and g: a is in the plane of e and n_f + n_g. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
@@ -19993,7 +20757,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     gproji_part *part;
     gproj_term term[15];
     int32_t rows = 0, v, c;
-    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, "conicality")) return -1;
+    if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, &gproji_conicality_rule)) return -1;
     if (!gproji_take_firsts(form, form->mesh->vertex_count, &form->cone)) return -1;
     /* 1. Axes as variables, and how many rows there can be. */
     mesh = form->mesh;
@@ -20004,18 +20768,17 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
-    part = gproji_new_part(form, rows);
+    part = gproji_new_part(form, &gproji_conicality_rule, rows);
     if (!part) return -1;
     part->count = 0;
-    part->group =
-        gproji_new_group(form, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_cones, part);
+    gproji_add_group(part, weight);
     /* 2. Rows: a'a = 1, then one for each edge between two faces. */
     for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
         int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
         if (axis < 0) continue;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
         gproj_system_add_row(form->system, part->group, 3, term, -1, v);
-        part->vertex[part->count++] = -1;
+        part->vertex[part->count++] = ~v;
         do {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
             for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
@@ -20035,10 +20798,13 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? part->group : -1;
 }
 
+static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                       NULL};
+
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     int32_t group, f, k, c;
     if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, "parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_parallelograms_rule, weight);
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term term[4];
         if (form->mesh->face_degree[f] != 4) continue;
@@ -20092,9 +20858,11 @@ GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t fa
 }
 
 /* Rows |a(v)| - A = 0 for each face, A an unknown. */
-GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int32_t group,
+                                          const gproj_progress *progress) {
     gproj_form *form = ((const gproji_part *)user)->form;
     int32_t f, count;
+    (void)progress;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term *term = gproji_row_terms(system, group, f, &count);
@@ -20102,78 +20870,103 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
     }
 }
 
-GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
-    gproji_part *part = gproji_new_part(form, 0);
-    gproj_term *term = part ? gproji_take_terms(form) : NULL;
-    int32_t common, f, count;
-    double area = 0;
-    if (!term) return -1;
+/* The common area starts at the mean. */
+GPROJI_INTERNAL void gproji_start_area(gproji_part *part) {
+    gproj_form *form = part->form;
+    double mean = 0;
+    int32_t f;
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count; ++f)
-        area += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
-    common = gproj_system_add_variables(form->system, 1, 1, &area);
-    part->group =
-        gproji_new_group(form, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, weight, gproji_refresh_areas, part);
+        mean += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
+    gproj_system_values(form->system)[*(const int32_t *)part->data] = mean;
+}
+
+static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_area, NULL, NULL};
+static const gproji_rule gproji_equal_areas_rule = {"equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                    &gproji_equal_areas_acts};
+
+GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
+    gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
+    const int32_t *common = gproji_part_unknowns(part, 1);
+    gproj_term *term = common ? gproji_take_terms(form) : NULL;
+    int32_t f, count;
+    if (!term) return -1;
+    gproji_start_area(part);
+    gproji_add_group(part, weight);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
-        gproji_set_term(&term[count], common, -1, -1); /* A, at first the mean area */
+        gproji_set_term(&term[count], *common, -1, -1);
         gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
-/* A part for a sum over the whole mesh, with room for the gradient; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_gradient_part(gproj_form *form) {
-    gproji_part *part = gproji_new_part(form, 0);
-    if (!part) return NULL;
-    part->gradient = (double *)gproji_take(&form->own, 3 * (size_t)form->mesh->vertex_count, sizeof *part->gradient);
-    if (!part->gradient) gproji_fail_memory(&form->error);
-    return part->gradient ? part : NULL;
+/* A sum over the whole mesh, linearised in all vertices. */
+typedef struct gproji_total {
+    double *gradient; /* 3 numbers a vertex of the mesh */
+    double unit;      /* the sum's change when the mesh grows by a mean edge length */
+} gproji_total;
+
+/* Adds a part for such a sum; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_total(gproj_form *form, const gproji_rule *rule) {
+    gproji_part *part = gproji_new_part(form, rule, 0);
+    gproji_total *total = (gproji_total *)gproji_part_take(part, 1, sizeof *total);
+    if (!total) return NULL;
+    part->data = total;
+    total->gradient = (double *)gproji_part_take(part, 3 * (int64_t)form->mesh->vertex_count, sizeof *total->gradient);
+    return total->gradient ? part : NULL;
 }
 
 /* Adds a group with `rows` rows for the whole mesh: terms for all coordinates in order, coefficients from the
    refresh. */
-GPROJI_INTERNAL int32_t gproji_add_global_rows(gproj_form *form, gproji_part *part, const char *name, gproj_kind kind,
-                                               double weight, int32_t rows, gproj_refresh refresh) {
+GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight, int32_t rows) {
+    gproj_form *form = part->form;
     int32_t count = 3 * form->mesh->vertex_count, t;
     gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
     if (!term) {
         gproji_fail_memory(&form->error);
         return -1;
     }
-    part->group = gproji_new_group(form, name, kind, GPROJ_PLACE_NONE, weight, refresh, part);
-    if (part->group >= 0) form->system->group[part->group].global = true;
+    gproji_add_group(part, weight);
+    if (part->group >= 0) gproji_declare_global(form->system, part->group);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
     gproji_give(&form->own, term, (size_t)count, sizeof *term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 /* The row (V(v) + grad V'(v' - v) - volume) / area. */
-GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group,
+                                           const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
+    double *gradient = ((const gproji_total *)part->data)->gradient;
     gproj_form *form = part->form;
     const double *x = gproj_system_values(system);
     double height = form->centre[2] * form->scale, area, constant, scale;
     size_t count = 3 * (size_t)form->mesh->vertex_count, k;
-    constant = gproji_volume(form->mesh, x, height, part->gradient, &area) - part->target;
+    (void)progress;
+    constant = gproji_volume(form->mesh, x, height, gradient, &area) - part->given[0];
     scale = 1 / gproji_fmax(area, 1e-12);
-    for (k = 0; k < count; ++k) part->gradient[k] *= scale / 6;
+    for (k = 0; k < count; ++k) gradient[k] *= scale / 6;
     /* Summed up like the row's value, so that their roundings are the same. */
-    constant = scale * constant - gproji_dot(part->gradient, x, count);
-    gproj_system_set_row(system, group, 0, part->gradient, constant);
+    constant = scale * constant - gproji_dot(gradient, x, count);
+    gproj_system_set_row(system, group, 0, gradient, constant);
 }
 
+static const gproji_acts gproji_volume_acts = {gproji_refresh_volume, NULL, NULL, NULL};
+static const gproji_rule gproji_volume_rule = {"volume", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
+                                               &gproji_volume_acts};
+
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
-    gproji_part *part = gproji_new_gradient_part(form);
+    gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
     if (!part) return -1;
     if (!gproji_is_finite(volume)) {
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
         return -1;
     }
-    part->target = volume * form->scale * form->scale * form->scale;
-    return gproji_add_global_rows(form, part, "volume", GPROJ_CONSTRAINT, weight, 1, gproji_refresh_volume);
+    part->given[0] = volume * form->scale * form->scale * form->scale;
+    return gproji_add_global_rows(part, weight, 1);
 }
 
 /* -- bounds, total area, cost -- */
@@ -20197,15 +20990,18 @@ GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
+static const gproji_rule gproji_length_bounds_rule = {"length bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
+                                                      NULL};
+
 /* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
                                           double weight) {
-    static const char name[] = "length bounds";
+    const char *name = gproji_length_bounds_rule.name;
     double bound[2];
     int32_t group, k, side;
     if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
     if (!gproji_take_bounds(form, name, min, max, form->scale, bound)) return -1;
-    group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
+    group = gproji_new_group(form, &gproji_length_bounds_rule, weight);
     for (k = 0; k < count; ++k) {
         int32_t edge = edges ? edges[k] : k;
         for (side = 0; side < 2; ++side) {
@@ -20220,14 +21016,16 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
 }
 
 /* Rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) for each face. */
-GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system, int32_t group,
+                                                const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t i, side, count, row = 0;
+    (void)progress;
     gproji_update_areas(part->form);
     for (i = 0; i < part->count; ++i) {
         for (side = 0; side < 2; ++side) {
-            double sign = side == 0 ? 1 : -1, area = part->bound[side], scale, constant;
-            if (!gproji_has_bound(part->bound, side)) continue;
+            double sign = side == 0 ? 1 : -1, area = part->given[side], scale, constant;
+            if (!gproji_has_bound(part->given, side)) continue;
             scale = sign / (2 * sqrt(area));
             constant =
                 gproji_linearise_area(part->form, part->vertex[i], scale, gproji_row_terms(system, group, row, &count));
@@ -20236,39 +21034,49 @@ GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system
     }
 }
 
+static const gproji_acts gproji_area_bounds_acts = {gproji_refresh_area_bounds, NULL, NULL, NULL};
+static const gproji_rule gproji_area_bounds_rule = {"area bounds", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                    &gproji_area_bounds_acts};
+
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
-    static const char name[] = "area bounds";
+    const char *name = gproji_area_bounds_rule.name;
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
     if (!gproji_form_ready(form) ||
         !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces))
         return -1;
-    part = gproji_new_part(form, count);
-    if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
+    part = gproji_new_part(form, &gproji_area_bounds_rule, count);
+    if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->given)) return -1;
     term = gproji_take_terms(form);
     if (!term) return -1;
-    part->group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_FACE, weight, gproji_refresh_area_bounds, part);
+    gproji_add_group(part, weight);
     for (k = 0; k < count; ++k) {
         part->vertex[k] = faces ? faces[k] : k;
         for (side = 0; side < 2; ++side) {
             int32_t terms = gproji_set_area_terms(form->mesh, part->vertex[k], term);
-            if (gproji_has_bound(part->bound, side))
+            if (gproji_has_bound(part->given, side))
                 gproj_system_add_row(form->system, part->group, terms, term, 0, part->vertex[k]);
         }
     }
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
-/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, with part->gradient. `size`:
+/* given: bounds of the cost, then the prices of lengths and areas, in internal units. */
+enum {
+    GPROJI_PRICE = 2
+};
+
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and its gradient. `size`:
    by how much C changes when the mesh grows by a mean edge length. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
+    const double *price = part->given + GPROJI_PRICE;
     const double *x = gproj_system_values(form->system);
-    double length, area, d[3], slope[3], *gradient = part->gradient;
+    double length, area, d[3], slope[3], *gradient = ((gproji_total *)part->data)->gradient;
     gproji_sum sum = {0, 0}, areas = {0, 0};
     int32_t e, f, k;
     memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
@@ -20278,8 +21086,8 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         gproji_sub3(x + i, x + j, d);
         gproji_sum_add(&sum, gproji_length3(d));
         gproji_normalise3(d, none);
-        gproji_add_scaled3(part->price[0], d, gradient + i);
-        gproji_add_scaled3(-part->price[0], d, gradient + j);
+        gproji_add_scaled3(price[0], d, gradient + i);
+        gproji_add_scaled3(-price[0], d, gradient + j);
     }
     /* 2. Areas. */
     gproji_update_areas(form);
@@ -20290,83 +21098,98 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         gproji_normalise3(d, none);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             gproji_area_slope(form, h, d, slope);
-            gproji_add_scaled3(part->price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
+            gproji_add_scaled3(price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
         }
     }
-    length = part->price[0] * gproji_sum_value(&sum);
+    length = price[0] * gproji_sum_value(&sum);
     area = gproji_sum_value(&areas);
-    if (size) *size = (length + 2 * part->price[1] * area) / gproji_fmax(sqrt(area), 1e-6);
-    return length + part->price[1] * area;
+    if (size) *size = (length + 2 * price[1] * area) / gproji_fmax(sqrt(area), 1e-6);
+    return length + price[1] * area;
 }
 
 /* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit. A prescribed cost has the first one only. */
-GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group,
+                                         const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
+    const gproji_total *total = (const gproji_total *)part->data;
     const double *x = gproj_system_values(system);
     gproji_sum ahead = {0, 0};
-    double scale = 1 / part->unit;
+    double scale = 1 / total->unit;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
+    (void)progress;
     /* C - grad C'v cancels: it is summed up with compensation. */
     ahead.high = gproji_cost(part->form, part, NULL);
     for (t = 0; t < count; ++t) {
-        gproji_sum_add_product(&ahead, -part->gradient[t], x[t]);
-        part->gradient[t] *= scale;
+        gproji_sum_add_product(&ahead, -total->gradient[t], x[t]);
+        total->gradient[t] *= scale;
     }
     for (side = 0; side < 2; ++side) {
-        double constant = scale * (gproji_sum_value(&ahead) - part->bound[side]);
-        for (t = 0; side == 1 && t < count; ++t) part->gradient[t] = -part->gradient[t];
-        if (!gproji_has_bound(part->bound, side)) continue;
-        gproj_system_set_row(system, group, row++, part->gradient, side == 0 ? constant : -constant);
+        double constant = scale * (gproji_sum_value(&ahead) - part->given[side]);
+        for (t = 0; side == 1 && t < count; ++t) total->gradient[t] = -total->gradient[t];
+        if (!gproji_has_bound(part->given, side)) continue;
+        gproj_system_set_row(system, group, row++, total->gradient, side == 0 ? constant : -constant);
     }
 }
 
+static const gproji_acts gproji_total_acts = {gproji_refresh_cost, NULL, NULL, NULL};
+static const gproji_rule gproji_total_area_rule = {"total area", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
+                                                   &gproji_total_acts};
+static const gproji_rule gproji_total_area_bounds_rule = {"total area bounds", GPROJ_BOUND, GPROJ_PLACE_NONE,
+                                                          GPROJI_OWN_NONE, &gproji_total_acts};
+static const gproji_rule gproji_cost_rule = {"cost", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
+                                             &gproji_total_acts};
+static const gproji_rule gproji_cost_bounds_rule = {"cost bounds", GPROJ_BOUND, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
+                                                    &gproji_total_acts};
+
 /* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
-GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gproj_kind kind, double length_price,
+GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
-    gproji_part *part = gproji_new_gradient_part(form);
+    gproji_part *part = gproji_new_total(form, rule);
     double prices = length_price + area_price;
+    gproji_total *total;
     int32_t rows;
     if (!part) return -1;
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: the prices %g and %g must be >= 0 and not both 0", name, length_price, area_price);
+                    "%s: the prices %g and %g must be >= 0 and not both 0", rule->name, length_price, area_price);
         return -1;
     }
-    if (!gproji_take_bounds(form, name, min, max, 1, part->bound)) return -1;
-    part->price[0] = length_price / form->scale;
-    part->price[1] = area_price / form->scale / form->scale;
-    gproji_cost(form, part, &part->unit);
-    part->unit = gproji_fmax(part->unit, 1e-12);
-    rows = gproji_has_bound(part->bound, 0) + gproji_has_bound(part->bound, 1);
-    return gproji_add_global_rows(form, part, name, kind, weight, rows, gproji_refresh_cost);
+    if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
+    part->given[GPROJI_PRICE] = length_price / form->scale;
+    part->given[GPROJI_PRICE + 1] = area_price / form->scale / form->scale;
+    total = (gproji_total *)part->data;
+    gproji_cost(form, part, &total->unit);
+    total->unit = gproji_fmax(total->unit, 1e-12);
+    rows = gproji_has_bound(part->given, 0) + gproji_has_bound(part->given, 1);
+    return gproji_add_global_rows(part, weight, rows);
 }
 
 /* Prescribes a value > 0: "0 means no bound" does not apply to it. */
-GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, double length_price,
+GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                                     double area_price, double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
     if (!(value > 0) || !gproji_is_finite(value)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", name, value);
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, value);
         return -1;
     }
-    return gproji_add_total(form, name, GPROJ_CONSTRAINT, length_price, area_price, value, HUGE_VAL, weight);
+    return gproji_add_total(form, rule, length_price, area_price, value, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
-    return gproji_add_prescribed_total(form, "total area", 0, 1, area, weight);
+    return gproji_add_prescribed_total(form, &gproji_total_area_rule, 0, 1, area, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
-    return gproji_add_total(form, "total area bounds", GPROJ_BOUND, 0, 1, min, max, weight);
+    return gproji_add_total(form, &gproji_total_area_bounds_rule, 0, 1, min, max, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
-    return gproji_add_prescribed_total(form, "cost", length_price, area_price, cost, weight);
+    return gproji_add_prescribed_total(form, &gproji_cost_rule, length_price, area_price, cost, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
                                         double max, double weight) {
-    return gproji_add_total(form, "cost bounds", GPROJ_BOUND, length_price, area_price, min, max, weight);
+    return gproji_add_total(form, &gproji_cost_bounds_rule, length_price, area_price, min, max, weight);
 }
 
 /* ============================================================================================================
@@ -20475,20 +21298,20 @@ GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *te
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
-/* Linearises the weight on a vertex: adds to the z row's constant, fills in the row's last terms. */
-GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
-                                             int32_t vertex) {
+/* Linearises the weight on a vertex: fills in the last terms of the z row, and returns its constant, `constant` being that without
+   weight. */
+GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
+                                               int32_t vertex, double constant) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     const int32_t *list = s->load_vertex + s->load_start[vertex];
     int32_t row = gproji_axis_row(s, vertex, 2), start = mesh->vertex_halfedge[vertex], h = start, around, count, t;
     int32_t terms = 3 * (int32_t)(s->load_start[vertex + 1] - s->load_start[vertex]);
-    double *constant = &form->system->group[s->group].row[row].constant;
     gproj_term *term = gproji_row_terms(form->system, s->group, row, &count);
     term += count - terms;
     for (t = 0; t < terms; ++t) term[t].a = 0;
-    if (terms == 0) return;
+    if (terms == 0) return constant;
     do {
         int32_t other = mesh->origin[mesh->twin[h]];
         double half = 0.5 * per_length * gproji_density(&s->loads, h / 2), d[3], gradient[3];
@@ -20503,7 +21326,7 @@ GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const doubl
            this gradient times x, minus the value. */
         if (s->face_load && mesh->face[h] >= 0) {
             const double *load = s->face_load + 4 * (size_t)mesh->face[h];
-            *constant += load[3];
+            constant += load[3];
             around = h;
             do {
                 gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[around]],
@@ -20515,16 +21338,19 @@ GPROJI_INTERNAL void gproji_linearise_weight(const gproj_form *form, const doubl
         }
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
+    return constant;
 }
 
 /* Renews the loads in the rows (1) at the present x. */
-GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group) {
-    gproj_form *form = (gproj_form *)user;
+GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system, int32_t group,
+                                                const gproj_progress *progress) {
+    gproj_form *form = ((gproji_part *)user)->form;
     gproji_statics *s = form->statics;
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(system), *point = s->loads.point_load;
     gproji_load_units units = gproji_internal_loads(form);
     int32_t f, v, c, row = 0;
+    (void)progress;
     /* A face's corners have equal shares: load[0..3) is -h / 2, load[3] the value. */
     for (f = 0; s->face_load && f < mesh->face_count; ++f) {
         double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
@@ -20532,13 +21358,18 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
         for (c = 0; c < 3; ++c) load[c] = -0.5 * scale * h[c];
     }
     for (v = 0; v < mesh->vertex_count; ++v) {
-        for (c = 0; c < 3; ++c)
-            if (s->axes[v] >> c & 1)
-                gproj_system_set_row(system, group, row++, NULL,
-                                     point ? units.force * point[3 * (size_t)v + (size_t)c] : 0);
-        if (s->axes[v] & 4) gproji_linearise_weight(form, x, units.per_length, v);
+        for (c = 0; c < 3; ++c) {
+            double constant = point ? units.force * point[3 * (size_t)v + (size_t)c] : 0;
+            if (!(s->axes[v] >> c & 1)) continue;
+            if (c == 2) constant = gproji_linearise_weight(form, x, units.per_length, v, constant);
+            gproj_system_set_row(system, group, row++, NULL, constant);
+        }
     }
 }
+
+static const gproji_acts gproji_equilibrium_acts = {gproji_refresh_equilibrium, NULL, NULL, NULL};
+static const gproji_rule gproji_equilibrium_rule = {"equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                    GPROJI_OWN_NONE, &gproji_equilibrium_acts};
 
 /* Adds a vertex's rows (1). `spoke`: work, 2 numbers for each edge there; `term`: work for a row. */
 GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
@@ -20671,7 +21502,7 @@ GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *
     if (!s) return false;
     /* 1. Arrays; loads are copied. */
     gproji_pool_start(&s->pool, &form->own);
-    s->group = s->guidance = s->brake = -1;
+    s->group = -1;
     s->load_scale = 1;
     s->loads = *loads;
     if (loads->edge_density) s->edge_density = gproji_copy_numbers(&s->pool, loads->edge_density, edges);
@@ -20722,8 +21553,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
     s = form->statics;
-    s->group = gproji_new_group(form, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight,
-                                gproji_refresh_equilibrium, form);
+    s->group = gproji_new_group(form, &gproji_equilibrium_rule, weight);
     if (s->group < 0) return -1;
     /* Each edge has at most 2 terms in the 3 rows at each end. */
     for (v = 0; v < form->mesh->vertex_count; ++v)
@@ -20755,30 +21585,32 @@ GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     return form->statics != NULL;
 }
 
-static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
+static const gproji_rule gproji_compression_rule = {"compression", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
+                                                    NULL};
+static const gproji_rule gproji_tension_rule = {"tension", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE, NULL};
 
 /* sign w >= 0. */
-GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
+GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
-    if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
-    group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
-    if (group >= 0) form->system->group[group].lazy = true; /* a good step is not found again for them */
+    if (!gproji_has_statics(form, rule->name) || !gproji_edges_are_valid(form, rule->name, count, edges)) return -1;
+    group = gproji_new_group(form, rule, weight);
+    if (group >= 0) gproji_declare_lazy(form->system, group);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
         gproji_set_term(&term, form->statics->force[edge], -1, sign);
         if (term.i >= 0) gproj_system_add_row(form->system, group, 1, &term, 0, edge);
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    return gproji_add_sign(form, gproji_compression_name, 1, count, edges, weight);
+    return gproji_add_sign(form, &gproji_compression_rule, 1, count, edges, weight);
 }
 
 GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    return gproji_add_sign(form, gproji_tension_name, -1, count, edges, weight);
+    return gproji_add_sign(form, &gproji_tension_rule, -1, count, edges, weight);
 }
 
 /* The terms s y l of an edge's force: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
@@ -20802,19 +21634,24 @@ GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t 
     for (k = 0; k < 3; ++k) term[k].a = s * u[k], term[3 + k].a = -s * u[k];
 }
 
-/* Rows y l - load_scale A min >= 0 (part->factor is A) and load_scale A max - y l >= 0 (-A); part->bound holds min and
-   max. */
-GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int32_t group) {
+/* Rows y l - load_scale A min >= 0 (part->factor is A) and load_scale A max - y l >= 0 (-A); `given`: min and max. */
+GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int32_t group,
+                                           const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     double load_scale = part->form->statics->load_scale;
     int32_t r, count;
+    (void)progress;
     for (r = 0; r < part->count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         bool above = part->factor[r] < 0;
         gproji_refresh_force_terms(part->form, part->vertex[r], above ? -1 : 1, term);
-        gproj_system_set_row(system, group, r, NULL, -load_scale * part->factor[r] * part->bound[above]);
+        gproj_system_set_row(system, group, r, NULL, -load_scale * part->factor[r] * part->given[above]);
     }
 }
+
+static const gproji_acts gproji_stress_acts = {gproji_refresh_stress, NULL, NULL, NULL};
+static const gproji_rule gproji_stress_rule = {"stress bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
+                                               &gproji_stress_acts};
 
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight) {
@@ -20835,22 +21672,18 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
                     sections[k]);
         return -1;
     }
-    part = gproji_new_part(form, 2 * count);
+    part = gproji_new_part(form, &gproji_stress_rule, 2 * count);
     if (!part) return -1;
     part->count = 0;
-    part->bound[0] = min;
-    part->bound[1] = max;
-    part->factor = (double *)gproji_take(&form->own, (size_t)part->capacity, sizeof *part->factor);
-    if (!part->factor) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
-    part->group =
-        gproji_new_group(form, "stress bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, gproji_refresh_stress, part);
+    part->given[0] = min;
+    part->given[1] = max;
+    part->factor = (double *)gproji_part_take(part, part->capacity, sizeof *part->factor);
+    if (!part->factor) return -1;
+    gproji_add_group(part, weight);
     for (side = 0; side < 2; ++side) {
         for (k = 0; k < count && gproji_form_ready(form); ++k) {
             int32_t edge = edges ? edges[k] : k;
-            if (form->statics->force[edge] < 0 || !gproji_is_finite(part->bound[side])) continue;
+            if (form->statics->force[edge] < 0 || !gproji_is_finite(part->given[side])) continue;
             part->vertex[part->count] = edge;
             part->factor[part->count++] = (side ? -1 : 1) * (sections ? sections[k] : 1);
             gproji_set_force_terms(form, edge, term);
@@ -20861,15 +21694,21 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
 }
 
 /* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->vertex holds the pairs e, f. */
-GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group) {
+GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group,
+                                                   const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     int32_t r, count;
+    (void)progress;
     for (r = 0; r < part->count / 2; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         gproji_refresh_force_terms(part->form, part->vertex[2 * r], 1, term);
         gproji_refresh_force_terms(part->form, part->vertex[2 * r + 1], -1, term + 6);
     }
 }
+
+static const gproji_acts gproji_force_fairness_acts = {gproji_refresh_force_fairness, NULL, NULL, NULL};
+static const gproji_rule gproji_force_fairness_rule = {"force fairness", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
+                                                       &gproji_force_fairness_acts};
 
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -20878,11 +21717,10 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     int32_t f, k;
     if (!gproji_has_statics(form, "force fairness")) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, 4 * mesh->face_count);
+    part = gproji_new_part(form, &gproji_force_fairness_rule, 4 * mesh->face_count);
     if (!part) return -1;
     part->count = 0;
-    part->group = gproji_new_group(form, "force fairness", GPROJ_WISH, GPROJ_PLACE_FACE, weight,
-                                   gproji_refresh_force_fairness, part);
+    gproji_add_group(part, weight);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; mesh->face_degree[f] == 4 && k < 2; ++k, h = mesh->next[h]) {
@@ -20902,7 +21740,7 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* The edge whose force a bound's row keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
-    const gproji_group *g = &form->system->group[group];
+    const gproji_group *g = gproji_group_at(form->system, group);
     int32_t count, edge = g->row[row].element;
     const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
@@ -20919,8 +21757,8 @@ GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, 
     int32_t e, g, r;
     double sign;
     for (e = 0; e < form->mesh->edge_count; ++e) lower[e] = -HUGE_VAL, upper[e] = HUGE_VAL;
-    for (g = 0; g < form->system->group_count; ++g) {
-        const gproji_group *group = &form->system->group[g];
+    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
+        const gproji_group *group = gproji_group_at(form->system, g);
         if (group->kind != GPROJ_BOUND || group->place != GPROJ_PLACE_EDGE || !(group->schedule.weight > 0)) continue;
         for (r = 0; r < group->row_count; ++r) {
             if (!(group->row[r].weight > 0)) continue;
@@ -21190,15 +22028,17 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     return uniform;
 }
 
+static const gproji_rule gproji_force_guidance_rule = {"force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE,
+                                                       GPROJI_OWN_FORCES, NULL};
+
 /* Adds the group that draws the forces to their start. */
 GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     gproji_statics *s = form->statics;
     gproj_term term;
-    int32_t e;
-    s->guidance = gproji_new_group(form, "force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE, 0, NULL, NULL);
+    int32_t group = gproji_new_group(form, &gproji_force_guidance_rule, 0), e;
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
         gproji_set_term(&term, s->force[e], -1, 1);
-        if (term.i >= 0) gproj_system_add_row(form->system, s->guidance, 1, &term, 0, e);
+        if (term.i >= 0) gproj_system_add_row(form->system, group, 1, &term, 0, e);
     }
 }
 
@@ -21210,8 +22050,8 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     gproji_balance p;
     bool guided = false;
     const double *x;
-    int32_t e, row = 0;
-    if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
+    int32_t guidance, e, row = 0;
+    if (!s || !gproji_is_on(form, s->group)) return;
     s->lost[0] = s->lost[1] = 0;
     if (!s->started && gproji_take_balance(form, &p)) {
         /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
@@ -21221,13 +22061,14 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
         gproji_pool_give_all(&p.pool);
         s->started = gproji_form_ready(form);
     }
-    if (s->guidance < 0 && !guided) return;
-    if (s->guidance < 0) gproji_add_force_guidance(form);
+    if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES)) gproji_add_force_guidance(form);
+    guidance = gproji_own_group(form, GPROJI_OWN_FORCES);
+    if (guidance < 0) return;
     if (!guided) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, s->guidance, schedule);
+    gproj_system_set_schedule(form->system, guidance, schedule);
     x = gproj_system_values(form->system);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
-        if (s->force[e] >= 0) gproj_system_set_row(form->system, s->guidance, row++, NULL, -x[s->force[e]]);
+        if (s->force[e] >= 0) gproj_system_set_row(form->system, guidance, row++, NULL, -x[s->force[e]]);
 }
 
 /* -- forces for the caller -- */
@@ -21391,25 +22232,34 @@ enum {
     GPROJI_GUARD_LONGER = 2
 };
 
+/* The part's entries are the faces that are guarded. */
+typedef struct gproji_guard {
+    bool on;      /* in this solve */
+    double *area; /* 3 per face: its vectorial area when the solve began */
+} gproji_guard;
+
+GPROJI_INTERNAL gproji_guard *gproji_guard_of(const gproji_part *part) { return (gproji_guard *)part->data; }
+
 /* The normal of a guarded face as its variables say at x; a triangle has its first one. */
-GPROJI_INTERNAL void gproji_guard_normal(const gproj_form *form, const double *x, int32_t index, double out[3]) {
+GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
     static const double none[3] = {0, 0, 0};
-    int32_t normal = form->normal[form->guard->vertex[index]];
-    gproji_copy3(normal >= 0 ? x + normal : form->guard_area + 3 * (size_t)index, out);
+    int32_t normal = part->form->normal[part->vertex[index]];
+    gproji_copy3(normal >= 0 ? x + normal : gproji_guard_of(part)->area + 3 * (size_t)index, out);
     gproji_normalise3(out, none);
 }
 
-/* The rows with the normals at x. Faces that had no area are let go. */
-GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int32_t group) {
-    const gproj_form *form = (const gproj_form *)user;
+/* Linearises the rows with the normals at x. Faces that had no area are let go. */
+GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int32_t group,
+                                          const gproj_progress *progress) {
+    const gproji_part *part = (const gproji_part *)user;
+    double wanted = progress->tangential ? gproji_guard_small : gproji_guard_wanted;
     int32_t i, count, t, k;
-    for (i = 0; i < form->guard->count; ++i) {
-        double n[3], area = gproji_length3(form->guard_area + 3 * (size_t)i);
+    for (i = 0; i < part->count; ++i) {
+        double n[3], area = gproji_length3(gproji_guard_of(part)->area + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
-        system->group[group].row[i].weight = area > gproji_guard_area ? sqrt(area) : 0;
-        system->group[group].row[i].constant = -(system->sliding ? gproji_guard_small : gproji_guard_wanted);
+        gproji_place_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
         if (!(area > gproji_guard_area)) continue;
-        gproji_guard_normal(form, system->x, i, n);
+        gproji_guard_normal(part, gproj_system_values(system), i, n);
         /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard */
         for (t = 0; t < count; t += 6) {
             for (k = 0; k < 3; ++k) {
@@ -21420,48 +22270,55 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     }
 }
 
-/* Has a face lost most of its area in the step from `saved`, seen along its normal or the one it had at first? */
-GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const gproj_system *system) {
-    const gproj_form *form = (const gproj_form *)user;
+/* Has a face lost most of its area in the step to x from `before`, seen along its normal or the one it had at first? */
+GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, const double *x) {
+    const gproji_part *part = gproji_own_part((const gproj_form *)user, GPROJI_OWN_GUARD);
+    const gproji_guard *guard = gproji_guard_of(part);
     int32_t i, k;
-    for (i = 0; form->guard_on && i < form->guard->count; ++i) {
-        const double *first = form->guard_area + 3 * (size_t)i;
-        double axis[2][3], before[3], after[3];
+    for (i = 0; guard->on && i < part->count; ++i) {
+        const double *first = guard->area + 3 * (size_t)i;
+        double axis[2][3], was[3], is[3];
         if (gproji_length3(first) <= gproji_guard_area) continue;
-        gproji_area_vector(form->mesh, system->saved, form->guard->vertex[i], before);
-        gproji_area_vector(form->mesh, system->x, form->guard->vertex[i], after);
-        gproji_guard_normal(form, system->saved, i, axis[0]);
+        gproji_area_vector(part->form->mesh, before, part->vertex[i], was);
+        gproji_area_vector(part->form->mesh, x, part->vertex[i], is);
+        gproji_guard_normal(part, before, i, axis[0]);
         gproji_copy3(first, axis[1]);
         for (k = 0; k < 2; ++k) {
-            double had = gproji_dot3(before, axis[k]);
-            if (had > 0 && gproji_dot3(after, axis[k]) < gproji_guard_kept * had) return true;
+            double had = gproji_dot3(was, axis[k]);
+            if (had > 0 && gproji_dot3(is, axis[k]) < gproji_guard_kept * had) return true;
         }
     }
     return false;
 }
 
-/* The guard's group and rows, once. */
+GPROJI_INTERNAL void gproji_pass_guard(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
+    if (!passing) return;
+    gproji_pass_bool(stream, &gproji_guard_of(part)->on);
+    gproji_pass_doubles(stream, gproji_guard_of(part)->area, 3 * (size_t)part->count);
+}
+
+static const gproji_acts gproji_guard_acts = {gproji_refresh_guard, NULL, NULL, gproji_pass_guard};
+static const gproji_rule gproji_guard_rule = {"guard", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_GUARD,
+                                              &gproji_guard_acts};
+
+/* Adds the guard, with all rows; a form has one. */
 GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     gproj_term term[6 * GPROJI_GUARD_DEGREE];
+    gproji_guard *guard;
+    gproji_part *part;
     int32_t f, h, c, k, terms, count = 0;
     for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
-    form->guard = gproji_new_part(form, count);
-    if (!form->guard) return;
-    form->guard_area = (double *)gproji_take(&form->own, 3 * (size_t)count, sizeof *form->guard_area);
-    if (!form->guard_area) {
-        gproji_fail_memory(&form->error);
-        return;
-    }
-    form->guard->group = gproji_new_group(form, "guard", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_guard, form);
-    if (form->guard->group < 0) return;
-    form->system->group[form->guard->group].guard = true;
-    form->system->group[form->guard->group].slack = gproji_guard_slack;
-    form->system->refuse_step = gproji_refuse_turned;
-    form->system->refuse_user = form;
+    part = gproji_new_part(form, &gproji_guard_rule, count);
+    guard = (gproji_guard *)gproji_part_take(part, 1, sizeof *guard);
+    if (!guard) return;
+    part->data = guard;
+    guard->area = (double *)gproji_part_take(part, 3 * (int64_t)count, sizeof *guard->area);
+    if (!guard->area || gproji_add_group(part, 0) < 0) return;
+    gproji_declare_role(form->system, part->group, GPROJI_GUARD, gproji_guard_slack);
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
-        form->guard->vertex[count++] = f;
+        part->vertex[count++] = f;
         /* For each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
         for (c = 0, terms = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
@@ -21470,36 +22327,34 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
                 gproji_set_term(&term[terms++], a + (k + 1) % 3, b + k, 0);
             }
         }
-        gproj_system_add_row(form->system, form->guard->group, terms, term, -gproji_guard_wanted, f);
+        gproj_system_add_row(form->system, part->group, terms, term, -gproji_guard_wanted, f);
     }
-}
-
-GPROJI_INTERNAL bool gproji_is_on(const gproj_form *form, int32_t group) {
-    return group >= 0 && form->system->group[group].schedule.weight > 0;
 }
 
 /* Has the form forces, and a shape that carries, so that its faces need not turn over to do so? */
 GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
     const gproji_statics *s = form->statics;
-    return s && gproji_is_on(form, s->group) && !gproji_is_on(form, s->guidance);
+    return s && gproji_is_on(form, s->group) && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
 }
 
 /* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
    iterations. */
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
     gproj_schedule schedule;
+    gproji_part *part;
     int32_t i;
     bool wanted = !skip && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    form->guard_on = wanted;
-    if (wanted && !form->guard) gproji_add_guard(form);
-    if (!form->guard || !gproji_form_ready(form)) return;
+    if (wanted && !gproji_own_part(form, GPROJI_OWN_GUARD)) gproji_add_guard(form);
+    part = gproji_own_part(form, GPROJI_OWN_GUARD);
+    if (!part || !gproji_form_ready(form)) return;
+    gproji_guard_of(part)->on = wanted;
     schedule.weight = wanted ? gproji_guard_weight : 0;
     schedule.decay = 1;
     schedule.last = gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER;
-    gproj_system_set_schedule(form->system, form->guard->group, schedule);
-    for (i = 0; i < form->guard->count; ++i)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), form->guard->vertex[i],
-                           form->guard_area + 3 * (size_t)i);
+    gproj_system_set_schedule(form->system, part->group, schedule);
+    for (i = 0; i < part->count; ++i)
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->vertex[i],
+                           gproji_guard_of(part)->area + 3 * (size_t)i);
 }
 
 /* ============================================================================================================
@@ -21532,6 +22387,19 @@ enum {
     GPROJI_CORNER_TERMS = 18
 };
 
+/* Corner 2 h + k is the one behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1). */
+typedef struct gproji_corners {
+    double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
+    double *axis;    /* per face: the unit normal then */
+    int32_t *row;    /* per corner; -1: none */
+    uint8_t *marked; /* corners that are to act */
+    int32_t *corner; /* per row; has room for all corners */
+    int32_t rounds;  /* in this solve: how often corners were marked */
+} gproji_corners;
+
+GPROJI_INTERNAL gproji_corners *gproji_corners_of(const gproji_part *part) { return (gproji_corners *)part->data; }
+
+
 /* The vectorial area of the parallelogram at the corner behind half-edge h: (b - a) x (c - b). */
 GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x, int32_t h, double out[3]) {
     const double *a = x + 3 * (size_t)mesh->origin[h], *b = x + 3 * (size_t)mesh->origin[mesh->next[h]];
@@ -21554,23 +22422,28 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
 }
 
 /* Linearises the rows that act, with the normals at x. */
-GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group) {
-    const gproj_form *form = (const gproj_form *)user;
-    const gproji_corners *guard = form->corners;
+GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
+                                            const gproj_progress *progress) {
+    const gproji_part *part = (const gproji_part *)user;
+    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_group *g = gproji_group_at(system, group);
+    const gproj_mesh *mesh = part->form->mesh;
+    const double *x = gproj_system_values(system);
     int32_t r, k, t, count;
-    for (r = 0; r < system->group[group].row_count; ++r) {
-        gproji_row *row = &system->group[group].row[r];
+    (void)progress;
+    for (r = 0; r < g->row_count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
-        int32_t h = guard->corner[r] / 2, face = form->mesh->face[h];
+        int32_t h = guard->corner[r] / 2, face = mesh->face[h];
         bool upright = guard->corner[r] % 2 != 0;
-        double m[3], area[3], has;
-        if (!(row->weight > 0)) continue;
-        gproji_corner_normal(form, system->x, system->x, face, m);
+        double m[3], area[3], has, asked;
+        if (!(g->row[r].weight > 0)) continue;
+        gproji_corner_normal(part->form, x, x, face, m);
         if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
-        gproji_corner_area(form->mesh, system->x, h, area);
+        gproji_corner_area(mesh, x, h, area);
         has = gproji_dot3(area, m) / guard->size[h];
-        row->constant = upright ? -gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
-                                : -gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
+        asked = upright ? gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
+                        : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
+        gproji_place_row(system, group, r, g->row[r].weight, -asked);
         /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
         for (t = 0; t < count; t += 6)
             for (k = 0; k < 3; ++k) {
@@ -21581,21 +22454,12 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
 }
 
 /* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
-   a_y b_z, - a_z b_y (m_x), ... Returns its number, -1 after an error. */
-GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
-    gproji_corners *guard = form->corners;
-    const gproj_mesh *mesh = form->mesh;
-    gproj_system *s = form->system;
+   a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns its number, -1 after an error. */
+GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
+    gproji_corners *guard = gproji_corners_of(part);
+    const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
-    int32_t vertex[3], h = corner / 2, rows = s->group[guard->group].row_count, row, c, k, count = 0;
-    void *corners = guard->corner;
-    bool solving = s->solving, enough;
-    enough = gproji_reserve(&form->own, &corners, &guard->capacity, (size_t)rows + 1, sizeof *guard->corner);
-    guard->corner = (int32_t *)corners;
-    if (!enough) {
-        gproji_fail_memory(&s->error);
-        return -1;
-    }
+    int32_t vertex[3], h = corner / 2, row, c, k, count = 0;
     for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
     for (c = 0; c < 3; ++c)
         for (k = 0; k < 3; ++k) {
@@ -21603,11 +22467,9 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
             gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
             gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
         }
-    s->solving = false; /* rows of a guard may come during a solve, when nothing else may */
-    row = gproj_system_add_row(s, guard->group, count, term, -gproji_corner_wanted, mesh->face[corner / 2]);
-    s->solving = solving;
+    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, -gproji_corner_wanted,
+                                   mesh->face[corner / 2]);
     if (row < 0) return -1;
-    s->group[guard->group].row[row].weight = 0; /* until it is woken */
     guard->corner[row] = corner;
     guard->row[corner] = row;
     return row;
@@ -21615,20 +22477,21 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproj_form *form, int32_t corner) {
 
 /* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first one
    it stops if that is enough. Returns whether there was one. */
-GPROJI_INTERNAL bool gproji_seek_corners(const gproj_form *form, const gproj_system *s, double margin, bool first) {
-    const gproji_corners *guard = form->corners;
-    const gproji_row *rows = s->group[guard->group].row;
-    const gproj_mesh *mesh = form->mesh;
+GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
+                                         bool first) {
+    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_row *rows = gproji_group_at(part->form->system, part->group)->row;
+    const gproj_mesh *mesh = part->form->mesh;
     int32_t f, h, c, k;
     bool found = false;
     for (f = 0; f < mesh->face_count; ++f) {
         const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
         double m[2][3], area[3];
-        gproji_corner_normal(form, s->x, s->saved, f, m[0]);
+        gproji_corner_normal(part->form, x, before, f, m[0]);
         gproji_copy3(guard->axis + 3 * (size_t)f, m[1]);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             if (!(guard->size[h] > 0)) continue;
-            gproji_corner_area(mesh, s->x, h, area);
+            gproji_corner_area(mesh, x, h, area);
             for (k = 0; k < 2; ++k) {
                 int32_t row = guard->row[2 * h + k];
                 if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || (row >= 0 && rows[row].weight > 0))
@@ -21642,96 +22505,134 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproj_form *form, const gproj_sys
     return found;
 }
 
+/* The corners that act in this solve; NULL: none do. */
+GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
+    gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
+    return part && gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
+}
+
 /* Does the step to x violate the bound of a corner that does not act yet? Marks those that should. */
-GPROJI_INTERNAL bool gproji_inspect_corners(void *user, gproj_system *s) {
-    gproj_form *form = (gproj_form *)user;
-    gproji_corners *guard = form->corners;
-    if (!(s->group[guard->group].weight > 0) || !gproji_seek_corners(form, s, 0, true)) return false;
-    guard->wakings++;
-    return gproji_seek_corners(form, s, gproji_fmin(gproji_corner_margin * guard->wakings, gproji_corner_margin_most),
+GPROJI_INTERNAL bool gproji_inspect_corners(void *user, const double *before, const double *x) {
+    gproji_part *part = gproji_acting_corners((gproj_form *)user);
+    int32_t rounds;
+    if (!part || !gproji_seek_corners(part, before, x, 0, true)) return false;
+    rounds = ++gproji_corners_of(part)->rounds;
+    return gproji_seek_corners(part, before, x, gproji_fmin(gproji_corner_margin * rounds, gproji_corner_margin_most),
                                false);
 }
 
 /* Lets the marked corners act; returns whether there are new ones. x is that of before the step. */
-GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *s) {
+GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *system) {
+    static const gproj_progress unknown = {0, 0, 0, false}; /* corners do not depend on it */
     gproj_form *form = (gproj_form *)user;
-    gproji_corners *guard = form->corners;
+    gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
+    gproji_corners *guard = gproji_corners_of(part);
+    const gproji_row *rows;
     int32_t corner, row;
     bool woken = false;
     for (corner = 0; corner < 2 * form->mesh->halfedge_count; ++corner) {
         if (!guard->marked[corner]) continue;
         guard->marked[corner] = 0;
-        row = guard->row[corner] < 0 ? gproji_add_corner(form, corner) : guard->row[corner];
-        if (row < 0 || s->group[guard->group].row[row].weight > 0) continue;
-        s->group[guard->group].row[row].weight = sqrt(guard->size[corner / 2]);
+        row = guard->row[corner] < 0 ? gproji_add_corner(part, corner) : guard->row[corner];
+        rows = gproji_group_at(system, part->group)->row;
+        if (row < 0 || rows[row].weight > 0) continue;
+        gproji_place_row(system, part->group, row, sqrt(guard->size[corner / 2]), rows[row].constant);
         woken = true;
     }
-    if (woken) gproji_refresh_corners(form, s, guard->group);
+    if (woken) gproji_refresh_corners(part, system, part->group, &unknown);
     return woken;
 }
 
-/* Has a corner become small, and lost most of its area in the step from `saved`? */
-GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const gproj_system *s) {
+/* Has a corner become small, and lost most of its area in the step to x? */
+GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, const double *x) {
     const gproj_form *form = (const gproj_form *)user;
-    const gproji_corners *guard = form->corners;
+    const gproji_part *part = gproji_acting_corners(form);
     const gproj_mesh *mesh = form->mesh;
     int32_t f, h, c;
-    if (!(s->group[guard->group].weight > 0)) return false;
-    for (f = 0; f < mesh->face_count; ++f) {
+    for (f = 0; part && f < mesh->face_count; ++f) {
+        const double *size = gproji_corners_of(part)->size;
         double m[3], area[3], now, had;
-        gproji_corner_normal(form, s->x, s->saved, f, m);
+        gproji_corner_normal(form, x, before, f, m);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
-            gproji_corner_area(mesh, s->x, h, area);
+            gproji_corner_area(mesh, x, h, area);
             now = gproji_dot3(area, m);
-            if (!(guard->size[h] > 0) || now >= gproji_corner_kept * guard->size[h]) continue;
-            gproji_corner_area(mesh, s->saved, h, area);
-            gproji_corner_normal(form, s->saved, s->saved, f, m);
+            if (!(size[h] > 0) || now >= gproji_corner_kept * size[h]) continue;
+            gproji_corner_area(mesh, before, h, area);
+            gproji_corner_normal(form, before, before, f, m);
             had = gproji_dot3(area, m);
             if (had > 0 && now < gproji_corner_kept * had) return true;
-            gproji_corner_normal(form, s->x, s->saved, f, m);
+            gproji_corner_normal(form, x, before, f, m);
         }
     }
     return false;
 }
 
-/* The guard's group and arrays, once. */
+/* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
+GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
+    static const gproj_progress unknown = {0, 0, 0, false};
+    gproji_corners *guard = gproji_corners_of(part);
+    gproj_system *s = part->form->system;
+    const gproj_mesh *mesh = part->form->mesh;
+    int32_t count = gproji_group_at(s, part->group)->row_count, r;
+    if (!passing) return;
+    gproji_pass_doubles(stream, guard->size, (size_t)mesh->halfedge_count);
+    gproji_pass_doubles(stream, guard->axis, 3 * (size_t)mesh->face_count);
+    gproji_pass_integer(stream, &guard->rounds, 0, INT32_MAX / 2);
+    count = gproji_pass_integer(stream, &count, 0, count);
+    gproji_rest_safeguard(stream, s, part->group);
+    for (r = 0; r < count && !stream->wrong; ++r) {
+        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r];
+        corner = gproji_pass_integer(stream, &corner, 0, 2 * mesh->halfedge_count - 1);
+        if (stream->wrong || guard->row[corner] < 0)
+            gproji_spoil(stream, "a corner has no row");
+        else
+            gproji_pass_safeguard_row(stream, s, part->group, guard->row[corner], passing);
+    }
+    if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, &unknown);
+}
+
+static const gproji_acts gproji_corner_acts = {gproji_refresh_corners, NULL, NULL, gproji_pass_corners};
+static const gproji_rule gproji_corner_rule = {"corners", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_CORNERS,
+                                               &gproji_corner_acts};
+
+/* Adds the group, without rows yet, and its arrays; a form has one. */
 GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
-    size_t corners = 2 * (size_t)form->mesh->halfedge_count, faces = (size_t)form->mesh->face_count;
-    gproji_corners *guard = (gproji_corners *)gproji_take_zeroed(&form->own, 1, sizeof *guard);
-    form->corners = guard;
-    if (guard) {
-        guard->group = -1;
-        guard->size = (double *)gproji_take_zeroed(&form->own, corners / 2, sizeof *guard->size);
-        guard->axis = (double *)gproji_take_zeroed(&form->own, 3 * faces, sizeof *guard->axis);
-        guard->row = (int32_t *)gproji_take(&form->own, corners, sizeof *guard->row);
-        guard->marked = (uint8_t *)gproji_take_zeroed(&form->own, corners, 1);
-    }
-    if (!guard || !guard->size || !guard->axis || !guard->row || !guard->marked) {
-        gproji_fail_memory(&form->error);
-        return;
-    }
-    if (corners > 0) memset(guard->row, -1, corners * sizeof *guard->row);
-    guard->group = gproji_new_group(form, "corners", GPROJ_BOUND, GPROJ_PLACE_FACE, 0, gproji_refresh_corners, form);
-    if (guard->group >= 0) form->system->group[guard->group].safeguard = true;
+    gproji_part *part = gproji_new_part(form, &gproji_corner_rule, 0);
+    gproji_corners *guard = (gproji_corners *)gproji_part_take(part, 1, sizeof *guard);
+    int64_t corners = 2 * (int64_t)form->mesh->halfedge_count;
+    if (!guard) return;
+    part->data = guard;
+    guard->size = (double *)gproji_part_take(part, corners / 2, sizeof *guard->size);
+    guard->axis = (double *)gproji_part_take(part, 3 * (int64_t)form->mesh->face_count, sizeof *guard->axis);
+    guard->row = (int32_t *)gproji_part_take(part, corners, sizeof *guard->row);
+    guard->corner = (int32_t *)gproji_part_take(part, corners, sizeof *guard->corner);
+    guard->marked = (uint8_t *)gproji_part_take(part, corners, 1);
+    if (!gproji_form_ready(form)) return;
+    if (corners > 0) memset(guard->row, -1, (size_t)corners * sizeof *guard->row);
+    if (gproji_add_group(part, 0) >= 0) gproji_declare_role(form->system, part->group, GPROJI_SAFEGUARD, 0);
 }
 
 /* Sets the guard for a solve that begins: no corner acts yet. */
 GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     gproj_schedule schedule = {gproji_corner_weight, 1, INT32_MAX};
     bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    const gproj_mesh *mesh = form->mesh;
+    const double *x;
+    const gproji_group *g;
     gproji_corners *guard;
+    gproji_part *part;
     int32_t r, f, h, c;
-    if (wanted && !form->corners) gproji_add_corners(form);
-    guard = form->corners;
-    if (!guard || !gproji_form_ready(form)) return;
+    if (wanted && !gproji_own_part(form, GPROJI_OWN_CORNERS)) gproji_add_corners(form);
+    part = gproji_own_part(form, GPROJI_OWN_CORNERS);
+    if (!part || !gproji_form_ready(form)) return;
+    guard = gproji_corners_of(part);
     if (!wanted) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, guard->group, schedule);
-    guard->wakings = 0;
-    for (r = 0; r < form->system->group[guard->group].row_count; ++r)
-        form->system->group[guard->group].row[r].weight = 0;
-    for (f = 0; wanted && f < form->mesh->face_count; ++f) { /* the areas that corners have now */
-        const gproj_mesh *mesh = form->mesh;
-        const double *x = gproj_system_values(form->system);
+    gproj_system_set_schedule(form->system, part->group, schedule);
+    guard->rounds = 0;
+    g = gproji_group_at(form->system, part->group);
+    for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
+    x = gproj_system_values(form->system);
+    for (f = 0; wanted && f < mesh->face_count; ++f) { /* the areas that corners have now */
         double area[3], *axis = guard->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
@@ -21754,7 +22655,7 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
 
 /* Finds the three rows of equilibrium with the largest |phi|, of different vertices; -1 if there are fewer. */
 GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3]) {
-    const gproji_group *g = &form->system->group[form->statics->group];
+    const gproji_group *g = gproji_group_at(form->system, form->statics->group);
     double phi[3] = {0, 0, 0};
     int32_t r, k;
     for (k = 0; k < 3; ++k) vertex[k] = -1;
@@ -21775,18 +22676,11 @@ GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t verte
     }
 }
 
-GPROJI_INTERNAL bool gproji_has_group_on(const gproj_form *form, const char *name) {
-    int32_t g;
-    for (g = 0; g < form->system->group_count; ++g)
-        if (strcmp(form->system->group[g].name, name) == 0 && gproji_is_on(form, g)) return true;
-    return false;
-}
-
 /* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a bound on
    forces, does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
-    bool up = gproji_has_group_on(form, gproji_compression_name), down = gproji_has_group_on(form, gproji_tension_name);
+    bool up = gproji_rule_is_on(form, &gproji_compression_rule), down = gproji_rule_is_on(form, &gproji_tension_rule);
     const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
     size_t length = strlen(result->message);
@@ -21809,7 +22703,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     size_t length = strlen(result->message);
-    bool stands = gproji_has_group_on(form, gproji_compression_name);
+    bool stands = gproji_rule_is_on(form, &gproji_compression_rule);
     if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
     gproji_format(result->message + length, sizeof result->message - length,
                   "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
@@ -21825,8 +22719,8 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
     int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
     memset(held, 0, (size_t)coordinates * sizeof *held);
     memset(value, 0, (size_t)coordinates * sizeof *value);
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+        const gproji_group *g = gproji_group_at(form->system, i);
         if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
@@ -21865,7 +22759,7 @@ GPROJI_INTERNAL bool gproji_is_held_bent(const gproj_mesh *mesh, const double *h
 /* Says which faces cannot be flat because of fixed vertices, or that all are fixed. */
 GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
     size_t length = strlen(result->message);
-    double *held = form->system->step, *value = form->system->saved;
+    double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1);
     int32_t f, bent = 0, first = -1, count = gproji_find_held(form, held, value);
     for (f = form->mesh->face_count - 1; gproji_is_on(form, form->planarity) && f >= 0; --f) {
         if (!gproji_is_held_bent(form->mesh, held, value, f)) continue;
@@ -21916,15 +22810,15 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
 
 /* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
 GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
-    double *positive = form->system->step, *negative = form->system->saved, sign;
+    double *positive = gproji_spare(form->system, 0), *negative = gproji_spare(form->system, 1), sign;
     const int32_t *force = form->statics->force;
     int32_t i, r, e, found = -1;
-    memset(positive, 0, (size_t)form->system->variable_count * sizeof *positive);
-    memset(negative, 0, (size_t)form->system->variable_count * sizeof *negative);
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
-        const gproji_part *part = (const gproji_part *)g->refresh_user;
-        bool stress = g->refresh == gproji_refresh_stress;
+    memset(positive, 0, (size_t)gproj_system_variable_count(form->system) * sizeof *positive);
+    memset(negative, 0, (size_t)gproj_system_variable_count(form->system) * sizeof *negative);
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+        const gproji_group *g = gproji_group_at(form->system, i);
+        const gproji_part *part = gproji_part_of(form, i);
+        bool stress = part && part->rule == &gproji_stress_rule;
         if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             if (!(g->row[r].weight > 0)) continue;
@@ -21932,8 +22826,8 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
             if (e < 0) continue;
             if (!stress && sign > 0) positive[force[e]] = 1;
             if (!stress && sign < 0) negative[force[e]] = 1;
-            if (stress && part->factor[r] > 0 && part->bound[0] > 0) positive[force[e]] = 1;
-            if (stress && part->factor[r] < 0 && part->bound[1] < 0) negative[force[e]] = 1;
+            if (stress && part->factor[r] > 0 && part->given[0] > 0) positive[force[e]] = 1;
+            if (stress && part->factor[r] < 0 && part->given[1] < 0) negative[force[e]] = 1;
             if (positive[force[e]] + negative[force[e]] == 2) found = e;
         }
     }
@@ -21952,7 +22846,7 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
             result->message + length, size,
             "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
     } else {
-        for (g = 0; g < form->system->group_count; ++g) {
+        for (g = 0; g < gproj_system_group_count(form->system); ++g) {
             gproj_group_info info = gproj_system_group_info(form->system, g);
             if (info.kind != GPROJ_CONSTRAINT || info.place != GPROJ_PLACE_VERTEX || g == form->statics->group)
                 continue;
@@ -21987,7 +22881,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
     gproji_give(&form->own, load, count, sizeof *load);
-    g = &form->system->group[s->group];
+    g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
         if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
     part = largest > 0 ? worst / largest : 0;
@@ -22026,9 +22920,9 @@ GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     int32_t i, r;
-    for (i = 0; i < form->system->group_count; ++i) {
-        const gproji_group *g = &form->system->group[i];
-        for (r = 0; !g->guard && g->schedule.weight > 0 && r < g->row_count; ++r) {
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+        const gproji_group *g = gproji_group_at(form->system, i);
+        for (r = 0; g->role != GPROJI_GUARD && g->schedule.weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             if (!(row->weight > 0)) continue;
             /* A bound holds the mesh if a mesh that has shrunk to the origin violates it. */
@@ -22131,19 +23025,16 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
    memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners, verdict. */
 
-/* x = the mesh's positions, and normals and axes as they are now. */
+/* x = the mesh's positions, and the start values of all unknowns there. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     double *x = gproj_system_values(form->system);
+    gproji_part *part;
     int32_t i;
     for (i = 0; i < form->mesh->vertex_count; ++i)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, x + 3 * (size_t)i);
     gproji_update_areas(form);
-    for (i = 0; i < form->mesh->face_count; ++i)
-        if (form->normal[i] >= 0) gproji_face_normal(form, i, x + form->normal[i]);
-    for (i = 0; form->axis && i < form->mesh->face_count; ++i)
-        if (form->axis[i] >= 0) gproji_start_axis_point(form, i, x + form->axis[i]);
-    for (i = 0; form->cone && i < form->mesh->vertex_count; ++i)
-        if (form->cone[i] >= 0) gproji_cone_axis(form->mesh, x, i, x + form->cone[i]);
+    for (part = form->part; part; part = part->next)
+        if (part->rule->acts && part->rule->acts->start) part->rule->acts->start(part);
 }
 
 /* The mesh's positions = x; a vertex that is where it was `before` keeps its coordinates to the bit. */
@@ -22160,25 +23051,19 @@ GPROJI_INTERNAL void gproji_store_positions(gproj_form *form, const double *befo
     }
 }
 
-/* Is there a wish with a weight other than the default guidance? */
+/* Is there a wish of the caller's, or for the release of a drag, with a weight? */
 GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
-    int32_t g;
-    for (g = 0; g < gproj_system_group_count(form->system); ++g) {
-        gproj_group_info info = gproj_system_group_info(form->system, g);
-        bool guidance = g == form->closeness || (form->statics && g == form->statics->guidance);
-        if (!guidance && !form->system->group[g].guard && !form->system->group[g].metric && info.kind == GPROJ_WISH &&
-            info.schedule.weight > 0 && info.rows > 0)
+    int32_t i;
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+        const gproji_group *g = gproji_group_at(form->system, i);
+        const gproji_part *part = gproji_part_of(form, i);
+        gproji_own own = part ? part->rule->own : GPROJI_OWN_NONE;
+        if (g->role == GPROJI_ORDINARY && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
+            g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0)
             return true;
     }
     return false;
 }
-
-static const double gproji_settle_shift = 1e-9; /* relative to the trace, in the inverse iteration for normals */
-static const double gproji_settle_free = 1e-4;  /* and for axis points, which are free along the axis */
-enum {
-    GPROJI_SETTLE_ROUNDS = 3,
-    GPROJI_FACES_PER_TASK = 2048 /* at least, unless there are fewer */
-};
 
 /* Half of the iterations, rounded up and at least 1. */
 GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
@@ -22194,23 +23079,27 @@ enum {
     GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
 };
 
+static const gproji_rule gproji_smooth_change_rule = {"smooth change", GPROJ_WISH, GPROJ_PLACE_NONE, GPROJI_OWN_METRIC,
+                                                      NULL};
+static const gproji_rule gproji_force_change_rule = {"force change", GPROJ_WISH, GPROJ_PLACE_NONE, GPROJI_OWN_BRAKE,
+                                                     NULL};
+
 /* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1}, difference[2] = {{0, -1, 1}, {1, -1, -1}};
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
-    int32_t e, i, k, *local;
-    form->smooth = gproji_new_group(form, "smooth change", GPROJ_WISH, GPROJ_PLACE_NONE, 0, NULL, NULL);
-    if (form->smooth < 0) return;
-    s->group[form->smooth].metric = true;
+    int32_t group = gproji_new_group(form, &gproji_smooth_change_rule, 0), e, i, k, *local;
+    if (group < 0) return;
+    gproji_declare_role(s, group, GPROJI_METRIC, 0);
     for (i = 0; i < 3 * mesh->vertex_count && gproji_form_ready(form); ++i) {
-        local = gproji_add_placed_rows(s, form->smooth, 0, 1, 1, &one, 1, 0, -1);
+        local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
         if (!local) return;
         *local = i;
-        s->group[form->smooth].row[i].weight = gproji_metric_near;
+        gproji_place_row(s, group, i, gproji_metric_near, 0);
     }
     for (e = 0; e < mesh->edge_count && gproji_form_ready(form); ++e) {
-        local = gproji_add_placed_rows(s, form->smooth, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
+        local = gproji_add_placed_rows(s, group, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
         for (k = 0; k < 3 && local; ++k, local += 2) {
             local[0] = 3 * mesh->origin[2 * e] + k;
             local[1] = 3 * mesh->origin[2 * e + 1] + k;
@@ -22223,10 +23112,9 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
 GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1};
     gproj_system *s = form->system;
-    int32_t group = gproji_new_group(form, "force change", GPROJ_WISH, GPROJ_PLACE_NONE, 0, NULL, NULL), e;
+    int32_t group = gproji_new_group(form, &gproji_force_change_rule, 0), e;
     if (group < 0) return;
-    form->statics->brake = group;
-    s->group[group].metric = s->group[group].brake = true;
+    gproji_declare_role(s, group, GPROJI_BRAKE, 0);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
         int32_t *local;
         if (form->statics->force[e] < 0) continue;
@@ -22235,18 +23123,49 @@ GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
     }
 }
 
+/* -- the groups that the library adds to a form -- */
+
+static const gproji_rule gproji_drag_fairness_rule = {"drag fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
+                                                      GPROJI_OWN_DRAG_FAIRNESS, NULL};
+static const gproji_rule gproji_drag_handles_rule = {"drag handles", GPROJ_WISH, GPROJ_PLACE_VERTEX,
+                                                     GPROJI_OWN_DRAG_HANDLES, NULL};
+
+GPROJI_INTERNAL void gproji_add_drag_fairness(gproj_form *form) {
+    gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
+}
+
+GPROJI_INTERNAL void gproji_add_drag_handles(gproj_form *form) {
+    gproji_add_points(gproji_new_selected_part(form, &gproji_drag_handles_rule, gproji_select_all), NULL, 0);
+}
+
+/* Adds a group of the library's own, without a weight, if it is missing. */
+GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
+    static void (*const add[GPROJI_OWN_COUNT])(gproj_form *) = {
+        NULL,                         /* the caller's */
+        gproji_add_default_closeness, /* in the order of gproji_own */
+        gproji_add_guard,
+        gproji_add_force_guidance,
+        gproji_add_drag_fairness,
+        gproji_add_drag_handles,
+        gproji_add_metric,
+        gproji_add_corners,
+        gproji_add_force_metric};
+    if (gproji_form_ready(form) && !gproji_own_part(form, own)) add[own](form);
+}
+
 /* Lets steps be measured by their smoothness (see >>loop), or not. */
 GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
     gproj_schedule schedule = {0, 1, 0};
     bool forces = form->statics && gproji_is_on(form, form->statics->group);
-    if (wanted && form->smooth < 0) gproji_add_metric(form);
-    if (wanted && forces && form->statics->brake < 0) gproji_add_force_metric(form);
-    if (!gproji_form_ready(form) || form->smooth < 0) return;
+    const gproji_part *smooth, *brake;
+    if (wanted) gproji_add_own_group(form, GPROJI_OWN_METRIC);
+    if (wanted && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
+    if (!gproji_form_ready(form)) return;
+    smooth = gproji_own_part(form, GPROJI_OWN_METRIC), brake = gproji_own_part(form, GPROJI_OWN_BRAKE);
     schedule.weight = wanted ? gproji_metric_smooth : 0;
-    gproj_system_set_schedule(form->system, form->smooth, schedule);
-    if (!form->statics || form->statics->brake < 0) return;
+    if (smooth) gproj_system_set_schedule(form->system, smooth->group, schedule);
     schedule.weight = wanted && forces ? gproji_metric_force : 0;
-    gproj_system_set_schedule(form->system, form->statics->brake, schedule);
+    if (brake) gproj_system_set_schedule(form->system, brake->group, schedule);
 }
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
@@ -22255,17 +23174,18 @@ GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
    ends, 0 without any. If the nearest mesh is asked for, closeness defines "near". */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
-    int32_t half = gproji_half(iterations), i;
+    int32_t half = gproji_half(iterations), closeness, i;
     gproj_schedule schedule;
-    if (wanted && form->closeness < 0) form->closeness = gproj_add_closeness(form, 0);
-    if (form->closeness >= 0) {
+    if (wanted) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
+    closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
+    if (closeness >= 0) {
         schedule.weight = wanted ? 0.03 : 0;
         schedule.decay = 0.3;
         schedule.last = gproji_min(5, half);
         if (nearest && wanted) schedule.weight = 1, schedule.decay = 0, schedule.last = 0;
-        gproj_system_set_schedule(form->system, form->closeness, schedule);
+        gproj_system_set_schedule(form->system, closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
-            gproj_system_set_row(form->system, form->closeness, i, NULL, -gproj_system_values(form->system)[i]);
+            gproj_system_set_row(form->system, closeness, i, NULL, -gproj_system_values(form->system)[i]);
     }
     if (nearest) return GPROJI_NEAREST_GUIDED;
     return others ? half : wanted ? gproji_min(5, half) : 0;
@@ -22273,76 +23193,45 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
 
 /* -- local unknowns -- */
 
-/* Faces, one after the other, whose local unknowns a thread settles. */
+enum {
+    GPROJI_ENTRIES_PER_TASK = 2048 /* at least, unless there are fewer */
+};
+
 typedef struct gproji_settling {
-    const gproj_form *form;
+    const gproji_part *part;
     double *x;
     int32_t tasks;
 } gproji_settling;
 
-/* Settles a face's normal: the unit n with the least sum (n'e)^2 over the edges e, by a few steps of inverse iteration from
-   the n at hand, which keeps its side. */
-GPROJI_INTERNAL void gproji_settle_normal(const gproj_mesh *mesh, const double *x, int32_t face, double n[3]) {
-    double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3];
-    int32_t h = mesh->face_halfedge[face], c, round;
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
-        gproji_add_square3(e, a);
-    }
-    for (round = 0; round < GPROJI_SETTLE_ROUNDS; ++round) {
-        if (!gproji_solve_square3(a, gproji_settle_shift, n, b)) return;
-        gproji_normalise3(b, n);
-        gproji_copy3(b, n);
-    }
-}
-
-/* Settles the axis point of a circular face: the p with the least sum (e'(m - p))^2 over the edges e with midpoints m, as
-   near as can be to the p at hand, because p is free along the axis. */
-GPROJI_INTERNAL void gproji_settle_axis_point(const gproj_mesh *mesh, const double *x, int32_t face, double p[3]) {
-    double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, e[3], m[3], change[3];
-    int32_t h = mesh->face_halfedge[face], c, k;
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
-        gproji_sub3(w, v, e);
-        for (k = 0; k < 3; ++k) m[k] = (v[k] + w[k]) / 2 - p[k];
-        gproji_add_square3(e, a);
-        gproji_add_scaled3(gproji_dot3(e, m), e, b);
-    }
-    if (gproji_solve_square3(a, gproji_settle_free, b, change)) gproji_add_scaled3(1, change, p);
-}
-
 GPROJI_INTERNAL void gproji_settle_task(void *data, int32_t task) {
     const gproji_settling *settling = (const gproji_settling *)data;
-    const gproj_form *form = settling->form;
-    int32_t f = gproji_chunk_start(form->mesh->face_count, settling->tasks, task);
-    int32_t end = gproji_chunk_start(form->mesh->face_count, settling->tasks, task + 1);
-    for (; f < end; ++f) {
-        if (form->normal[f] >= 0) gproji_settle_normal(form->mesh, settling->x, f, settling->x + form->normal[f]);
-        if (form->axis && form->axis[f] >= 0)
-            gproji_settle_axis_point(form->mesh, settling->x, f, settling->x + form->axis[f]);
+    int32_t count = settling->part->count;
+    settling->part->rule->acts->settle(settling->part, settling->x, gproji_chunk_start(count, settling->tasks, task),
+                                       gproji_chunk_start(count, settling->tasks, task + 1));
+}
+
+/* Gives all local unknowns their best values for the vertices at x. */
+GPROJI_INTERNAL void gproji_settle_form(void *user, double *x) {
+    const gproj_form *form = (const gproj_form *)user;
+    gproji_settling settling;
+    settling.x = x;
+    for (settling.part = form->part; settling.part; settling.part = settling.part->next) {
+        if (!settling.part->rule->acts || !settling.part->rule->acts->settle) continue;
+        settling.tasks = gproji_max(1, settling.part->count / GPROJI_ENTRIES_PER_TASK);
+        gproji_for(&form->host.parallel, settling.tasks, gproji_settle_task, &settling);
     }
 }
 
-/* Gives normals of faces, axis points of circles and axes of cones their best values. */
-GPROJI_INTERNAL void gproji_settle_form(void *user, gproj_system *system) {
-    const gproj_form *form = (const gproj_form *)user;
-    gproji_settling settling;
-    int32_t v;
-    settling.form = form, settling.x = system->x;
-    settling.tasks = gproji_max(1, form->mesh->face_count / GPROJI_FACES_PER_TASK);
-    gproji_for(&form->host.parallel, settling.tasks, gproji_settle_task, &settling);
-    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v)
-        if (form->cone[v] >= 0) gproji_cone_axis(form->mesh, system->x, v, system->x + form->cone[v]);
-}
-
-/* The hooks that a form adds to its system's steps in a smooth solve. */
+/* The hooks that a form adds to its system's steps. */
 GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
+    const gproj_solve_options *options = &form->solve.loop.options;
     gproji_hooks hooks;
     memset(&hooks, 0, sizeof hooks);
     hooks.user = form;
-    if (!form->solve.loop.options.smooth || form->solve.loop.options.nearest) return hooks;
+    if (options->nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks.refuse = gproji_refuse_turned;
+    if (!options->smooth || options->nearest) return hooks;
     if (gproji_is_on(form, form->planarity)) hooks.settle = gproji_settle_form;
-    if (!form->corners) return hooks;
+    if (!gproji_own_part(form, GPROJI_OWN_CORNERS)) return hooks;
     hooks.inspect = gproji_inspect_corners;
     hooks.wake = gproji_wake_corners;
     hooks.refuse = gproji_refuse_corners;
@@ -22374,22 +23263,20 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
-    gproji_restart_gliding(form);
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
-    gproji_restart_planes(form);
     guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || smooth, nearest);
     gproji_set_metric(form, smooth && !options->skip_closeness);
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
     gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
-    /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away from it,
-       and the longer the farther: then they get 9 at most. */
-    solve->default_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
-    if (form->statics && gproji_is_on(form, form->statics->group))
-        solve->default_last = gproji_min(9, solve->default_last);
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
+    /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away from it,
+       and the longer the farther: then they get 9 at most. */
+    solve->loop.wish_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
+    if (form->statics && gproji_is_on(form, form->statics->group))
+        solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
@@ -22410,8 +23297,8 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return;
-    if (gproji_has_group_on(form, "circularity")) gproji_tell_spheres(form, result);
-    if (gproji_has_group_on(form, "conicality")) gproji_tell_flat_cones(form, result);
+    if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
+    if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
 }
 
 /* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has ended. */
@@ -22440,11 +23327,8 @@ GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
     gproji_solve *solve = &form->solve;
     bool ended;
-    form->system->default_last = solve->default_last;
-    form->system->hooks = gproji_form_hooks(form);
+    solve->loop.hooks = gproji_form_hooks(form);
     ended = gproji_run(&solve->loop, seconds);
-    memset(&form->system->hooks, 0, sizeof form->system->hooks);
-    form->system->default_last = 0;
     if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
     if (ended) solve->on = false, solve->finished = true;
     if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
@@ -22465,7 +23349,7 @@ GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations
     gproj_result result;
     if (!gproji_begin_solve(form, iterations, options)) return form->solve.loop.result;
     form->solve.loop.earlier = earlier;
-    if (form->solve.loop.stiff) form->system->stiffness = stiffness;
+    if (form->solve.loop.stiff) gproji_begin_stiff(form->system, stiffness);
     result = gproji_run_solve(form, -1);
     result.iterations += earlier;
     return result;
@@ -22486,12 +23370,11 @@ GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_resul
 
 /* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
 GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
-    memcpy(form->system->x, end, (size_t)form->system->variable_count * sizeof *end);
-    gproji_restart_gliding(form);
-    form->system->solving = true;
-    gproji_refresh_groups(form->system);
-    gproji_evaluate(form->system);
-    form->system->solving = false;
+    gproji_part *part;
+    for (part = form->part; part; part = part->next) /* what refreshes keep, such as segments of curves */
+        if (part->rule->acts && part->rule->acts->start) part->rule->acts->start(part);
+    memcpy(gproj_system_values(form->system), end, (size_t)gproj_system_variable_count(form->system) * sizeof *end);
+    gproji_see_here(form->system);
     gproji_store_positions(form, form->before);
 }
 
@@ -22500,7 +23383,8 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
     gproj_system *s = form->system;
-    size_t count = (size_t)s->variable_count, positions = 3 * (size_t)form->mesh->vertex_count;
+    double *x = gproj_system_values(s);
+    size_t count = (size_t)gproj_system_variable_count(s), positions = 3 * (size_t)form->mesh->vertex_count;
     double *start = (double *)gproji_take(&form->own, count, sizeof *start);
     double *end =
         (double *)gproji_take(&form->own, count, sizeof *end); /* of the best attempt, if it was not the last */
@@ -22515,7 +23399,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_fail_memory(&form->error);
         return gproji_failed_result(&form->error);
     }
-    memcpy(start, s->x, count * sizeof *start);
+    memcpy(start, x, count * sizeof *start);
     result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
     for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result); ++attempt) {
         gproj_result other;
@@ -22524,9 +23408,9 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
         /* 2. Back to the start, forces included, and again. */
-        if (here) memcpy(end, s->x, count * sizeof *end);
+        if (here) memcpy(end, x, count * sizeof *end);
         memcpy(form->mesh->position, form->before, positions * sizeof *form->before);
-        memcpy(s->x, start, count * sizeof *start);
+        memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
         other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
         used = other.iterations;
@@ -22568,7 +23452,7 @@ GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gpro
 GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
 GPROJ_API void gproj_step_stop(gproj_form *form) {
-    if (form && form->system && !form->system->solving) form->solve.on = form->solve.finished = false;
+    if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;
 }
 
 /* Refuses a step; if a solve is on it ends with that, for a program may step for as long as it is on. */
@@ -22600,11 +23484,9 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
    >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
    statics, guard, corners, solve.
 
-   One description of the format, gproji_pass_state, counts, writes, checks and reads it, by the stream's mode. Integers
-   are little-endian; a double is its 64 bits, but coefficients, constants and weights, which mostly are small numbers of
-   eighths, have one byte for these.
+   gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstD", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstE", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
@@ -22614,421 +23496,106 @@ GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
 
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
-    GPROJI_STATE_TAIL = 8,
-    GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to its negative, have one byte */
-    GPROJI_SMALL_NONE = 255  /* the byte of other numbers; 8 follow */
+    GPROJI_STATE_TAIL = 8
 };
 
-/* -- the groups that the library adds to a form -- */
-
-/* These numbers stand in saved states. */
-typedef enum gproji_own {
-    GPROJI_OWN_NONE, /* the caller's */
-    GPROJI_OWN_CLOSENESS,
-    GPROJI_OWN_GUARD,
-    GPROJI_OWN_FORCES,
-    GPROJI_OWN_DRAG_FAIRNESS,
-    GPROJI_OWN_DRAG_HANDLES,
-    GPROJI_OWN_METRIC,
-    GPROJI_OWN_CORNERS,
-    GPROJI_OWN_BRAKE,
-    GPROJI_OWN_COUNT
-} gproji_own;
-
-/* The group of this kind; -1: the form has none. */
-GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
-    switch (own) {
-    case GPROJI_OWN_CLOSENESS: return form->closeness;
-    case GPROJI_OWN_GUARD: return form->guard ? form->guard->group : -1;
-    case GPROJI_OWN_FORCES: return form->statics ? form->statics->guidance : -1;
-    case GPROJI_OWN_DRAG_FAIRNESS: return form->release.fairness;
-    case GPROJI_OWN_DRAG_HANDLES: return form->release.handles;
-    case GPROJI_OWN_METRIC: return form->smooth;
-    case GPROJI_OWN_CORNERS: return form->corners ? form->corners->group : -1;
-    case GPROJI_OWN_BRAKE: return form->statics ? form->statics->brake : -1;
-    default: return -1;
-    }
-}
-
-/* The kind of a group; none for the caller's. */
-GPROJI_INTERNAL gproji_own gproji_kind_of_group(const gproj_form *form, int32_t group) {
-    int32_t own;
-    for (own = 1; own < GPROJI_OWN_COUNT; ++own)
-        if (gproji_own_group(form, (gproji_own)own) == group) return (gproji_own)own;
-    return GPROJI_OWN_NONE;
-}
-
-/* Adds a group of this kind without a weight, if it is missing. */
-GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
-    if (!gproji_form_ready(form) || gproji_own_group(form, own) >= 0) return;
-    switch (own) {
-    case GPROJI_OWN_CLOSENESS: form->closeness = gproj_add_closeness(form, 0); break;
-    case GPROJI_OWN_GUARD: gproji_add_guard(form); break;
-    case GPROJI_OWN_METRIC: gproji_add_metric(form); break;
-    case GPROJI_OWN_CORNERS:
-        if (!form->corners) gproji_add_corners(form);
-        break;
-    case GPROJI_OWN_FORCES: gproji_add_force_guidance(form); break;
-    case GPROJI_OWN_BRAKE: gproji_add_force_metric(form); break;
-    case GPROJI_OWN_DRAG_FAIRNESS:
-        form->release.fairness = gproj_add_fairness(form, 0);
-        if (form->release.fairness >= 0)
-            gproji_set_group_name(&form->system->group[form->release.fairness], "drag fairness");
-        break;
-    case GPROJI_OWN_DRAG_HANDLES:
-        form->release.handles = gproji_add_points(form, gproji_new_selected_part(form, gproji_select_all),
-                                                  "drag handles", GPROJ_WISH, NULL, 0);
-        break;
-    default: break;
-    }
-}
-
-/* -- a stream of numbers -- */
-
-typedef enum gproji_mode {
-    GPROJI_COUNT,
-    GPROJI_WRITE,
-    GPROJI_CHECK,
-    GPROJI_READ
-} gproji_mode;
-
-typedef struct gproji_stream {
-    gproji_mode mode;
-    uint8_t *out;      /* written */
-    const uint8_t *in; /* checked or read */
-    size_t at, size;
-    const char *wrong; /* an error; NULL: none */
-} gproji_stream;
-
-GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
-
-/* Notes an error, except while counting, which must go on to the end. */
-GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
-    if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
-}
-
-GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream, gproj_form *form) {
-    gproji_fail_memory(&form->error);
-    gproji_spoil(stream, "out of memory");
-}
-
-GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
-    uint64_t value = 0;
-    int32_t i;
-    for (i = 0; i < bytes; ++i) value |= (uint64_t)in[i] << 8 * i;
-    return value;
-}
-
-/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 behind the end. */
-GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
-    size_t at = stream->at;
-    int32_t i;
-    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
-        gproji_spoil(stream, "it ends too early");
-        return 0;
-    }
-    for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
-    if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
-    stream->at += (size_t)bytes;
-    return value;
-}
-
-/* The following pass a value, set it when it is read, and return the passed one. */
-
-GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
-    int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
-    if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
-    if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
-    if (stream->mode == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
-    return (int32_t)passed;
-}
-
-GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
-    uint64_t passed = gproji_pass_bytes(stream, *value, 1);
-    if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
-    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
-    return passed == 1;
-}
-
-/* A number between `least` and `most`, which may be infinite. */
-GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
-    uint64_t bits;
-    double passed;
-    memcpy(&bits, value, sizeof bits);
-    bits = gproji_pass_bytes(stream, bits, 8);
-    memcpy(&passed, &bits, sizeof passed);
-    if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
-    if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed;
-    return passed;
-}
-
-GPROJI_INTERNAL void gproji_pass_doubles(gproji_stream *stream, double *value, size_t count) {
-    size_t i;
-    for (i = 0; i < count && !stream->wrong; ++i) gproji_pass_double(stream, &value[i], -DBL_MAX, DBL_MAX);
-}
-
-/* Passes a number that often is a small one of eighths, in one byte; others have 8 bytes more. */
-GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, double least, double most) {
-    uint64_t small = GPROJI_SMALL_NONE;
-    double passed;
-    if (!gproji_comes_in(stream) && 8 * fabs(*value) <= (double)GPROJI_SMALL_MOST) {
-        int32_t whole = (int32_t)(8 * *value);
-        /* -0 has 8 bytes: as eighths it would lose the sign. */
-        if (whole == 8 * *value && !(whole == 0 && 1 / *value < 0)) small = (uint64_t)(whole + GPROJI_SMALL_MOST);
-    }
-    small = gproji_pass_bytes(stream, small, 1);
-    passed = (double)((int32_t)small - (int32_t)GPROJI_SMALL_MOST) / 8;
-    if (small == GPROJI_SMALL_NONE) {
-        gproji_pass_double(stream, value, least, most);
-    } else if (!(passed >= least && passed <= most)) {
-        gproji_spoil(stream, "a number is out of its range");
-    } else if (stream->mode == GPROJI_READ) {
-        *value = passed;
-    }
-}
-
 /* -- the state -- */
-
-/* Passes the rows' weights and, if `numbers`, their constants and coefficients. */
-GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_form *form, gproji_group *g, bool numbers) {
-    bool shared = g->share != NULL;
-    uint32_t t;
-    int32_t r;
-    for (r = 0; numbers && r < g->row_count; ++r) gproji_pass_number(stream, &g->row[r].constant, -DBL_MAX, DBL_MAX);
-    for (r = 0; numbers && r < g->row_count; ++r)
-        for (t = 0; t < g->row[r].terms && !stream->wrong; ++t) {
-            double *a = &g->term[g->row[r].term + t].a, now = *a;
-            gproji_pass_number(stream, &now, -DBL_MAX, DBL_MAX);
-            if (memcmp(&now, a, sizeof now) == 0) continue;
-            /* Terms that rows share stay shared until a different coefficient comes in. */
-            if (g->common && !gproji_own_terms(form->system, g)) {
-                gproji_spoil_memory(stream, form);
-                return;
-            }
-            gproji_set_coefficient(g, &g->row[r], t, now);
-        }
-    for (r = 0; r < g->row_count && !stream->wrong; ++r) gproji_pass_number(stream, &g->row[r].weight, 0, 1e100);
-    /* The factors of weights, if elements have weights. */
-    if (!gproji_pass_bool(stream, &shared)) {
-        for (r = 0; stream->mode == GPROJI_READ && g->share && r < g->row_count; ++r)
-            g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
-        return;
-    }
-    if (gproji_comes_in(stream) && !gproji_share_weights(form->system, g)) {
-        gproji_spoil_memory(stream, form);
-        return;
-    }
-    for (r = 0; r < g->row_count && !stream->wrong; ++r) {
-        gproji_pass_number(stream, &g->share[r].own, 0, 1e50);
-        gproji_pass_number(stream, &g->share[r].factor, 0, 1e50);
-    }
-}
-
-/* The part of a solve in frames that is passed. */
-typedef enum gproji_passing {
-    GPROJI_PASS_NONE,
-    GPROJI_PASS_SOLVE,
-    GPROJI_PASS_NEAREST /* with multipliers */
-} gproji_passing;
-
-/* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
-GPROJI_INTERNAL void gproji_pass_corner_rows(gproji_stream *stream, gproj_form *form, gproji_group *g,
-                                             gproji_passing passing) {
-    gproji_corners *guard = form->corners;
-    int32_t count = g->row_count, r, end = 2 * form->mesh->halfedge_count;
-    double none = 0;
-    gproji_pass_doubles(stream, guard->size, (size_t)form->mesh->halfedge_count);
-    gproji_pass_doubles(stream, guard->axis, 3 * (size_t)form->mesh->face_count);
-    gproji_pass_integer(stream, &guard->wakings, 0, INT32_MAX / 2);
-    count = gproji_pass_integer(stream, &count, 0, g->row_count);
-    /* The form may have rows that the state does not have: they get no weight. */
-    for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
-    for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r], row;
-        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
-        row = stream->wrong ? -1 : guard->row[corner];
-        if (row < 0) {
-            gproji_spoil(stream, "a corner has no row");
-            return;
-        }
-        gproji_pass_number(stream, &g->row[row].weight, 0, 1e100);
-        gproji_pass_bool(stream, &g->row[row].active);
-        if (passing == GPROJI_PASS_NEAREST)
-            gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
-    }
-    if (stream->mode == GPROJI_READ) gproji_refresh_corners(form, form->system, guard->group);
-}
-
-/* Passes a group: during a solve all numbers; else neither those in rows that a refresh makes anew, nor any in a group
-   that the library has added (`own`), as they are set when a solve begins. */
-GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_form *form, gproji_group *g, bool own,
-                                       gproji_passing passing) {
-    gproj_schedule schedule = g->schedule;
-    bool idle = g->idle, reading = stream->mode == GPROJI_READ, same;
-    int32_t closing = g->closing, r;
-    double none = 0;
-    gproji_pass_number(stream, &schedule.weight, 0, 1e50);
-    gproji_pass_number(stream, &schedule.decay, 0, 1);
-    gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
-    if (reading) g->schedule = schedule;
-    gproji_pass_number(stream, &g->weight, 0, 1e50);
-    /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows close, and
-       which rows of the guard are dormant: if they change, it is decided anew. */
-    gproji_pass_bool(stream, &idle);
-    gproji_pass_integer(stream, &closing, 0, g->row_count);
-    same = idle == g->idle && closing == g->closing;
-    if (reading) g->idle = idle, g->closing = closing;
-    if (g->guard) gproji_pass_integer(stream, &g->wakings, 0, INT32_MAX / 2);
-    for (r = 0; g->guard && r < g->row_count && !stream->wrong; ++r) {
-        bool waits = g->row[r].waits;
-        gproji_pass_bool(stream, &waits);
-        same = same && waits == g->row[r].waits;
-        if (reading) g->row[r].waits = waits;
-    }
-    if (reading && !same) form->system->schur.stale = true;
-    if (own && !passing) return;
-    if (g->safeguard) {
-        gproji_pass_corner_rows(stream, form, g, passing);
-        return;
-    }
-    gproji_pass_rows(stream, form, g, passing || !g->refresh);
-    for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) {
-        if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[r].active);
-        if (passing == GPROJI_PASS_NEAREST)
-            gproji_pass_number(stream, g->multiplier ? &g->multiplier[r].y : &none, -DBL_MAX, DBL_MAX);
-    }
-}
 
 /* Passes a solve in frames, if one is on. */
 GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
     gproji_solve solve = form->solve;
-    gproji_loop *loop = &solve.loop;
-    gproj_system *s = form->system;
     gproji_passing passing;
-    bool nearest, begun, ready = s->compiled && s->sum;
-    int32_t i;
     if (!gproji_pass_bool(stream, &solve.on)) {
         if (stream->mode == GPROJI_READ) form->solve.on = form->solve.finished = false;
         return GPROJI_PASS_NONE;
     }
-    gproji_pass_integer(stream, &solve.default_last, 0, INT32_MAX);
-    gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
-    gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
-    gproji_pass_double(stream, &loop->options.time_budget, 0, DBL_MAX);
-    gproji_pass_bool(stream, &loop->options.skip_damping);
-    gproji_pass_bool(stream, &loop->options.skip_closeness);
-    gproji_pass_bool(stream, &loop->options.skip_guard);
-    nearest = gproji_pass_bool(stream, &loop->options.nearest);
-    gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
-    gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
-    begun = gproji_pass_bool(stream, &loop->begun);
-    gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX / 2);
-    gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
-    gproji_pass_double(stream, &loop->best.residual, 0, HUGE_VAL);
-    gproji_pass_double(stream, &loop->best.merit, 0, HUGE_VAL);
-    gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
-    gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
-    gproji_pass_bool(stream, &loop->minimum);
-    gproji_pass_bool(stream, &loop->options.smooth);
-    gproji_pass_bool(stream, &loop->stiff);
-    gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
-    gproji_pass_integer(stream, &s->late, 0, INT32_MAX / 2);
-    passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
-    /* Multipliers that are about to come in need their room. */
-    for (i = 0; i < s->group_count; ++i) ready = ready && s->group[i].multiplier;
-    if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
-        !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
-        gproji_spoil_memory(stream, form);
+    passing = gproji_pass_loop(stream, form->system, &solve.loop);
     if (stream->mode != GPROJI_READ) return passing;
-    if (!form->solve.on) loop->options.on_iteration = NULL, loop->options.user = NULL;
-    loop->system = s;
-    loop->restored = loop->begun;
-    loop->paused = solve.finished = false;
-    memset(loop->result.seconds, 0, sizeof loop->result.seconds);
-    solve.structure = gproji_structure_of(s);
+    if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
+    solve.finished = false;
+    solve.structure = gproji_structure_of(form->system);
     form->solve = solve;
     return passing;
 }
 
-/* Passes the groups, each behind a byte for the kind; groups that do not come in lose their weight. */
+/* Passes a group, and what its rule keeps. */
+GPROJI_INTERNAL void gproji_pass_part(gproji_stream *stream, gproj_form *form, int32_t group, gproji_passing passing) {
+    gproji_part *part = gproji_part_of(form, group);
+    bool own = part && part->rule->own != GPROJI_OWN_NONE;
+    gproji_pass_group(stream, form->system, group, own, passing);
+    if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
+}
+
+/* Whom a group belongs to. */
+GPROJI_INTERNAL gproji_own gproji_own_of(const gproj_form *form, int32_t group) {
+    const gproji_part *part = gproji_part_of(form, group);
+    return part ? part->rule->own : GPROJI_OWN_NONE;
+}
+
+/* Passes the groups, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
-    gproj_system *s = form->system;
-    int32_t count = s->group_count, k, theirs = -1, own;
+    static const gproj_schedule off = {0, 0, 0};
+    int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
     count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_kind_of_group(form, k), group;
+        int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_own_of(form, k), group = -1;
         kind = (int32_t)gproji_pass_bytes(stream, (uint64_t)kind, 1);
-        if (kind == GPROJI_OWN_NONE)
-            for (++theirs; theirs < s->group_count && gproji_kind_of_group(form, theirs); ++theirs) continue;
-        group = kind == GPROJI_OWN_NONE   ? theirs
-                : kind < GPROJI_OWN_COUNT ? gproji_own_group(form, (gproji_own)kind)
-                                          : -1;
-        if (group < 0 || group >= s->group_count || (kind && seen[kind])) {
+        if (kind == GPROJI_OWN_NONE) {
+            for (++theirs; theirs < have && gproji_own_of(form, theirs); ++theirs) continue;
+            group = theirs;
+        } else if (kind < GPROJI_OWN_COUNT && !seen[kind]) {
+            group = gproji_own_group(form, (gproji_own)kind);
+            seen[kind] = true;
+        }
+        if (group < 0 || group >= have)
             gproji_spoil(stream, "a group is not one of the form");
-            return;
-        }
-        seen[kind] = true;
-        gproji_pass_group(stream, form, &s->group[group], kind != GPROJI_OWN_NONE, passing);
-        if (passing && kind == GPROJI_OWN_GUARD) {
-            gproji_pass_bool(stream, &form->guard_on);
-            gproji_pass_doubles(stream, form->guard_area, 3 * (size_t)form->guard->count);
-        }
+        else
+            gproji_pass_part(stream, form, group, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
-            s->group[gproji_own_group(form, (gproji_own)own)].schedule.weight = 0;
+            gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), off);
 }
 
-/* Passes the kinds of the groups that the library has added, and the corners that have rows, in their order. The form
-   gets those that come in. */
+/* Passes whom the library's own groups belong to, and the corners that have rows, in their order. The form gets those that
+   come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], end = 2 * form->mesh->halfedge_count, count = 0, k;
     bool in = gproji_comes_in(stream);
-    const gproji_corners *guard;
-    for (k = 0; !in && k < form->system->group_count; ++k)
-        if (gproji_kind_of_group(form, k)) list[count++] = (int32_t)gproji_kind_of_group(form, k);
+    gproji_part *part;
+    for (k = 0; !in && k < gproj_system_group_count(form->system); ++k)
+        if (gproji_own_of(form, k)) list[count++] = (int32_t)gproji_own_of(form, k);
     count = gproji_pass_integer(stream, &count, 0, GPROJI_OWN_COUNT - 1);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t kind = (int32_t)gproji_pass_bytes(stream, in ? 0 : (uint64_t)list[k], 1);
-        bool of_forces = kind == GPROJI_OWN_FORCES || kind == GPROJI_OWN_BRAKE;
-        if (in && kind < GPROJI_OWN_COUNT && (form->statics || !of_forces))
-            gproji_add_own_group(form, (gproji_own)kind);
+        int32_t own = (int32_t)gproji_pass_bytes(stream, in ? 0 : (uint64_t)list[k], 1);
+        bool of_forces = own == GPROJI_OWN_FORCES || own == GPROJI_OWN_BRAKE;
+        if (in && own > GPROJI_OWN_NONE && own < GPROJI_OWN_COUNT && (form->statics || !of_forces))
+            gproji_add_own_group(form, (gproji_own)own);
     }
-    guard = form->corners;
-    count = guard && guard->group >= 0 ? form->system->group[guard->group].row_count : 0;
-    count = gproji_pass_integer(stream, &count, 0, guard ? end : 0);
+    part = gproji_own_part(form, GPROJI_OWN_CORNERS);
+    count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
+    count = gproji_pass_integer(stream, &count, 0, part ? end : 0);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t corner = in ? 0 : guard->corner[k];
+        int32_t corner = in ? 0 : gproji_corners_of(part)->corner[k];
         corner = gproji_pass_integer(stream, &corner, 0, end - 1);
         if (!in || stream->wrong) continue;
         if (form->mesh->face[corner / 2] < 0)
             gproji_spoil(stream, "a corner is not one of a face");
-        else if (guard->row[corner] < 0)
-            gproji_add_corner(form, corner);
+        else if (gproji_corners_of(part)->row[corner] < 0)
+            gproji_add_corner(part, corner);
     }
 }
 
 /* Passes the state between head and checksum. */
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
     gproji_passing passing;
-    gproji_part *part;
-    int32_t i;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
-    gproji_pass_doubles(stream, form->system->x, (size_t)form->system->variable_count);
+    gproji_pass_doubles(stream, gproj_system_values(form->system), (size_t)gproj_system_variable_count(form->system));
     passing = gproji_pass_solve(stream, form);
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
-    for (part = form->part; part; part = part->next)
-        for (i = 0; part->segment && i < part->count && !stream->wrong; ++i) {
-            const gproj_curve *curve = part->curve;
-            if (!curve && !gproji_stays(part, i)) curve = part->own_curve[part->curve_of[i]];
-            gproji_pass_integer(stream, &part->segment[i], -1, curve ? curve->segment_count - 1 : -1);
-        }
     if (form->statics) {
         gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
         gproji_pass_bool(stream, &form->statics->started);
@@ -23038,48 +23605,14 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
 
 /* -- the form that it belongs to -- */
 
-/* A hash by 64 bits at once, with the constants of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and
-   in the hash: a change in one value never goes unnoticed. */
-GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
-
-GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
-    hash = (hash ^ value) * 1099511628211u;
-    return hash ^ hash >> 29;
-}
-
-GPROJI_INTERNAL uint64_t gproji_hash_doubles(uint64_t hash, const double *value, size_t count) {
-    size_t i;
-    uint64_t bits;
-    for (i = 0; value && i < count; ++i) {
-        memcpy(&bits, &value[i], sizeof bits);
-        hash = gproji_hash_step(hash, bits);
-    }
-    return gproji_hash_step(hash, value ? count : 0);
-}
-
-GPROJI_INTERNAL uint64_t gproji_hash_integers(uint64_t hash, const int32_t *value, size_t count) {
-    size_t i;
-    for (i = 0; i < count; ++i) hash = gproji_hash_step(hash, (uint32_t)value[i]);
-    return gproji_hash_step(hash, count);
-}
-
-GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, size_t count) {
-    size_t i;
-    for (i = 0; i + 8 <= count; i += 8) hash = gproji_hash_step(hash, gproji_get_bytes(byte + i, 8));
-    for (; i < count; ++i) hash = gproji_hash_step(hash, byte[i]);
-    return hash;
-}
-
 /* Hashes all that a form is made of, without the groups that the library adds. */
 GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
-    const gproj_system *s = form->system;
     const gproji_statics *statics = form->statics;
     const gproji_part *part;
     size_t vertices = (size_t)mesh->vertex_count;
-    uint64_t hash = gproji_hash_start(), terms;
-    int32_t i, r;
-    uint32_t t;
+    uint64_t hash = gproji_hash_start();
+    int32_t i;
     /* 1. The mesh with the positions that the form was made with, and the variables. */
     hash = gproji_hash_integers(hash, mesh->face_degree, (size_t)mesh->face_count);
     hash = gproji_hash_integers(hash, mesh->origin, (size_t)mesh->halfedge_count);
@@ -23087,34 +23620,18 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     hash = gproji_hash_doubles(hash, form->original, 3 * vertices);
     hash = gproji_hash_doubles(hash, form->centre, 3);
     hash = gproji_hash_doubles(hash, &form->scale, 1);
-    hash = gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
-    /* 2. Groups: name, kind, rows with their terms' variables. */
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        if (gproji_kind_of_group(form, i)) continue;
-        hash = gproji_hash_bytes(hash, (const uint8_t *)g->name, sizeof g->name);
-        hash = gproji_hash_step(hash, (uint64_t)g->kind << 8 | (uint64_t)g->place);
-        hash = gproji_hash_step(hash, (uint64_t)g->global << 1 | (uint64_t)(g->refresh != NULL));
-        for (r = 0, terms = 0; r < g->row_count; ++r) {
-            terms += g->row[r].terms;
-            hash = gproji_hash_step(hash, terms << 32 ^ (uint32_t)g->row[r].element);
-        }
-        for (r = 0; r < g->row_count; ++r)
-            for (t = 0; t < g->row[r].terms; ++t) {
-                const gproj_term *term = g->term + g->row[r].term + t;
-                uint32_t first = (uint32_t)gproji_variable_of(g, &g->row[r], term->i);
-                uint32_t second = (uint32_t)gproji_variable_of(g, &g->row[r], term->j);
-                hash = gproji_hash_step(hash, (uint64_t)first << 32 | second);
-            }
-        hash = gproji_hash_step(hash, (uint64_t)g->row_count);
+    hash = gproji_hash_variables(hash, form->system);
+    /* 2. Groups. */
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+        part = gproji_part_of(form, i);
+        if (!part || part->rule->own == GPROJI_OWN_NONE)
+            hash = gproji_hash_group(hash, gproji_group_at(form->system, i));
     }
     /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
-        if (gproji_kind_of_group(form, part->group)) continue;
+        if (part->rule->own != GPROJI_OWN_NONE) continue;
         hash = gproji_hash_integers(hash, part->vertex, (size_t)part->count);
-        hash = gproji_hash_doubles(hash, &part->target, 1);
-        hash = gproji_hash_doubles(hash, part->bound, 2);
-        hash = gproji_hash_doubles(hash, part->price, 2);
+        hash = gproji_hash_doubles(hash, part->given, 4);
         hash = gproji_hash_doubles(hash, part->factor, (size_t)part->capacity);
     }
     if (!statics) return hash;
@@ -23128,7 +23645,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'D'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'E'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
@@ -23195,20 +23712,22 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
     /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
     gproji_pass_state(&check, form);
+    if (check.exhausted) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (check.wrong || check.at != in.size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "state: it is damaged: %s",
                            check.wrong ? check.wrong : "more follows than it should have");
     in.mode = GPROJI_READ;
     gproji_pass_state(&in, form);
-    form->system->changed = false;
+    if (in.exhausted) return gproji_fail_memory(&form->error), gproji_pass_on(error, &form->error);
+    gproji_end_restoring(form->system);
     return GPROJ_OK;
 }
 
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error) {
     gproji_error_clear(error);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
-    if (form->system->solving || form->drag)
+    if (gproji_is_solving(form->system) || form->drag)
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "state: a solve or a drag is under way, which must end before");
     return gproji_read_state(form, state, size, error);
@@ -23232,7 +23751,6 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
 static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
 static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, relative to a free one, does not move */
-static const double gproji_drag_touch = 1e-6;   /* bounds so near to their limit stay there */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
@@ -23293,80 +23811,24 @@ GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double 
     }
 }
 
-/* Linearises at x, where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
-   Returns the residual. */
-GPROJI_INTERNAL double gproji_see_constraints(gproj_drag *drag) {
-    gproj_system *s = drag->form->system;
-    gproji_loop loop;
-    int32_t i, r;
-    memset(&loop, 0, sizeof loop);
-    loop.system = s;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        g->weight = g->kind != GPROJ_WISH && !g->guard && gproji_weight_in(s, g, 1) > 0;
-    }
-    s->solving = true;
-    gproji_linearise(&loop);
-    s->solving = false;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r)
-            g->row[r].active = g->weight > 0 && g->row[r].weight > 0 && !(g->row[r].phi > gproji_drag_touch);
-    }
-    return loop.standing.residual;
-}
-
 /* Finds the responses Q by (1). restore: `base` moves by a step that takes the residual off, too. False: the matrix
    cannot be factored. */
 GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
-    gproj_system *s = drag->form->system;
-    size_t n = (size_t)drag->variables, vertices = 3 * (size_t)drag->form->mesh->vertex_count, i;
-    double heavy = gproji_drag_epsilon * gproji_drag_epsilon, light = heavy * gproji_drag_light * gproji_drag_light;
-    int32_t first = s->wide_count > 0 ? 0 : gproji_min(s->cholesky->batch, drag->columns), wide = 0, round, j;
-    gproji_loading loading;
+    size_t n = (size_t)drag->variables;
+    gproji_tangent how;
     int64_t e;
-    /* 1. Column 3 k + c begins as the force of handle k along axis c. */
+    int32_t j;
+    /* Column 3 k + c begins as the force of handle k along axis c. */
     memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
     for (j = 0; j < drag->columns; ++j)
         for (e = drag->handle.start[j / 3]; e < drag->handle.start[j / 3 + 1]; ++e)
             drag->motion[n * (size_t)j + 3 * (size_t)drag->handle.vertex[e] + (size_t)(j % 3)] +=
                 drag->handle.weight[e];
-    for (round = 0; round < GPROJI_DRAG_ROUNDS; ++round, first = 0) {
-        double *column = drag->motion;
-        /* 2. Q = eps^2 D Q */
-        for (j = 0; j < drag->columns; ++j, column += n)
-            for (i = 0; i < n; ++i) column[i] *= i < vertices ? heavy : light;
-        /* 3. A = G'G + eps^2 D without dense rows. If there are none, the first columns go along with the
-           factorisation, up to the batch's size. */
-        if (round == 0) {
-            loading.system = s, loading.epsilon = gproji_drag_epsilon, loading.curved = false;
-            loading.light_from = (int32_t)vertices, loading.light = gproji_drag_light * gproji_drag_epsilon;
-            if (gproji_cholesky_factor_with(s->cholesky, gproji_load_front, &loading, first, drag->motion) !=
-                GPROJ_FACTORED)
-                return false;
-            if (first > 0) gproji_cholesky_finish(s->cholesky, drag->motion);
-            if (s->wide_count > 0 || restore) {
-                gproji_merit_gradient(s);
-                wide = gproji_step_sides(s);
-                gproji_finish_step(s, wide, false);
-            }
-            for (i = 0; restore && i < n; ++i) drag->base[i] += s->step[i];
-        }
-        /* 4. Q = (A + U U')^-1 Q, the dense rows being the columns of U: see gproji_wide_correct. */
-        column = drag->motion + n * (size_t)first;
-        if (wide == 0) {
-            gproj_cholesky_solve(s->cholesky, drag->columns - first, column, column);
-            continue;
-        }
-        gproji_cholesky_forward(s->cholesky, drag->columns - first, column, column);
-        for (j = first; j < drag->columns; ++j, column += n) {
-            memset(s->wide.vector, 0, (size_t)wide * sizeof *s->wide.vector);
-            gproji_wide_correct(s, wide, column);
-            gproji_cholesky_backward(s->cholesky, column, column);
-        }
-    }
+    how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light;
+    how.light_from = 3 * drag->form->mesh->vertex_count;
+    how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
-    return true;
+    return gproji_project(drag->form->system, &how, drag->columns, drag->motion, restore ? drag->base : NULL);
 }
 
 /* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
@@ -23431,16 +23893,10 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
 /* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
    False: that could not be done, and earlier responses are lost. */
 GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
-    gproj_system *s = drag->form->system;
-    int32_t batch = s->cholesky->batch;
-    bool found;
-    gproji_see_constraints(drag);
-    if (s->error.code != GPROJ_OK) return false;
-    memcpy(drag->base, s->x, (size_t)drag->variables * sizeof *drag->base);
-    s->cholesky->batch = gproji_max(batch, GPROJI_DRAG_SIDES);
-    found = gproji_find_responses(drag, restore);
-    s->cholesky->batch = batch;
-    if (!found) return false;
+    gproji_see_hard(drag->form->system);
+    if (!gproji_form_ready(drag->form)) return false;
+    memcpy(drag->base, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->base);
+    if (!gproji_find_responses(drag, restore)) return false;
     gproji_orthonormalise(drag);
     gproji_invert_lift(drag);
     gproji_gather_handles(drag, drag->base, drag->held);
@@ -23467,7 +23923,7 @@ GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const 
 /* x = base + Q m, with the m that brings the handles closest to their wanted places. */
 GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
-    double *x = drag->form->system->x, *lack = drag->work, *amount = drag->work + m;
+    double *x = gproj_system_values(drag->form->system), *lack = drag->work, *amount = drag->work + m;
     for (k = 0; k < m; ++k) lack[k] = drag->wanted[k] - drag->held[k];
     for (p = 0; p < (size_t)drag->info.freedom; ++p) amount[p] = gproji_dot(drag->pull + m * p, lack, m);
     memcpy(x, drag->base, n * sizeof *x);
@@ -23504,7 +23960,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
         return drag->error.code;
     behind = drag->info.behind;
     bound = drag->options.residual_bound;
-    memcpy(drag->last, drag->form->system->x, (size_t)drag->variables * sizeof *drag->last);
+    memcpy(drag->last, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->last);
     /* 1. wanted = S'v at the beginning + (S'S) d. */
     handles = drag->info.handles;
     gproji_gather_handles(drag, drag->first, drag->wanted);
@@ -23515,11 +23971,11 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
-    if (bound > 0 && !(gproji_see_constraints(drag) <= bound)) {
+    if (bound > 0 && !(gproji_see_hard(drag->form->system) <= bound)) {
         if (!gproji_linearise_drag(drag, true)) {
             /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
             gproji_fail_linearising(drag, &drag->error);
-            memcpy(drag->form->system->x, drag->last, (size_t)drag->variables * sizeof *drag->last);
+            memcpy(gproj_system_values(drag->form->system), drag->last, (size_t)drag->variables * sizeof *drag->last);
             if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
             drag->info.behind = behind;
             return drag->error.code;
@@ -23533,7 +23989,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
     if (!drag) return 0;
     gproji_error_clear(&drag->error);
-    return gproji_drag_is_usable(drag) ? gproji_see_constraints(drag) : HUGE_VAL;
+    return gproji_drag_is_usable(drag) ? gproji_see_hard(drag->form->system) : HUGE_VAL;
 }
 
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
@@ -23555,7 +24011,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     gproj_form *form = drag->form;
     gproji_pool *pool = &drag->pool;
     gproji_handle_list *list = &drag->handle;
-    int64_t m = 3 * (int64_t)h->count, n = form->system->variable_count,
+    int64_t m = 3 * (int64_t)h->count, n = gproj_system_variable_count(form->system),
             entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
@@ -23577,7 +24033,8 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
     drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
-    drag->schedule = (gproj_schedule *)gproji_pool_take(pool, form->system->group_count, sizeof *drag->schedule);
+    drag->schedule =
+        (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
     return list->start && list->vertex && list->weight && list->from && list->gram && drag->first && drag->begun &&
            drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
@@ -23622,16 +24079,12 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     }
     /* 3. The form as at the beginning of a solve. */
     form->solve.on = form->solve.finished = false;
-    s->late = 0;
     memcpy(form->before, form->mesh->position, 3 * (size_t)vertices * sizeof *form->before);
-    memcpy(drag->begun, s->x, (size_t)drag->variables * sizeof *drag->begun);
+    memcpy(drag->begun, gproj_system_values(s), (size_t)drag->variables * sizeof *drag->begun);
     gproji_load_positions(form);
-    gproji_restart_gliding(form);
-    gproji_restart_planes(form);
-    memcpy(drag->first, s->x, 3 * (size_t)vertices * sizeof *drag->first);
+    memcpy(drag->first, gproj_system_values(s), 3 * (size_t)vertices * sizeof *drag->first);
     drag->structure = gproji_structure_of(s);
-    if (!gproji_form_ready(form) || gproji_compile(s, true) != GPROJ_OK ||
-        !gproji_cholesky_widen(s->cholesky, GPROJI_DRAG_SIDES))
+    if (!gproji_form_ready(form) || !gproji_begin_tangent(s, GPROJI_DRAG_SIDES))
         return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
     return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
 }
@@ -23644,7 +24097,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
     if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
         return gproji_pass_on(error, gproj_form_error(form));
     statics = form->statics;
-    if (form->drag || form->system->solving)
+    if (form->drag || gproji_is_solving(form->system))
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "drag: a solve or another drag is under way, which must end before");
     if (statics && gproji_is_on(form, statics->group) && !statics->started)
@@ -23715,7 +24168,7 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     if (!drag) return;
     form = drag->form;
     gproji_reset_mesh(form);
-    memcpy(form->system->x, drag->begun, (size_t)drag->variables * sizeof *drag->begun);
+    memcpy(gproj_system_values(form->system), drag->begun, (size_t)drag->variables * sizeof *drag->begun);
     gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
     gproji_destroy_drag(drag);
 }
@@ -23728,18 +24181,20 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_schedule fairness = {0, 0, 0}, handles = {0, 0, 0};
     int32_t g;
     for (g = 0; g < drag->structure.groups; ++g) {
-        gproji_group *group = &form->system->group[g];
-        if (group->kind != GPROJ_WISH || gproji_kind_of_group(form, g)) continue;
+        const gproji_group *group = gproji_group_at(form->system, g);
+        gproj_schedule schedule;
+        if (group->kind != GPROJ_WISH || gproji_own_of(form, g)) continue;
         if (on) drag->schedule[g] = group->schedule;
-        if (!on) group->schedule = drag->schedule[g];
-        if (on && !drag->options.keep_wishes) group->schedule.weight = 0;
+        schedule = drag->schedule[g];
+        if (on && !drag->options.keep_wishes) schedule.weight = 0;
+        gproj_system_set_schedule(form->system, g, schedule);
     }
     fairness.weight = on ? gproji_drag_fairness : 0;
     handles.weight = on ? 1 : 0;
     fairness.decay = handles.decay = gproji_drag_decay;
     fairness.last = handles.last = GPROJI_DRAG_GUIDED;
-    gproj_system_set_schedule(form->system, form->release.fairness, fairness);
-    gproj_system_set_schedule(form->system, form->release.handles, handles);
+    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), fairness);
+    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
 /* Releases the form: solves it from the mesh before the drag, guided to x. */
@@ -23747,8 +24202,9 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     gproj_result result;
     gproj_system *s;
     gproj_form *form;
-    gproji_group *fairness, *at;
-    int32_t group, r, k, c;
+    const gproji_group *fairness, *at;
+    const double *x;
+    int32_t soft, group, r, k, c;
     int64_t e;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
     form = drag->form;
@@ -23762,12 +24218,13 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         return result;
     }
     s = form->system;
-    group = form->release.handles;
-    fairness = &s->group[form->release.fairness], at = &s->group[group];
+    x = gproj_system_values(s);
+    soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
     /* 1. Fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
-        fairness->row[r].constant = 0;
-        fairness->row[r].constant = -gproji_row_value(fairness, r, drag->first);
+        gproj_system_set_row(s, soft, r, NULL, 0);
+        gproj_system_set_row(s, soft, r, NULL, -gproji_row_value(fairness, r, drag->first));
     }
     /* 2. All vertices stay, with a little weight; */
     for (r = 0; r < at->row_count; ++r) {
@@ -23784,7 +24241,7 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
                 int32_t row = 3 * drag->handle.vertex[e] + c;
                 double weight = gproji_fmax(fabs(drag->handle.weight[e]) / most, at->row[row].weight);
                 gproj_system_set_row_weight(s, group, row, weight);
-                gproj_system_set_row(s, group, row, NULL, -s->x[row]);
+                gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
     gproji_schedule_release(drag, true);

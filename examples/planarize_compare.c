@@ -31,9 +31,10 @@ static gproj_mesh *make_roof(void) {
 }
 
 /* (B): the row det + grad'(x - x_n) = 0 of each quad, at the present x_n. e: v2 - v1, v3 - v1, v4 - v1; g: grad. */
-static void refresh_cubic(void *user, gproj_system *system, int32_t group) {
+static void refresh_cubic(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
     const double *x = gproj_system_values(system);
     int32_t f, i, k;
+    (void)progress;
     for (f = 0, (void)user; f < QUADS; ++f) {
         double e[3][3], g[4][3], constant = 0;
         for (i = 0; i < 9; ++i) e[i / 3][i % 3] = x[3 * corner(f, i / 3 + 1) + i % 3] - x[3 * corner(f, 0) + i % 3];

@@ -428,7 +428,7 @@ GPROJT_TEST(the_course_is_the_merit) {
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     GPROJT_REQUIRE(gproji_compile(s, false) == GPROJ_OK);
-    gproji_set_weights(s, 1);
+    gproji_set_weights(&loop, 1);
     gproji_linearise(&loop);
     memcpy(s->saved, s->x, 2 * sizeof(double));
     s->step[0] = 0.9, s->step[1] = -0.7;

@@ -230,7 +230,8 @@ GPROJT_TEST(seconds_add_up) {
     gproj_system_destroy(s);
 }
 
-static void gprojt_bad_refresh(void *user, gproj_system *s, int32_t group) {
+static void gprojt_bad_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    (void)progress;
     if (++*(int *)user == 2) gproj_system_set_row(s, group, 99, NULL, 0);
 }
 
@@ -271,7 +272,8 @@ static void gprojt_meddle(gprojt_meddler *m, gproj_system *s) {
     if (m->what == 4) m->answer = gproj_system_check_gradients(s) == HUGE_VAL ? -1 : 0;
 }
 
-static void gprojt_meddling_refresh(void *user, gproj_system *s, int32_t group) {
+static void gprojt_meddling_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    (void)progress;
     (void)group;
     if (((gprojt_meddler *)user)->from_refresh) gprojt_meddle((gprojt_meddler *)user, s);
 }
@@ -687,7 +689,8 @@ GPROJT_TEST(schedules) {
     gprojt_check_energies(gprojt_schedule(0.5, 0.5, 2), 9, 4, gprojt_schedule(1, 0.5, 6));
 }
 
-static void gprojt_count_refresh(void *user, gproj_system *s, int32_t group) {
+static void gprojt_count_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    (void)progress;
     (void)s;
     (void)group;
     ++*(int *)user;
@@ -1166,7 +1169,7 @@ GPROJT_TEST(metric_comes_back) {
     int32_t i;
     gprojt_add_group(s, "product", GPROJ_CONSTRAINT, 1);
     gprojt_add_group(s, "metric", GPROJ_WISH, 0.1);
-    s->group[1].metric = true;
+    gproji_declare_role(s, 1, GPROJI_METRIC, 0);
     gproj_system_add_row(s, 0, 1, &product, -2, 0);
     for (i = 0; i < 2; ++i) {
         linear[i] = gprojt_term(i, -1, 1);

@@ -127,7 +127,6 @@ static void gprojt_begin(gproj_form *form, bool skip_guard) {
     options.skip_closeness = true;
     options.skip_guard = skip_guard;
     GPROJT_REQUIRE(gproji_begin_solve(form, 20, &options));
-    form->system->default_last = form->solve.default_last;
     GPROJT_REQUIRE(gproji_compile(form->system, false) == GPROJ_OK);
     form->system->solving = true;
     gproji_start_loop(&form->solve.loop);
@@ -304,7 +303,7 @@ enum {
 
 /* The rows of every third face of the guard act. */
 static void gprojt_wake_guard(gproj_form *form) {
-    gproji_group *g = &form->system->group[form->guard->group];
+    gproji_group *g = &form->system->group[gproji_own_group(form, GPROJI_OWN_GUARD)];
     int32_t r, round;
     GPROJT_CHECK(g->weight > 0);
     for (round = 0; round < 2; ++round) {
@@ -521,9 +520,9 @@ static gproj_mesh *gprojt_crooked(void) { return gprojt_warped(GPROJT_QUADS, 8, 
 
 /* How many rows of the guard have multipliers. */
 static int32_t gprojt_guarded(const gproj_form *form) {
-    const gproji_group *g = &form->system->group[form->guard->group];
+    const gproji_group *g = &form->system->group[gproji_own_group(form, GPROJI_OWN_GUARD)];
     int32_t r, count = 0;
-    for (r = 0; r < g->row_count; ++r) count += !g->row[r].waits;
+    for (r = 0; r < g->row_count; ++r) count += !g->row[r].dormant;
     return count;
 }
 
@@ -550,7 +549,8 @@ GPROJT_TEST(the_guard_waits_until_it_acts) {
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_guarded(forms[1]) == gprojt_guarded(forms[0]));
     GPROJT_CHECK(gprojt_unmoved(crooked[0], crooked[1]->position));
     gproj_solve(forms[2], 0, NULL); /* adds the guard */
-    for (k = 0; k < crooked[2]->face_count; ++k) forms[2]->system->group[forms[2]->guard->group].row[k].waits = false;
+    for (k = 0; k < crooked[2]->face_count; ++k)
+        forms[2]->system->group[gproji_own_group(forms[2], GPROJI_OWN_GUARD)].row[k].dormant = false;
     gproji_system_forget(forms[2]->system);
     GPROJT_CHECK(gproj_solve(forms[2], 20, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(crooked[0]->position, crooked[2]->position, crooked[0]->vertex_count) <= 1e-9);

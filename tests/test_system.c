@@ -99,9 +99,10 @@ static gproj_term gprojt_random_term(uint64_t *seed, int32_t first, int32_t coun
     return gprojt_term(i, kind == 0 ? -1 : kind == 1 ? i : j, 4 * gprojt_uniform(seed) - 2);
 }
 
-static void gprojt_new_coefficients(void *user, gproj_system *system, int32_t group) {
+static void gprojt_new_coefficients(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
     double coefficients[8];
     int32_t r, k;
+    (void)progress;
     uint64_t seed = 5;
     ++*(int *)user;
     for (r = 0; r < gproj_system_group_info(system, group).rows; ++r) {
