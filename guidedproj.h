@@ -48,13 +48,9 @@
    with GPROJ_BOUND the row must be >= 0, so it says "at least h" (for "at most", change the signs of all terms and of
    the constant)
 
-     double centre[3], scale;
-     gproj_group group = {"height", GPROJ_CONSTRAINT, false, GPROJ_PLACE_VERTEX, {1, 0, 0}, NULL, NULL};
-     gproj_system *system = gproj_form_system(form);
-     int32_t number = gproj_system_add_group(system, &group);
-     gproj_term z = {3 * v + 2, -1, 1.0};             // 1.0 * z of vertex v, in the form's units:
-     gproj_form_units(form, centre, &scale);          // internal = (position - centre) * scale
-     gproj_system_add_row(system, number, 1, &z, -(h - centre[2]) * scale, v);
+     int32_t heights = gproj_add_rows(form, "height", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+     gproj_term z = {3 * v + 2, -1, 1.0};             // 1.0 * z of vertex v, in the mesh's units
+     gproj_form_add_row(form, heights, 1, &z, -h, v);
 
    WORDS   The few of our own, each with the field's term:
      must hold        a hard constraint: an equation phi = 0 or a bound (inequality) phi >= 0
@@ -569,7 +565,7 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
-/* How far a solve is, for refresh callbacks; all 0 outside of one. */
+/* How far a solve is, for refresh callbacks. */
 typedef struct gproj_progress {
     int32_t iteration;  /* the last one that began, from 1; 0: none has */
     int32_t iterations; /* the limit */
@@ -1275,6 +1271,9 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
    edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+/* The midpoints m of these edges (NULL: the first `count` ones) are on one unknown sphere: (m'm - 2 c'm + s) / (2 R) = 0,
+   the centre c and s = c'c - r^2 being variables that start at the least-squares sphere, R the radius at first. */
+GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the
    least-squares plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
 GPROJ_API int32_t gproj_add_coplanar(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
@@ -1348,6 +1347,41 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight);
 /* All faces have the same, unknown area: |a_k| = A, a_k the vectorial area; linearised anew in each iteration (paper
    3.5). */
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
+
+/* -- constraints of your own -- */
+
+/* Adds an empty group for rows of your own; returns its number, or -1. Rows are quadratic in vertices and in unknowns of
+   your own, all in the mesh's units: see gproj_form_add_row. What changes from iteration to iteration needs a refresh:
+   use the system, see gproj_form_system. */
+GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind kind, gproj_place place, double weight);
+
+typedef enum gproj_unit {
+    GPROJ_UNIT_NUMBER, /* has no unit, as the components of a unit vector */
+    GPROJ_UNIT_LENGTH, /* a length in the mesh's units, as a radius */
+    GPROJ_UNIT_POINT,  /* x y z of points, as a centre: 3 values each */
+    GPROJ_UNIT_FORCE_INT = 0x7fffffff
+} gproj_unit;
+
+/* Start values of unknowns first..first+count-1, when a solve or a drag begins: the mesh has the positions from which it
+   does. In the mesh's units; on entry `values` has the last ones, at first those of gproj_form_add_unknowns. */
+typedef void (*gproj_start)(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values);
+
+/* Adds `count` unknowns to a group of gproj_add_rows; returns the first one's number, which terms name, or -1. `values`:
+   where they start at each solve and drag, in the mesh's units; `start`, with `user`, may give better ones then, or is
+   NULL. States keep them like the library's. */
+GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
+                                          const double *values, gproj_start start, void *user);
+/* Reads such unknowns in the mesh's units. */
+GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values);
+/* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
+   In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Let phi be
+   about a length in the mesh's units, and residuals and weights compare with those of the other constraints: of
+   |v - p|^2 - r^2, a row takes 1 / (2 r). `element`: the vertex, edge or face of the row, or -1. */
+GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
+                                     double constant, int32_t element);
+/* What each element of the group's place lacks after a solve: the largest |phi| of its rows, of bounds the violation, in
+   mean edge lengths; 0 without rows. per_element: a number for each vertex, edge or face of the mesh. */
+GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element);
 
 /* Sets a group's weight, decay and last iteration; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
@@ -8131,6 +8165,19 @@ GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_
 /* Declares that a row has several variables of the block that begins with this one. */
 GPROJI_INLINE void gproji_join_block(gproj_system *s, int32_t first) { s->joined[first] = 1; }
 
+/* The largest |phi| of each of `count` elements, by the last evaluation; 0 for those without rows. */
+GPROJI_INTERNAL void gproji_worst_by_element(const gproj_system *s, int32_t group, int32_t count, double *worst) {
+    const gproji_group *g = &s->group[group];
+    int32_t r;
+    for (r = 0; r < count; ++r) worst[r] = 0;
+    for (r = 0; r < g->row_count; ++r) {
+        int32_t e = g->row[r].element;
+        double phi = fabs(gproji_counted(g, g->row[r].phi));
+        if (e < 0 || e >= count || !(g->row[r].weight > 0)) continue;
+        worst[e] = phi <= DBL_MAX ? gproji_fmax(worst[e], phi) : HUGE_VAL;
+    }
+}
+
 /* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
    so equal counts mean equal structure. */
 typedef struct gproji_structure {
@@ -11348,6 +11395,7 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+    s->progress.iteration = n, s->progress.iterations = loop->iterations;
     gproji_place_woken(loop, gproji_wake_guard(s));
     if (s->error.code != GPROJ_OK) return;
     if (gproji_set_weights(loop, n)) gproji_linearise(loop);
@@ -11948,6 +11996,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         if (gproji_is_nearest(loop)) return GPROJ_CONVERGED;
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+        s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
         if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
         gproji_see_nearest(loop);
@@ -19124,6 +19173,16 @@ typedef struct gproji_statics {
     double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
 } gproji_statics;
 
+/* A block of the caller's unknowns: see gproj_form_add_unknowns. */
+typedef struct gproji_unknowns {
+    const gproji_part *part;
+    int32_t first, count;
+    gproj_unit unit;
+    double *value; /* at the beginning of solves and drags, in the mesh's units */
+    gproj_start start;
+    void *user;
+} gproji_unknowns;
+
 /* A solve in frames (gproj_step). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
@@ -19155,6 +19214,11 @@ struct gproj_form {
     int32_t planarity;       /* the planar faces' group; -1: none */
     gproji_statics *statics; /* NULL: no forces */
     gproji_part *part;       /* the last one added */
+    struct {
+        gproji_unknowns *block; /* by ascending variables */
+        int32_t count;
+        size_t capacity;
+    } unknowns;
     gproji_solve solve;
     gproj_drag *drag; /* under way; NULL: none */
 };
@@ -19178,6 +19242,9 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
         gproji_pool_give_all(&part->pool);
         gproji_give(own, part, 1, sizeof *part);
     }
+    for (i = 0; i < form->unknowns.count; ++i)
+        gproji_give(own, form->unknowns.block[i].value, (size_t)form->unknowns.block[i].count, sizeof(double));
+    gproji_give(own, form->unknowns.block, form->unknowns.capacity, sizeof *form->unknowns.block);
     gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
     gproji_give(own, form->before, 3 * vertices, sizeof *form->before);
     gproji_give(own, form->normal, faces, sizeof *form->normal);
@@ -19384,6 +19451,14 @@ GPROJI_INTERNAL gproji_part *gproji_own_part(const gproj_form *form, gproji_own 
 GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
     const gproji_part *part = gproji_own_part(form, own);
     return part ? part->group : -1;
+}
+
+/* How many elements of this kind the mesh has; 0 for places that are none. */
+GPROJI_INTERNAL int32_t gproji_count_elements(const gproj_mesh *mesh, gproj_place place) {
+    return place == GPROJ_PLACE_VERTEX ? mesh->vertex_count
+           : place == GPROJ_PLACE_EDGE ? mesh->edge_count
+           : place == GPROJ_PLACE_FACE ? mesh->face_count
+                                       : 0;
 }
 
 /* Has the group a weight, in some iteration? */
@@ -20226,10 +20301,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                            "element weights: there is no group %d (the form has %d)", group,
                            gproj_system_group_count(form->system));
     info = gproj_system_group_info(form->system, group);
-    have = info.place == GPROJ_PLACE_VERTEX ? form->mesh->vertex_count
-           : info.place == GPROJ_PLACE_EDGE ? form->mesh->edge_count
-           : info.place == GPROJ_PLACE_FACE ? form->mesh->face_count
-                                            : 0;
+    have = gproji_count_elements(form->mesh, info.place);
     if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "element weights: %d of the %d elements of group '%s', or no weights", count, have,
@@ -20277,6 +20349,17 @@ GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *nam
 
 GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
     return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
+}
+
+/* Copies the caller's list of edges to a new part; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_edge_part(gproj_form *form, const gproji_rule *rule, int32_t count,
+                                                  const int32_t *edges) {
+    gproji_part *part;
+    int32_t k;
+    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, rule->name, count, edges)) return NULL;
+    part = gproji_new_part(form, rule, count);
+    for (k = 0; part && k < count; ++k) part->vertex[k] = edges ? edges[k] : k;
+    return part;
 }
 
 /* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
@@ -20335,14 +20418,10 @@ static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CON
 
 /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    gproji_part *part;
-    int32_t *common, k;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, gproji_equal_lengths_rule.name, count, edges))
-        return -1;
-    part = gproji_new_part(form, &gproji_equal_lengths_rule, count);
-    common = gproji_part_unknowns(part, 1);
+    gproji_part *part = gproji_new_edge_part(form, &gproji_equal_lengths_rule, count, edges);
+    const int32_t *common = gproji_part_unknowns(part, 1);
+    int32_t k;
     if (!common) return -1;
-    for (k = 0; k < count; ++k) part->vertex[k] = edges ? edges[k] : k;
     gproji_start_length(part);
     gproji_add_group(part, weight);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
@@ -20350,6 +20429,73 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
         gproji_set_length_terms(form->mesh, part->vertex[k], 0.5, term);
         gproji_set_term(&term[9], *common, *common, -0.5);
         gproj_system_add_row(form->system, part->group, 10, term, 0, part->vertex[k]);
+    }
+    return gproji_built(form, part->group);
+}
+
+/* -- midpoints of edges on an unknown sphere -- */
+
+/* The midpoint of an edge at x. */
+GPROJI_INTERNAL void gproji_midpoint(const gproj_mesh *mesh, const double *x, int32_t edge, double out[3]) {
+    const int32_t *end = mesh->origin + 2 * (size_t)edge;
+    int32_t c;
+    for (c = 0; c < 3; ++c) out[c] = (x[3 * (size_t)end[0] + (size_t)c] + x[3 * (size_t)end[1] + (size_t)c]) / 2;
+}
+
+/* Fits c and s to the midpoints at x: the least sum ((m - m0)'(m - m0) - 2 c'(m - m0) + s)^2, m0 their mean. */
+GPROJI_INTERNAL void gproji_start_midsphere(gproji_part *part) {
+    double *x = gproj_system_values(part->form->system), *sphere = x + *(const int32_t *)part->data;
+    double mean[3] = {0, 0, 0}, m[3], row[4], matrix[16] = {0}, fit[4] = {0, 0, 0, 0}, square;
+    int32_t i, j, k;
+    for (k = 0; k < part->count; ++k) {
+        gproji_midpoint(part->form->mesh, x, part->vertex[k], m);
+        gproji_add_scaled3(1.0 / part->count, m, mean);
+    }
+    for (k = 0; k < part->count; ++k) { /* normal equations for (c, s), by rows (2 (m - m0), -1) */
+        gproji_midpoint(part->form->mesh, x, part->vertex[k], m);
+        gproji_sub3(m, mean, m);
+        square = gproji_dot3(m, m);
+        for (i = 0; i < 3; ++i) row[i] = 2 * m[i];
+        row[3] = -1;
+        for (i = 0; i < 4; ++i) {
+            fit[i] += row[i] * square;
+            for (j = 0; j < 4; ++j) matrix[4 * i + j] += row[i] * row[j];
+        }
+    }
+    gproji_small_factor(matrix, 4, 4, 1e-9 * gproji_max(1, part->count)); /* of midpoints in a plane, or none, too */
+    gproji_small_solve(matrix, 4, 4, fit);
+    for (i = 0; i < 3; ++i) sphere[i] = fit[i] + mean[i];
+    sphere[3] = fit[3] + 2 * gproji_dot3(fit, mean) + gproji_dot3(mean, mean); /* for c + m0 */
+}
+
+static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, NULL, NULL};
+static const gproji_rule gproji_midsphere_rule = {"midsphere", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
+                                                  &gproji_midsphere_acts};
+
+GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    gproji_part *part = gproji_new_edge_part(form, &gproji_midsphere_rule, count, edges);
+    const int32_t *first = gproji_part_unknowns(part, 4);
+    const double *sphere;
+    double half;
+    int32_t k, c;
+    if (!first) return -1;
+    gproji_start_midsphere(part);
+    sphere = gproj_system_values(form->system) + *first;
+    half = 0.5 / sqrt(gproji_fmax(gproji_dot3(sphere, sphere) - sphere[3], 1e-6)); /* 1 / (2 R) */
+    gproji_add_group(part, weight);
+    for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
+        const int32_t *end = form->mesh->origin + 2 * (size_t)part->vertex[k];
+        gproj_term term[16];
+        for (c = 0; c < 3; ++c) {
+            int32_t i = 3 * end[0] + c, j = 3 * end[1] + c;
+            gproji_set_term(&term[5 * c], i, i, half / 4);
+            gproji_set_term(&term[5 * c + 1], j, j, half / 4);
+            gproji_set_term(&term[5 * c + 2], i, j, half / 2);
+            gproji_set_term(&term[5 * c + 3], i, *first + c, -half);
+            gproji_set_term(&term[5 * c + 4], j, *first + c, -half);
+        }
+        gproji_set_term(&term[15], *first + 3, -1, half);
+        gproj_system_add_row(form->system, part->group, 16, term, 0, part->vertex[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -21190,6 +21336,190 @@ GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double a
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
                                         double max, double weight) {
     return gproji_add_total(form, &gproji_cost_bounds_rule, length_price, area_price, min, max, weight);
+}
+
+/* -- rows of the caller's -- */
+
+/* The units of a variable: mesh = offset + factor * internal. False: it is neither a vertex's nor the caller's. */
+GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, double *offset, double *factor) {
+    const gproji_unknowns *u = NULL;
+    int32_t low = 0, high = form->unknowns.count, at = variable;
+    if (variable >= 3 * form->mesh->vertex_count) {
+        while (low < high) { /* the first block that begins behind it */
+            int32_t middle = low + (high - low) / 2;
+            if (form->unknowns.block[middle].first <= variable)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        if (low == 0) return false;
+        u = &form->unknowns.block[low - 1];
+        at -= u->first;
+        if (at >= u->count) return false;
+    }
+    *offset = !u || u->unit == GPROJ_UNIT_POINT ? form->centre[at % 3] : 0;
+    *factor = u && u->unit == GPROJ_UNIT_NUMBER ? 1 : 1 / form->scale;
+    return variable >= 0;
+}
+
+GPROJI_INTERNAL void gproji_start_unknowns(gproji_part *part) {
+    gproj_form *form = part->form;
+    double *x = gproj_system_values(form->system), offset, factor;
+    int32_t b, i;
+    for (b = 0; b < form->unknowns.count; ++b) {
+        const gproji_unknowns *u = &form->unknowns.block[b];
+        if (u->part != part) continue;
+        if (u->start) u->start(u->user, form->mesh, u->first, u->count, u->value);
+        for (i = 0; i < u->count; ++i) {
+            double start = u->value[i];
+            gproji_find_unit(form, u->first + i, &offset, &factor);
+            if (fabs(start) <= GPROJI_COORDINATE_MAX)
+                x[u->first + i] = (start - offset) / factor;
+            else
+                gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, u->first + i,
+                            "%s: the start value of unknown %d is not finite, or beyond 1e70", part->rule->name,
+                            u->first + i);
+        }
+    }
+}
+
+static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, NULL};
+static const gproji_rule gproji_rows_rule = {"rows", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
+                                             &gproji_rows_acts};
+
+/* A rule with the caller's name. */
+typedef struct gproji_own_rule {
+    gproji_rule rule;
+    char name[GPROJ_NAME_SIZE];
+} gproji_own_rule;
+
+GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
+                                 double weight) {
+    gproji_part *part = gproji_new_part(form, &gproji_rows_rule, 0);
+    gproji_own_rule *own = (gproji_own_rule *)gproji_part_take(part, 1, sizeof *own);
+    if (!own) return -1;
+    own->rule = gproji_rows_rule;
+    own->rule.kind = kind, own->rule.place = place;
+    if (name) {
+        gproji_append(own->name, sizeof own->name, 0, name, strlen(name));
+        own->rule.name = own->name;
+    }
+    part->rule = &own->rule;
+    return gproji_built(form, gproji_add_group(part, weight));
+}
+
+/* The part of a group of gproj_add_rows; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_callers_part(gproj_form *form, int32_t group) {
+    gproji_part *part;
+    if (!gproji_form_ready(form)) return NULL;
+    part = group < 0 ? NULL : gproji_part_of(form, group);
+    if (part && part->rule->acts == &gproji_rows_acts) return part;
+    gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                "rows: group %d is none of gproj_add_rows (the form has %d)", group,
+                gproj_system_group_count(form->system));
+    return NULL;
+}
+
+GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
+                                          const double *values, gproj_start start, void *user) {
+    gproji_part *part = gproji_callers_part(form, group);
+    void *block = part ? form->unknowns.block : NULL;
+    gproji_unknowns *u;
+    int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
+    if (!part) return -1;
+    if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                    "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values", part->rule->name,
+                    count);
+        return -1;
+    }
+    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u)) {
+        gproji_fail_memory(&form->error);
+        return -1;
+    }
+    form->unknowns.block = (gproji_unknowns *)block;
+    u = &form->unknowns.block[form->unknowns.count];
+    u->value = (double *)gproji_take(&form->own, (size_t)count, sizeof *u->value);
+    if (!u->value) gproji_fail_memory(&form->error);
+    u->first = u->value ? gproj_system_add_variables(form->system, count, size, NULL) : -1;
+    if (u->first < 0) {
+        gproji_give(&form->own, u->value, (size_t)count, sizeof *u->value);
+        return -1;
+    }
+    memcpy(u->value, values, (size_t)count * sizeof *values);
+    u->part = part, u->count = count, u->unit = unit, u->start = start, u->user = user;
+    form->unknowns.count++;
+    gproji_start_unknowns(part);
+    return gproji_built(form, u->first);
+}
+
+GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values) {
+    const double *x;
+    double offset, factor;
+    int32_t i;
+    if (!form || !form->system || !values || count < 0) return GPROJ_ERROR_ARGUMENT;
+    x = gproj_system_values(form->system);
+    for (i = 0; i < count; ++i) {
+        if (first < 0 || i > INT32_MAX - first || !gproji_find_unit(form, first + i, &offset, &factor))
+            return GPROJ_ERROR_INDEX;
+        values[i] = offset + factor * x[first + i];
+    }
+    return GPROJ_OK;
+}
+
+/* With u = o + f x for each variable, a u_i u_j = a (f_i f_j x_i x_j + o_j f_i x_i + o_i f_j x_j + o_i o_j). All times the
+   scale: phi becomes a length in internal units. */
+GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
+                                     double constant, int32_t element) {
+    gproji_part *part = gproji_callers_part(form, group);
+    gproj_term *inside;
+    gproji_sum sum = {0, 0};
+    int32_t t, row = -1, made = 0;
+    size_t room = 3 * (size_t)gproji_max(count, 0);
+    if (!part) return -1;
+    if (count < 0 || (count > 0 && !terms)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group, "%s: a row of %d terms, or no list",
+                    part->rule->name, count);
+        return -1;
+    }
+    inside = (gproj_term *)gproji_take(&form->own, room, sizeof *inside);
+    if (!inside) gproji_fail_memory(&form->error);
+    gproji_sum_add_product(&sum, form->scale, constant);
+    for (t = 0; t < count && gproji_form_ready(form); ++t) {
+        double a = terms[t].a * form->scale, o[2] = {0, 0}, f[2] = {1, 1};
+        int32_t i = terms[t].i, j = terms[t].j;
+        if (!gproji_find_unit(form, i, &o[0], &f[0]) || (j != -1 && !gproji_find_unit(form, j, &o[1], &f[1]))) {
+            gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                        "%s: term %d of a row: %d or %d is neither a coordinate of a vertex nor an unknown of yours",
+                        part->rule->name, t, i, j);
+            break;
+        }
+        if (j == -1) {
+            gproji_set_term(&inside[made++], i, -1, a * f[0]);
+            gproji_sum_add_product(&sum, a, o[0]);
+            continue;
+        }
+        gproji_set_term(&inside[made++], i, j, a * f[0] * f[1]);
+        if (o[1] != 0) gproji_set_term(&inside[made++], i, -1, a * o[1] * f[0]);
+        if (o[0] != 0) gproji_set_term(&inside[made++], j, -1, a * o[0] * f[1]);
+        gproji_sum_add_product(&sum, a * o[0], o[1]);
+    }
+    if (gproji_form_ready(form))
+        row = gproj_system_add_row(form->system, group, made, inside, gproji_sum_value(&sum), element);
+    gproji_give(&form->own, inside, room, sizeof *inside);
+    return row;
+}
+
+GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element) {
+    gproj_place place;
+    int32_t have;
+    if (!form || !per_element) return GPROJ_ERROR_ARGUMENT;
+    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    if (group < 0 || group >= gproj_system_group_count(form->system)) return GPROJ_ERROR_INDEX;
+    place = gproji_group_at(form->system, group)->place;
+    have = gproji_count_elements(form->mesh, place);
+    gproji_worst_by_element(form->system, group, have, per_element);
+    return GPROJ_OK;
 }
 
 /* ============================================================================================================

@@ -19,50 +19,11 @@ static int32_t gprojt_count_corners(const gproj_form *form, const gproj_mesh *me
 
 /* -- every builder: its rows, its name, its gradients -- */
 
-typedef enum gprojt_builder {
-    GPROJT_PLANARITY,
-    GPROJT_FIXED,
-    GPROJT_FIXED_BOUNDARY,
-    GPROJT_FIXED_CORNERS,
-    GPROJT_TARGETS,
-    GPROJT_GLIDING,
-    GPROJT_GLIDING_BOUNDARY,
-    GPROJT_CLOSENESS,
-    GPROJT_REFERENCE,
-    GPROJT_FAIRNESS,
-    GPROJT_BOUNDARY_FAIRNESS,
-    GPROJT_TANGENTIAL,
-    GPROJT_GAUSS,
-    GPROJT_BUILDERS
-} gprojt_builder;
-
-typedef struct gprojt_builder_kind {
-    const char *name;
-    gproj_kind kind;
-    gproj_place place;
-} gprojt_builder_kind;
-
-static const gprojt_builder_kind gprojt_builder_kinds[GPROJT_BUILDERS] = {
-    {"planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE},
-    {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"targets", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"gliding", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX},
-    {"closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX},
-    {"reference", GPROJ_WISH, GPROJ_PLACE_VERTEX},
-    {"fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX},
-    {"boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX},
-    {"tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX},
-    {"Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE},
-};
-
 /* What builders need beside the mesh. */
 typedef struct gprojt_props {
     gproj_surface *surface;
     gproj_curve *curve;
-    int32_t vertex[3];
+    int32_t vertex[3], edges;
     double position[9];
 } gprojt_props;
 
@@ -73,6 +34,7 @@ static gprojt_props gprojt_take_props(const gproj_mesh *mesh) {
     memset(&props, 0, sizeof props);
     props.surface = gproj_surface_create(mesh, NULL, NULL);
     props.curve = gproj_curve_create(3, points, false, NULL, NULL);
+    props.edges = mesh->edge_count;
     for (k = 0; k < 3; ++k) {
         props.vertex[k] = k * (mesh->vertex_count - 1) / 2;
         memcpy(props.position + 3 * k, mesh->position + 3 * props.vertex[k], 3 * sizeof(double));
@@ -86,24 +48,6 @@ static void gprojt_give_props(gprojt_props *props) {
     gproj_curve_destroy(props->curve);
 }
 
-static int32_t gprojt_build(gproj_form *form, gprojt_builder builder, const gprojt_props *props, double weight) {
-    switch (builder) {
-    case GPROJT_PLANARITY: return gproj_add_planarity(form, weight);
-    case GPROJT_FIXED: return gproj_add_fixed(form, 3, props->vertex, weight);
-    case GPROJT_FIXED_BOUNDARY: return gproj_add_fixed_boundary(form, weight);
-    case GPROJT_FIXED_CORNERS: return gproj_add_fixed_corners(form, weight);
-    case GPROJT_TARGETS: return gproj_add_targets(form, 3, props->vertex, props->position, weight);
-    case GPROJT_GLIDING: return gproj_add_gliding(form, props->curve, 3, props->vertex, weight);
-    case GPROJT_GLIDING_BOUNDARY: return gproj_add_gliding_boundary(form, weight);
-    case GPROJT_CLOSENESS: return gproj_add_closeness(form, weight);
-    case GPROJT_REFERENCE: return gproj_add_reference(form, props->surface, weight);
-    case GPROJT_FAIRNESS: return gproj_add_fairness(form, weight);
-    case GPROJT_BOUNDARY_FAIRNESS: return gproj_add_boundary_fairness(form, weight);
-    case GPROJT_TANGENTIAL: return gproj_add_tangential_fairness(form, weight);
-    default: return gproj_add_gauss_fairness(form, weight);
-    }
-}
-
 /* Rows of differences at interior vertices: `pairs` where two pairs of neighbours are opposite, else `one`. */
 static int32_t gprojt_interior_rows(const gproj_mesh *mesh, int32_t pairs, int32_t one) {
     int32_t v, rows = 0;
@@ -114,8 +58,9 @@ static int32_t gprojt_interior_rows(const gproj_mesh *mesh, int32_t pairs, int32
     return rows;
 }
 
-static int32_t gprojt_gauss_rows(const gproj_mesh *mesh) {
+static int32_t gprojt_gauss_rows(const gproj_form *form, const gproj_mesh *mesh) {
     int32_t f, k, rows = 0;
+    (void)form;
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], missing = 0, side[2] = {0, 0};
         for (k = 0; k < degree; ++k, h = mesh->next[h]) {
@@ -131,45 +76,130 @@ static int32_t gprojt_gauss_rows(const gproj_mesh *mesh) {
     return rows;
 }
 
-static int32_t gprojt_expected_rows(const gproj_form *form, const gproj_mesh *mesh, gprojt_builder builder) {
-    int32_t boundary = gprojt_count_boundary(mesh), corners = gprojt_count_corners(form, mesh), f, rows = 0;
-    switch (builder) {
-    case GPROJT_PLANARITY:
-        for (f = 0; f < mesh->face_count; ++f) rows += mesh->face_degree[f] > 3 ? 1 + mesh->face_degree[f] : 0;
-        return rows;
-    case GPROJT_FIXED:
-    case GPROJT_TARGETS:
-    case GPROJT_GLIDING: return 9; /* gliding: two rows a vertex, and one that only acts where it is pinned */
-    case GPROJT_FIXED_BOUNDARY: return 3 * boundary;
-    case GPROJT_FIXED_CORNERS: return 3 * corners;
-    case GPROJT_GLIDING_BOUNDARY: return 3 * boundary; /* corners, too */
-    case GPROJT_CLOSENESS: return 3 * mesh->vertex_count;
-    case GPROJT_REFERENCE: return mesh->vertex_count;
-    case GPROJT_FAIRNESS: return gprojt_interior_rows(mesh, 6, 3) + 3 * (boundary - corners);
-    case GPROJT_BOUNDARY_FAIRNESS: return 3 * (boundary - corners);
-    case GPROJT_TANGENTIAL: return gprojt_interior_rows(mesh, 4, 2);
-    default: return gprojt_gauss_rows(mesh);
-    }
+/* A row of the table: a builder, and what its group is to be. rows: how many there are on this mesh. */
+typedef struct gprojt_builder {
+    const char *name;
+    gproj_kind kind;
+    gproj_place place;
+    int32_t (*build)(gproj_form *form, double weight); /* one of these three */
+    int32_t (*build_edges)(gproj_form *form, int32_t count, const int32_t *edges, double weight);
+    int32_t (*build_with)(gproj_form *form, const gprojt_props *props, double weight);
+    int32_t (*rows)(const gproj_form *form, const gproj_mesh *mesh);
+    bool planar; /* needs planarity */
+} gprojt_builder;
+
+static int32_t gprojt_build_fixed(gproj_form *form, const gprojt_props *props, double weight) {
+    return gproj_add_fixed(form, 3, props->vertex, weight);
+}
+static int32_t gprojt_build_targets(gproj_form *form, const gprojt_props *props, double weight) {
+    return gproj_add_targets(form, 3, props->vertex, props->position, weight);
+}
+static int32_t gprojt_build_gliding(gproj_form *form, const gprojt_props *props, double weight) {
+    return gproj_add_gliding(form, props->curve, 3, props->vertex, weight);
+}
+static int32_t gprojt_build_reference(gproj_form *form, const gprojt_props *props, double weight) {
+    return gproj_add_reference(form, props->surface, weight);
+}
+
+static int32_t gprojt_planar_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    int32_t f, rows = 0;
+    (void)form;
+    for (f = 0; f < mesh->face_count; ++f) rows += mesh->face_degree[f] > 3 ? 1 + mesh->face_degree[f] : 0;
+    return rows;
+}
+static int32_t gprojt_nine_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    (void)form, (void)mesh;
+    return 9; /* gliding: two rows a vertex, and one that only acts where it is pinned */
+}
+static int32_t gprojt_boundary_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    (void)form;
+    return 3 * gprojt_count_boundary(mesh); /* corners, too */
+}
+static int32_t gprojt_corner_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    return 3 * gprojt_count_corners(form, mesh);
+}
+static int32_t gprojt_vertex_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    (void)form;
+    return mesh->vertex_count;
+}
+static int32_t gprojt_coordinate_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    return 3 * gprojt_vertex_rows(form, mesh);
+}
+static int32_t gprojt_edge_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    (void)form;
+    return mesh->edge_count;
+}
+static int32_t gprojt_boundary_fairness_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    return gprojt_boundary_rows(form, mesh) - gprojt_corner_rows(form, mesh);
+}
+static int32_t gprojt_fairness_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    return gprojt_interior_rows(mesh, 6, 3) + gprojt_boundary_fairness_rows(form, mesh);
+}
+static int32_t gprojt_tangential_rows(const gproj_form *form, const gproj_mesh *mesh) {
+    (void)form;
+    return gprojt_interior_rows(mesh, 4, 2);
+}
+
+/* Rows of the table that tests name. */
+enum {
+    GPROJT_PLANARITY,
+    GPROJT_FIXED,
+    GPROJT_FIXED_BOUNDARY,
+    GPROJT_FIXED_CORNERS,
+    GPROJT_TARGETS,
+    GPROJT_GLIDING,
+    GPROJT_GLIDING_BOUNDARY,
+    GPROJT_REFERENCE = 10
+};
+
+#define MUST(place) GPROJ_CONSTRAINT, GPROJ_PLACE_##place
+#define WISH(place) GPROJ_WISH, GPROJ_PLACE_##place
+static const gprojt_builder gprojt_builders[] = {
+    {"planarity", MUST(FACE), gproj_add_planarity, NULL, NULL, gprojt_planar_rows, false},
+    {"fixed vertices", MUST(VERTEX), NULL, NULL, gprojt_build_fixed, gprojt_nine_rows, false},
+    {"fixed boundary", MUST(VERTEX), gproj_add_fixed_boundary, NULL, NULL, gprojt_boundary_rows, false},
+    {"fixed corners", MUST(VERTEX), gproj_add_fixed_corners, NULL, NULL, gprojt_corner_rows, false},
+    {"targets", MUST(VERTEX), NULL, NULL, gprojt_build_targets, gprojt_nine_rows, false},
+    {"gliding", MUST(VERTEX), NULL, NULL, gprojt_build_gliding, gprojt_nine_rows, false},
+    {"gliding boundary", MUST(VERTEX), gproj_add_gliding_boundary, NULL, NULL, gprojt_boundary_rows, false},
+    {"midsphere", MUST(EDGE), NULL, gproj_add_midsphere, NULL, gprojt_edge_rows, false},
+    {"equal lengths", MUST(EDGE), NULL, gproj_add_equal_lengths, NULL, gprojt_edge_rows, false},
+    {"closeness", WISH(VERTEX), gproj_add_closeness, NULL, NULL, gprojt_coordinate_rows, false},
+    {"reference", WISH(VERTEX), NULL, NULL, gprojt_build_reference, gprojt_vertex_rows, false},
+    {"fairness", WISH(VERTEX), gproj_add_fairness, NULL, NULL, gprojt_fairness_rows, false},
+    {"boundary fairness", WISH(VERTEX), gproj_add_boundary_fairness, NULL, NULL, gprojt_boundary_fairness_rows, false},
+    {"tangential fairness", WISH(VERTEX), gproj_add_tangential_fairness, NULL, NULL, gprojt_tangential_rows, false},
+    {"Gauss image fairness", WISH(FACE), gproj_add_gauss_fairness, NULL, NULL, gprojt_gauss_rows, true},
+};
+enum {
+    GPROJT_BUILDERS = sizeof gprojt_builders / sizeof *gprojt_builders
+};
+
+static int32_t gprojt_build(gproj_form *form, int row, const gprojt_props *props, double weight) {
+    const gprojt_builder *b = &gprojt_builders[row];
+    return b->build         ? b->build(form, weight)
+           : b->build_edges ? b->build_edges(form, props->edges, NULL, weight)
+                            : b->build_with(form, props, weight);
 }
 
 /* One builder on one mesh, at a random state: rows, name, and gradients by finite differences. */
-static void gprojt_check_builder(int shape, gprojt_builder builder) {
+static void gprojt_check_builder(int shape, int row) {
+    const gprojt_builder *builder = &gprojt_builders[row];
     gproj_mesh *mesh = gprojt_noisy(shape, 4, 0.05, 7);
     gprojt_props props = gprojt_take_props(mesh);
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_group_info info;
     uint64_t seed = 3;
     int32_t group, i;
-    if (builder == GPROJT_GAUSS) gproj_add_planarity(form, 1);
-    group = gprojt_build(form, builder, &props, 0.75);
+    if (builder->planar) gproj_add_planarity(form, 1);
+    group = gprojt_build(form, row, &props, 0.75);
     GPROJT_CHECK(group >= 0 && gproj_form_error(form)->code == GPROJ_OK);
     info = gproj_form_group_info(form, group);
-    GPROJT_CHECK(!strcmp(info.name, gprojt_builder_kinds[builder].name));
-    GPROJT_CHECK(info.kind == gprojt_builder_kinds[builder].kind && info.place == gprojt_builder_kinds[builder].place);
+    GPROJT_CHECK(!strcmp(info.name, builder->name));
+    GPROJT_CHECK(info.kind == builder->kind && info.place == builder->place);
     GPROJT_CHECK(info.schedule.weight == 0.75);
-    if (info.rows != gprojt_expected_rows(form, mesh, builder)) {
-        printf("  %s on shape %d: %d rows, not %d\n", info.name, shape, info.rows,
-               gprojt_expected_rows(form, mesh, builder));
+    if (info.rows != builder->rows(form, mesh)) {
+        printf("  %s on shape %d: %d rows, not %d\n", info.name, shape, info.rows, builder->rows(form, mesh));
         GPROJT_CHECK(!"number of rows");
     }
     for (i = 0; i < gproj_system_variable_count(gproj_form_system(form)); ++i)
@@ -181,9 +211,9 @@ static void gprojt_check_builder(int shape, gprojt_builder builder) {
 }
 
 GPROJT_TEST(builders) {
-    int shape, builder;
+    int shape, row;
     for (shape = 0; shape < GPROJT_SHAPES; ++shape)
-        for (builder = 0; builder < GPROJT_BUILDERS; ++builder) gprojt_check_builder(shape, (gprojt_builder)builder);
+        for (row = 0; row < GPROJT_BUILDERS; ++row) gprojt_check_builder(shape, row);
 }
 
 /* All together, after a solve: the guard's rows, too. */
@@ -192,7 +222,7 @@ GPROJT_TEST(gradients_of_everything) {
     gprojt_props props = gprojt_take_props(mesh);
     gproj_form *form = gproj_form_create(mesh, NULL);
     int builder;
-    for (builder = 0; builder < GPROJT_BUILDERS; ++builder) gprojt_build(form, (gprojt_builder)builder, &props, 0.5);
+    for (builder = 0; builder < GPROJT_BUILDERS; ++builder) gprojt_build(form, builder, &props, 0.5);
     GPROJT_CHECK(gproj_solve(form, 2, NULL).outcome != GPROJ_FAILED);
     GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-8);
     gproj_form_destroy(form);
@@ -325,7 +355,7 @@ GPROJT_TEST(planarity_reaches_machine_precision) {
     }
 }
 
-static void gprojt_check_fixed(int shape, gprojt_builder builder) {
+static void gprojt_check_fixed(int shape, int builder) {
     gproj_mesh *mesh = gprojt_noisy(shape, 6, 0.05, 5);
     gprojt_props props = gprojt_take_props(mesh);
     double *before = gprojt_keep(mesh), unit;
@@ -710,7 +740,7 @@ GPROJT_TEST(verdicts_of_random_sets) {
         int builder;
         for (builder = 0; builder < GPROJT_BUILDERS; ++builder) {
             chosen[builder] = gprojt_below(&seed, 3) == 0 || builder == GPROJT_PLANARITY;
-            if (chosen[builder]) gprojt_build(form, (gprojt_builder)builder, &props, 0.05 + gprojt_uniform(&seed));
+            if (chosen[builder]) gprojt_build(form, builder, &props, 0.05 + gprojt_uniform(&seed));
         }
         result = gproj_solve(form, 24, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_FAILED && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
@@ -1478,10 +1508,9 @@ static void gprojt_try_everything(gproj_mesh *mesh) {
         int builder;
         if (all == 0) gproj_add_planarity(form, 1);
         for (builder = 0; all > 0 && builder < GPROJT_BUILDERS; ++builder) {
-            if (all == 1 && builder != GPROJT_PLANARITY && gprojt_builder_kinds[builder].kind == GPROJ_CONSTRAINT)
-                continue;
+            if (all == 1 && builder != GPROJT_PLANARITY && gprojt_builders[builder].kind == GPROJ_CONSTRAINT) continue;
             if (builder == GPROJT_REFERENCE && !props.surface) continue;
-            gprojt_build(form, (gprojt_builder)builder, &props, 0.5);
+            gprojt_build(form, builder, &props, 0.5);
         }
         result = gproj_solve(form, 8, NULL);
         if (result.outcome == GPROJ_FAILED) printf("  builders %d: %s\n", all, result.message);
@@ -1758,8 +1787,7 @@ static int32_t gprojt_wrong_form_call(gproj_form *form, int call) {
 static void gprojt_check_form_stuck(gproj_form *form, const gprojt_props *props) {
     gproj_error before = *gproj_form_error(form);
     int32_t groups = gproj_system_group_count(gproj_form_system(form)), builder;
-    for (builder = 0; builder < GPROJT_BUILDERS; ++builder)
-        GPROJT_CHECK(gprojt_build(form, (gprojt_builder)builder, props, 1) == -1);
+    for (builder = 0; builder < GPROJT_BUILDERS; ++builder) GPROJT_CHECK(gprojt_build(form, builder, props, 1) == -1);
     GPROJT_CHECK(gproj_set_targets(form, 0, props->position) == before.code);
     GPROJT_CHECK(gproj_set_schedule(form, 0, gprojt_schedule(1, 1, 1)) == before.code);
     GPROJT_CHECK(gproj_solve(form, 3, NULL).outcome == GPROJ_FAILED);
@@ -1917,8 +1945,8 @@ GPROJT_TEST(no_form_and_no_mesh) {
                  strstr(gproj_form_error(form)->message, "no mesh"));
     GPROJT_CHECK(gproj_form_system(form) == NULL && gproj_form_memory(form).used > 0 && !gproj_form_is_corner(form, 0));
     for (builder = 0; builder < GPROJT_BUILDERS; ++builder) {
-        GPROJT_CHECK(gprojt_build(form, (gprojt_builder)builder, &props, 1) == -1);
-        GPROJT_CHECK(gprojt_build(NULL, (gprojt_builder)builder, &props, 1) == -1);
+        GPROJT_CHECK(gprojt_build(form, builder, &props, 1) == -1);
+        GPROJT_CHECK(gprojt_build(NULL, builder, &props, 1) == -1);
     }
     GPROJT_CHECK(gproj_solve(form, 3, NULL).outcome == GPROJ_FAILED &&
                  gproj_solve(NULL, 3, NULL).outcome == GPROJ_FAILED);
@@ -1998,7 +2026,7 @@ static void gprojt_add_all(gproj_form *form, void *user) {
     int builder;
     for (builder = 0; builder < GPROJT_BUILDERS; ++builder)
         if (builder != GPROJT_GLIDING && builder != GPROJT_FIXED_BOUNDARY)
-            gprojt_build(form, (gprojt_builder)builder, (const gprojt_props *)user, 0.3);
+            gprojt_build(form, builder, (const gprojt_props *)user, 0.3);
 }
 
 /* Planarity alone: the default guidance and the guard take their memory in the solve. */
@@ -2026,7 +2054,7 @@ GPROJT_TEST(no_allocation_in_a_second_solve) {
     uint64_t allocations;
     int builder;
     for (builder = 0; builder < GPROJT_BUILDERS; ++builder)
-        if (builder != GPROJT_GLIDING) gprojt_build(form, (gprojt_builder)builder, &props, 0.3);
+        if (builder != GPROJT_GLIDING) gprojt_build(form, builder, &props, 0.3);
     gproj_solve(form, 1, NULL);
     allocations = gproj_form_memory(form).allocations;
     gproj_set_schedule(form, 0, gprojt_schedule(0.5, 0.9, 4));

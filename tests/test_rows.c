@@ -1,0 +1,323 @@
+/* test_rows.c - >>catalogue: rows and unknowns of the caller's, residuals by element, edge midpoints on a sphere. */
+#include "gprojt_design.h"
+#include "gprojt_form.h"
+#include "gprojt_inside.h"
+
+/* A bumpy cap, moved and scaled: position = shift + size * p. */
+static gproj_mesh *gprojt_cap(int32_t n, double size, const double shift[3]) {
+    gproj_mesh *mesh = gprojt_roof(n, 0.02);
+    int32_t i;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] = shift[i % 3] + size * mesh->position[i];
+    return mesh;
+}
+
+/* The row (|v - c|^2 - r^2) / (2 radius), c and r being three unknowns and one; or with r < 0 the number `radius`. */
+static int32_t gprojt_add_ball_row(gproj_form *form, int32_t group, int32_t vertex, int32_t c, int32_t r,
+                                   double radius) {
+    gproj_term term[10];
+    double half = 0.5 / radius;
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        term[3 * k] = gprojt_term(3 * vertex + k, 3 * vertex + k, half);
+        term[3 * k + 1] = gprojt_term(3 * vertex + k, c + k, -2 * half);
+        term[3 * k + 2] = gprojt_term(c + k, c + k, half);
+    }
+    term[9] = gprojt_term(r, r, -half);
+    return gproj_form_add_row(form, group, r < 0 ? 9 : 10, term, r < 0 ? -radius * half * radius : 0, vertex);
+}
+
+/* All vertices on one sphere with unknown centre and radius. Returns the group; *first: the unknowns. */
+static int32_t gprojt_add_ball(gproj_form *form, const gproj_mesh *mesh, double size, const double shift[3],
+                               gproj_start start, void *user, int32_t *first) {
+    int32_t group = gproj_add_rows(form, "ball", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), v, r;
+    double centre[3] = {0, 0, -5}, radius = 8 * size;
+    int32_t k;
+    for (k = 0; k < 3; ++k) centre[k] = shift[k] + size * centre[k];
+    *first = gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 3, centre, start, user);
+    r = gproj_form_add_unknowns(form, group, GPROJ_UNIT_LENGTH, 1, &radius, NULL, NULL);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        GPROJT_CHECK(gprojt_add_ball_row(form, group, v, *first, r, 8 * size) == v);
+    return group;
+}
+
+/* The largest distance of a vertex from the sphere, in the mesh's units. */
+static double gprojt_off_ball(const gproj_mesh *mesh, const double ball[4]) {
+    double worst = 0;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v)
+        worst = fmax(worst, fabs(gprojt_far(mesh->position + 3 * v, ball) - ball[3]));
+    return worst;
+}
+
+GPROJT_TEST(a_ball_in_any_units) {
+    static const double sizes[] = {1, 1000, 1e-3}, shifts[][3] = {{0, 0, 0}, {7e3, -2e3, 50}, {1, 2, 3}};
+    double first[4] = {0, 0, 0, 0};
+    int32_t i, k, at;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_cap(6, sizes[i], shifts[i]);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t group = gprojt_add_ball(form, mesh, sizes[i], shifts[i], NULL, NULL, &at);
+        double ball[4], unit = gproj_mesh_mean_edge_length(mesh);
+        gproj_result result;
+        GPROJT_CHECK(group >= 0 && gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+        result = gproj_solve(form, 25, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(gproj_form_get_unknowns(form, at, 4, ball) == GPROJ_OK);
+        GPROJT_CHECK(gprojt_off_ball(mesh, ball) < 1e-9 * unit);
+        /* The same ball in all units. */
+        for (k = 0; k < 3; ++k) ball[k] = (ball[k] - shifts[i][k]) / sizes[i];
+        ball[3] /= sizes[i];
+        for (k = 0; k < 4; ++k) {
+            if (i > 0) GPROJT_NEAR(ball[k], first[k], 1e-7);
+            first[k] = ball[k];
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A height of 5 is 5 in the mesh's units, whatever the form does inside; so is a fixed radius. */
+GPROJT_TEST(numbers_are_in_the_units_of_the_mesh) {
+    static const double shift[3] = {100, 200, 4};
+    gproj_mesh *mesh = gprojt_cap(5, 3, shift);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group = gproj_add_rows(form, "height 5", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), v;
+    int32_t other = gproj_add_rows(form, "distance", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+    for (v = 0; v < mesh->vertex_count; v += 2) {
+        gproj_term z = gprojt_term(3 * v + 2, -1, 1);
+        GPROJT_CHECK(gproj_form_add_row(form, group, 1, &z, -5, v) == v / 2);
+    }
+    { /* vertex 1 is 2.5 away from the point (101, 201, 5) */
+        static const double p[3] = {101, 201, 5};
+        gproj_term term[6];
+        double constant = -2.5 * 2.5;
+        int32_t k;
+        for (k = 0; k < 3; ++k) {
+            term[2 * k] = gprojt_term(3 + k, 3 + k, 1 / 5.0);
+            term[2 * k + 1] = gprojt_term(3 + k, -1, -2 * p[k] / 5);
+            constant += p[k] * p[k];
+        }
+        gproj_form_add_row(form, other, 6, term, constant / 5, 1);
+        GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(gprojt_far(mesh->position + 3, p), 2.5, 1e-10);
+    }
+    for (v = 0; v < mesh->vertex_count; v += 2) GPROJT_NEAR(mesh->position[3 * v + 2], 5, 1e-11);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+typedef struct gprojt_starts {
+    int32_t calls;
+    bool bad;
+} gprojt_starts;
+
+static void gprojt_start_ball(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values) {
+    gprojt_starts *starts = (gprojt_starts *)user;
+    GPROJT_CHECK(first >= 3 * mesh->vertex_count && count == 3);
+    starts->calls++;
+    values[2] = starts->bad ? NAN : -5.25;
+}
+
+/* A solve does not depend on those before it: unknowns begin where they should. */
+GPROJT_TEST(unknowns_start_anew) {
+    static const double none[3] = {0, 0, 0};
+    gproj_mesh *mesh = gprojt_cap(5, 1, none);
+    size_t bytes = 3 * (size_t)mesh->vertex_count * sizeof(double);
+    double *begin = (double *)malloc(bytes), *end = (double *)malloc(bytes), ball[2][4];
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gprojt_starts starts = {0, false};
+    int32_t at, round;
+    memcpy(begin, mesh->position, bytes);
+    gprojt_add_ball(form, mesh, 1, none, gprojt_start_ball, &starts, &at);
+    GPROJT_CHECK(starts.calls > 0);
+    for (round = 0; round < 2; ++round) {
+        int32_t calls = starts.calls;
+        memcpy(mesh->position, begin, bytes);
+        GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == GPROJ_CONVERGED && starts.calls == calls + 1);
+        gproj_form_get_unknowns(form, at, 4, ball[round]);
+        if (round == 0) memcpy(end, mesh->position, bytes);
+    }
+    GPROJT_CHECK(memcmp(end, mesh->position, bytes) == 0 && memcmp(ball[0], ball[1], sizeof ball[0]) == 0);
+    starts.bad = true;
+    GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER && gproj_form_error(form)->index == at + 2);
+    GPROJT_CHECK(strstr(gproj_form_error(form)->message, "ball") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(begin);
+    free(end);
+}
+
+/* States keep unknowns, and drags hold rows of one's own. */
+GPROJT_TEST(states_and_drags_know_unknowns) {
+    static const double none[3] = {0, 0, 0};
+    gproj_mesh *mesh = gprojt_cap(5, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t at, vertex = gprojt_middle(mesh);
+    double solved[4], ball[4], position[3];
+    gproj_handles handles = gprojt_vertex_handles(1, &vertex);
+    gproj_drag *drag;
+    uint8_t *state;
+    size_t size;
+    gprojt_add_ball(form, mesh, 1, none, NULL, NULL, &at);
+    gproj_solve(form, 25, NULL);
+    gproj_form_get_unknowns(form, at, 4, solved);
+    state = gprojt_save(form, &size);
+    mesh->position[2] += 0.3;
+    gproj_solve(form, 25, NULL);
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    gproj_form_get_unknowns(form, at, 4, ball);
+    GPROJT_CHECK(memcmp(ball, solved, sizeof ball) == 0 && gprojt_off_ball(mesh, ball) < 1e-9);
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    GPROJT_REQUIRE(drag != NULL);
+    memcpy(position, mesh->position + 3 * vertex, sizeof position);
+    position[2] += 0.05;
+    GPROJT_CHECK(gproj_drag_move(drag, position) == GPROJ_OK);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    gproj_form_get_unknowns(form, at, 4, ball);
+    GPROJT_CHECK(gprojt_off_ball(mesh, ball) < 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(state);
+}
+
+/* Residuals by element are those that the rows have. */
+GPROJT_TEST(residuals_by_element) {
+    static const double shift[3] = {10, 20, 30};
+    gproj_mesh *mesh = gprojt_cap(5, 2, shift);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    double *vertex = (double *)calloc((size_t)mesh->vertex_count, sizeof(double));
+    double *face = (double *)calloc((size_t)mesh->face_count, sizeof(double)), worst = 0, ball[4], unit;
+    int32_t at, group = gprojt_add_ball(form, mesh, 2, shift, NULL, NULL, &at), i, planar;
+    planar = gproj_add_planarity(form, 1);
+    memset(&options, 0, sizeof options);
+    options.skip_closeness = true;
+    gproj_solve(form, 1, &options);
+    unit = 1 / gprojt_unit(form);
+    gproj_form_get_unknowns(form, at, 4, ball);
+    GPROJT_CHECK(gproj_form_residuals(form, group, vertex) == GPROJ_OK);
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        double far = gprojt_far(mesh->position + 3 * i, ball), phi = fabs(far * far - ball[3] * ball[3]) / 32;
+        GPROJT_NEAR(vertex[i], phi * unit, 1e-9);
+        worst = fmax(worst, vertex[i]);
+    }
+    GPROJT_NEAR(worst, gproj_form_group_info(form, group).max, 1e-15);
+    GPROJT_CHECK(gproj_form_residuals(form, planar, face) == GPROJ_OK);
+    for (worst = 0, i = 0; i < mesh->face_count; ++i) worst = fmax(worst, face[i]);
+    GPROJT_CHECK(worst == gproj_form_group_info(form, planar).max && worst > 0);
+    GPROJT_CHECK(gproj_form_residuals(form, 99, face) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_residuals(form, -1, face) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_residuals(NULL, 0, face) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(vertex);
+    free(face);
+}
+
+/* Each wrong call says what is wrong. */
+GPROJT_TEST(wrong_rows_are_refused) {
+    static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
+    static const char *const words[] = {"neither", "neither", "neither", "none of", "none of", "3 each", "1 or more",
+                                        "1 or more", "beyond 1e70", "1e50", "finite"};
+    int32_t i;
+    for (i = 0; i < 11; ++i) {
+        gproj_mesh *mesh = gprojt_cap(4, 1, none);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t planar = gproj_add_planarity(form, 1), got;
+        int32_t group = gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, i == 9 ? -1 : 1);
+        gproj_term term = gprojt_term(0, -1, i == 10 ? INFINITY : 1);
+        if (i == 0) term.i = -1;
+        if (i == 1) term.i = 3 * mesh->vertex_count; /* a normal: the library's */
+        if (i == 2) term.j = INT32_MAX;
+        got = i < 3    ? gproj_form_add_row(form, group, 1, &term, 0, 0)
+              : i == 3 ? gproj_form_add_row(form, planar, 1, &term, 0, 0)
+              : i == 4 ? gproj_form_add_unknowns(form, 77, GPROJ_UNIT_NUMBER, 1, values, NULL, NULL)
+              : i == 5 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 2, values, NULL, NULL)
+              : i == 6 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 0, values, NULL, NULL)
+              : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
+              : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
+              : i == 9 ? group
+                       : gproj_form_add_row(form, group, 1, &term, 0, 0);
+        if (!strstr(gproj_form_error(form)->message, words[i])) printf("  %d: %s\n", i, gproj_form_error(form)->message);
+        GPROJT_CHECK(got == -1 && strstr(gproj_form_error(form)->message, words[i]) != NULL);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* The midpoints' sphere, checked apart from the library; on a real sphere it is that one. */
+GPROJT_TEST(edge_midpoints_on_a_sphere) {
+    gprojt_soup soup = gprojt_cube_sphere(3);
+    gproj_mesh *mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    gproj_form *form;
+    double centre[3] = {0, 0, 0}, least = INFINITY, most = 0;
+    uint64_t seed = 5;
+    int32_t i, e;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i)
+        mesh->position[i] = 40 + 3 * (mesh->position[i] + 0.02 * gprojt_uniform(&seed));
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    GPROJT_CHECK(gproj_add_midsphere(form, mesh->edge_count, NULL, 1) >= 0);
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-8);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    /* Four midpoints give the sphere by Cramer's rule: 2 (m_k - m_0)'c = m_k'm_k - m_0'm_0. */
+    {
+        static const int32_t pick[4] = {0, 17, 40, 71};
+        double m[4][3], d[3][3], side[3], n[3], det;
+        for (i = 0; i < 4; ++i) {
+            const double *a = mesh->position + 3 * mesh->origin[2 * pick[i]];
+            const double *b = mesh->position + 3 * mesh->origin[2 * pick[i] + 1];
+            for (e = 0; e < 3; ++e) m[i][e] = (a[e] + b[e]) / 2 - 40;
+        }
+        for (i = 0; i < 3; ++i) {
+            gprojt_sub3(m[i + 1], m[0], d[i]);
+            side[i] = (gprojt_dot3(m[i + 1], m[i + 1]) - gprojt_dot3(m[0], m[0])) / 2;
+        }
+        gprojt_cross3(d[1], d[2], n);
+        det = gprojt_dot3(d[0], n);
+        for (i = 0; i < 3; ++i) {
+            gprojt_cross3(d[(i + 1) % 3], d[(i + 2) % 3], n);
+            for (e = 0; e < 3; ++e) centre[e] += side[i] * n[e] / det;
+        }
+    }
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *a = mesh->position + 3 * mesh->origin[2 * e], *b = mesh->position + 3 * mesh->origin[2 * e + 1];
+        double m[3];
+        for (i = 0; i < 3; ++i) m[i] = (a[i] + b[i]) / 2 - 40;
+        least = fmin(least, gprojt_far(m, centre)), most = fmax(most, gprojt_far(m, centre));
+    }
+    GPROJT_CHECK(most - least < 1e-9 * most && least > 2 && most < 3.2);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
+}
+
+static void gprojt_add_own(gproj_form *form, void *user) {
+    double ball[4] = {0, 0, -3, 5};
+    int32_t group = gproj_add_rows(form, "ball", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), at, r;
+    (void)user;
+    at = gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 3, ball, NULL, NULL);
+    r = gproj_form_add_unknowns(form, group, GPROJ_UNIT_LENGTH, 1, ball + 3, NULL, NULL);
+    gprojt_add_ball_row(form, group, 0, at, r, 5);
+    gproj_add_midsphere(form, 3, NULL, 1);
+}
+
+GPROJT_TEST(every_allocation_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 1);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_own, NULL, 3, NULL) >= 20);
+    gproj_mesh_destroy(mesh);
+}
+
+int main(void) {
+    GPROJT_RUN(a_ball_in_any_units);
+    GPROJT_RUN(numbers_are_in_the_units_of_the_mesh);
+    GPROJT_RUN(unknowns_start_anew);
+    GPROJT_RUN(states_and_drags_know_unknowns);
+    GPROJT_RUN(residuals_by_element);
+    GPROJT_RUN(wrong_rows_are_refused);
+    GPROJT_RUN(edge_midpoints_on_a_sphere);
+    GPROJT_RUN(every_allocation_fails_once);
+    return gprojt_report();
+}
