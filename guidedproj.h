@@ -550,14 +550,24 @@ typedef enum gproj_kind {
     GPROJ_KIND_FORCE_INT = 0x7fffffff
 } gproj_kind;
 
-/* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. A decay of 0 means 1 (no decay). A
-   last of 0 means for ever; but a form's wishes (gproj_solve) then end after half of the iterations (smooth: 10 at
-   most). So {w} is the constant weight w. Needs 0 <= weight <= 1e50, 0 <= decay <= 1, last >= 0. */
+/* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. Make it by the functions below; decay may
+   be set afterwards. Needs 0 <= weight <= 1e50, and unless the weight is 0 also 0 < decay <= 1, and last >= 1 or
+   GPROJ_LAST_GUIDING. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
     int32_t last;
 } gproj_schedule;
+
+enum {
+    GPROJ_LAST_GUIDING = -1 /* see gproj_guide */
+};
+
+GPROJ_API gproj_schedule gproj_keep(double weight);               /* the same weight in all iterations */
+GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last); /* until iteration `last`, then none */
+/* As long as wishes guide a solve: in forms the first half of the iterations (smooth: 10 at most; with forces 9), in systems
+   all. Constraints and bounds keep it. */
+GPROJ_API gproj_schedule gproj_guide(double weight);
 
 /* One term of a row: a x_i x_j, or a x_i if j is -1. i = j gives a x_i^2. */
 typedef struct gproj_term {
@@ -1214,8 +1224,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    that the mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives the same
    shape as in km. Every gproj_add_... appends a group of rows to the form's system and returns the group's number (-1
    after an error); after an error they do nothing, so check once, at the solve. Weights: 1 for what must hold. Wishes
-   fade by default after half of the solve's iterations (schedule with last = 0), because a wish that stays on biases
-   the constraints; set a schedule to say otherwise. */
+   guide by default and then have no weight (gproj_guide), because a wish that stays on biases the constraints; set a
+   schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
@@ -1383,7 +1393,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
    mean edge lengths; 0 without rows. per_element: a number for each vertex, edge or face of the mesh. */
 GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element);
 
-/* Sets a group's weight, decay and last iteration; {w, 1, INT32_MAX} keeps a wish on to the end. */
+/* Sets a group's weights: gproj_keep(w) keeps a wish on to the end, gproj_keep(0) switches any group off. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
 /* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says;
    elements NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off,
@@ -8040,16 +8050,27 @@ GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s 
 GPROJ_API double *gproj_system_values(gproj_system *s) { return s ? s->x : NULL; }
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *s) { return s ? s->group_count : 0; }
 
-GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule schedule) {
-    return schedule.weight >= 0 && schedule.weight <= 1e50 && schedule.decay >= 0 && schedule.decay <= 1 &&
-           schedule.last >= 0;
+GPROJI_INTERNAL gproj_schedule gproji_make_schedule(double weight, int32_t last) {
+    gproj_schedule schedule;
+    schedule.weight = weight, schedule.decay = 1, schedule.last = last;
+    return schedule;
+}
+
+GPROJ_API gproj_schedule gproj_keep(double weight) { return gproji_make_schedule(weight, INT32_MAX); }
+GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) { return gproji_make_schedule(weight, last); }
+GPROJ_API gproj_schedule gproj_guide(double weight) { return gproji_make_schedule(weight, GPROJ_LAST_GUIDING); }
+
+GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule s) {
+    return s.weight >= 0 && s.weight <= 1e50 && s.decay >= 0 && s.decay <= 1 && s.last >= GPROJ_LAST_GUIDING &&
+           (s.weight == 0 || (s.decay > 0 && s.last != 0));
 }
 
 GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
-    return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                       "the schedule of group '%s' (weight %g, decay %g, last %d) needs 0 <= weight <= 1e50, 0 <= "
-                       "decay <= 1, last >= 0",
-                       name, schedule.weight, schedule.decay, schedule.last);
+    return gproji_fail(
+        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+        "the schedule of group '%s' (weight %g, decay %g, last %d) needs 0 <= weight <= 1e50, 0 < decay <= 1, "
+        "last >= 1: make it by gproj_keep, gproj_fade or gproj_guide",
+        name, schedule.weight, schedule.decay, schedule.last);
 }
 
 /* Cuts names that are too long. */
@@ -10662,7 +10683,8 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
 
 /* The last iteration in which a group has a weight; 0: it keeps one for ever. */
 GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
-    return g->schedule.last == 0 && g->kind == GPROJ_WISH ? loop->wish_last : g->schedule.last;
+    if (g->schedule.last == GPROJ_LAST_GUIDING) return g->kind == GPROJ_WISH ? loop->wish_last : 0;
+    return g->schedule.last;
 }
 
 /* The weight of a group in iteration n. */
@@ -12276,7 +12298,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
     int32_t zero_sum = g->zero_sum, r;
     gproji_pass_number(stream, &schedule.weight, 0, 1e50);
     gproji_pass_number(stream, &schedule.decay, 0, 1);
-    gproji_pass_integer(stream, &schedule.last, 0, INT32_MAX);
+    gproji_pass_integer(stream, &schedule.last, GPROJ_LAST_GUIDING, INT32_MAX);
     if (reading) g->schedule = schedule;
     gproji_pass_number(stream, &g->weight, 0, 1e50);
     /* How steps are found depends on whether the group has ever counted (gproji_wake_groups), which rows sum to zero,
@@ -19417,7 +19439,7 @@ GPROJI_NOINLINE int32_t gproji_add_group(gproji_part *part, double weight) {
     group.name = rule->name;
     group.kind = rule->kind;
     group.place = rule->place;
-    group.schedule.weight = weight;
+    group.schedule = rule->kind == GPROJ_WISH ? gproj_guide(weight) : gproj_keep(weight);
     group.refresh = rule->acts ? rule->acts->refresh : NULL;
     group.refresh_user = part;
     part->group = gproj_system_add_group(part->form->system, &group);
@@ -19747,14 +19769,13 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
 }
 
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
-    gproj_schedule schedule = {weight, 0, 0};
     const gproj_mesh *mesh;
     size_t faces = 0, corners = 0;
     gproji_part *part;
     int32_t f;
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
-        gproj_system_set_schedule(form->system, form->planarity, schedule);
+        gproj_system_set_schedule(form->system, form->planarity, gproj_keep(weight));
         return gproji_form_ready(form) ? form->planarity : -1;
     }
     mesh = form->mesh;
@@ -22374,9 +22395,8 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
 
 /* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
 GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
-    static const gproj_schedule fading = {1, 0.3, 5}, steady = {0.3, 1, 0};
     gproji_statics *s = form->statics;
-    gproj_schedule schedule = wishes ? steady : fading;
+    gproj_schedule schedule = wishes ? gproj_guide(0.3) : gproj_fade(1, 5);
     gproji_balance p;
     bool guided = false;
     const double *x;
@@ -22394,6 +22414,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES)) gproji_add_force_guidance(form);
     guidance = gproji_own_group(form, GPROJI_OWN_FORCES);
     if (guidance < 0) return;
+    if (!wishes) schedule.decay = 0.3;
     if (!guided) schedule.weight = 0;
     gproj_system_set_schedule(form->system, guidance, schedule);
     x = gproj_system_values(form->system);
@@ -22670,7 +22691,6 @@ GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
 /* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
    iterations. */
 GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
-    gproj_schedule schedule;
     gproji_part *part;
     int32_t i;
     bool wanted = !skip && (gproji_is_on(form, form->planarity) || gproji_carries(form));
@@ -22678,10 +22698,9 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
     part = gproji_own_part(form, GPROJI_OWN_GUARD);
     if (!part || !gproji_form_ready(form)) return;
     gproji_guard_of(part)->on = wanted;
-    schedule.weight = wanted ? gproji_guard_weight : 0;
-    schedule.decay = 1;
-    schedule.last = gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER;
-    gproj_system_set_schedule(form->system, part->group, schedule);
+    gproj_system_set_schedule(
+        form->system, part->group,
+        gproj_fade(wanted ? gproji_guard_weight : 0, gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; i < part->count; ++i)
         gproji_area_vector(form->mesh, gproj_system_values(form->system), part->vertex[i],
                            gproji_guard_of(part)->area + 3 * (size_t)i);
@@ -22944,7 +22963,6 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
 
 /* Sets the guard for a solve that begins: no corner acts yet. */
 GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
-    gproj_schedule schedule = {gproji_corner_weight, 1, INT32_MAX};
     bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
     const gproj_mesh *mesh = form->mesh;
     const double *x;
@@ -22956,8 +22974,7 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     if (!part || !gproji_form_ready(form)) return;
     guard = gproji_corners_of(part);
-    if (!wanted) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, part->group, schedule);
+    gproj_system_set_schedule(form->system, part->group, gproj_keep(wanted ? gproji_corner_weight : 0));
     guard->rounds = 0;
     g = gproji_group_at(form->system, part->group);
     for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
@@ -23485,17 +23502,15 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 
 /* Lets steps be measured by their smoothness (see >>loop), or not. */
 GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
-    gproj_schedule schedule = {0, 1, 0};
     bool forces = form->statics && gproji_is_on(form, form->statics->group);
     const gproji_part *smooth, *brake;
     if (wanted) gproji_add_own_group(form, GPROJI_OWN_METRIC);
     if (wanted && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
     if (!gproji_form_ready(form)) return;
     smooth = gproji_own_part(form, GPROJI_OWN_METRIC), brake = gproji_own_part(form, GPROJI_OWN_BRAKE);
-    schedule.weight = wanted ? gproji_metric_smooth : 0;
-    if (smooth) gproj_system_set_schedule(form->system, smooth->group, schedule);
-    schedule.weight = wanted && forces ? gproji_metric_force : 0;
-    if (brake) gproj_system_set_schedule(form->system, brake->group, schedule);
+    if (smooth) gproj_system_set_schedule(form->system, smooth->group, gproj_keep(wanted ? gproji_metric_smooth : 0));
+    if (brake)
+        gproj_system_set_schedule(form->system, brake->group, gproj_keep(wanted && forces ? gproji_metric_force : 0));
 }
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
@@ -23509,10 +23524,9 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
     if (wanted) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
     closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
     if (closeness >= 0) {
-        schedule.weight = wanted ? 0.03 : 0;
+        schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
         schedule.decay = 0.3;
-        schedule.last = gproji_min(5, half);
-        if (nearest && wanted) schedule.weight = 1, schedule.decay = 0, schedule.last = 0;
+        if (nearest && wanted) schedule = gproj_keep(1);
         gproj_system_set_schedule(form->system, closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
             gproj_system_set_row(form->system, closeness, i, NULL, -gproj_system_values(form->system)[i]);
@@ -23864,7 +23878,6 @@ GPROJI_INTERNAL gproji_own gproji_own_of(const gproj_form *form, int32_t group) 
 
 /* Passes the groups, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
-    static const gproj_schedule off = {0, 0, 0};
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
     count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
@@ -23885,7 +23898,7 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
-            gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), off);
+            gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), gproj_keep(0));
 }
 
 /* Passes whom the library's own groups belong to, and the corners that have rows, in their order. The form gets those that
@@ -24508,7 +24521,8 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
 /* Sets the schedules of the release, or puts back the earlier ones. */
 GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_form *form = drag->form;
-    gproj_schedule fairness = {0, 0, 0}, handles = {0, 0, 0};
+    gproj_schedule fairness = gproj_fade(on ? gproji_drag_fairness : 0, GPROJI_DRAG_GUIDED);
+    gproj_schedule handles = gproj_fade(on ? 1 : 0, GPROJI_DRAG_GUIDED);
     int32_t g;
     for (g = 0; g < drag->structure.groups; ++g) {
         const gproji_group *group = gproji_group_at(form->system, g);
@@ -24519,10 +24533,7 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
         if (on && !drag->options.keep_wishes) schedule.weight = 0;
         gproj_system_set_schedule(form->system, g, schedule);
     }
-    fairness.weight = on ? gproji_drag_fairness : 0;
-    handles.weight = on ? 1 : 0;
     fairness.decay = handles.decay = gproji_drag_decay;
-    fairness.last = handles.last = GPROJI_DRAG_GUIDED;
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), fairness);
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }

@@ -49,7 +49,7 @@ static gproj_mesh *make_horn(gproj_error *error) {
 int main(void) {
     static int32_t support[2 * AROUND];
     static double density[6 * ALONG * AROUND];
-    gproj_schedule wish = {0.05, 0.9, 0};
+    gproj_schedule wish = gproj_guide(0.05);
     gproj_loads loads = {0};
     gproj_supports supports = {2 * AROUND, support, NULL};
     gproj_error error;
@@ -60,6 +60,7 @@ int main(void) {
     double area = 0, down = 0;
     int32_t i;
     if (!mesh) return puts(error.message), 1;
+    wish.decay = 0.9;
     for (i = 0; i < AROUND; ++i) support[i] = i, support[AROUND + i] = ALONG * AROUND + i;
     loads.area_load = 1;
     gproj_add_fixed_boundary(form, 1);

@@ -155,7 +155,7 @@ static int32_t gprojt_own_rows(gproj_form *form, int32_t vertices, double weight
     gproj_group group;
     int32_t number, i, count = vertices < 64 ? vertices : 64;
     memset(&group, 0, sizeof group);
-    group.name = "own", group.global = true, group.place = GPROJ_PLACE_VERTEX, group.schedule.weight = weight;
+    group.name = "own", group.global = true, group.place = GPROJ_PLACE_VERTEX, group.schedule = gproj_keep(weight);
     number = gproj_system_add_group(s, &group);
     for (i = 0; i < count; ++i) term[i] = gprojt_term(3 * i, -1, 1.0 / count);
     gproj_system_add_row(s, number, count, term, 0, 0);
@@ -305,7 +305,7 @@ static void gprojt_schedule_of_bytes(gprojt_case *c, int32_t group) {
     gproj_schedule schedule;
     schedule.weight = gprojt_weight_of_bytes(c);
     schedule.decay = decays[gprojt_choose(c, 4)];
-    schedule.last = gprojt_choose(c, 6);
+    schedule.last = gprojt_choose(c, 7) - 1;
     if (schedule.last == 5) schedule.last = INT32_MAX;
     gproj_set_schedule(c->form, group, schedule);
 }

@@ -14,9 +14,10 @@ static inline gproj_term gprojt_term(int32_t i, int32_t j, double a) {
     return term;
 }
 
+/* A decay of 0: none; a `last` of 0: as long as wishes guide. */
 static inline gproj_schedule gprojt_schedule(double weight, double decay, int32_t last) {
-    gproj_schedule schedule;
-    schedule.weight = weight, schedule.decay = decay, schedule.last = last;
+    gproj_schedule schedule = last == 0 ? gproj_guide(weight) : gproj_fade(weight, last);
+    if (decay != 0) schedule.decay = decay;
     return schedule;
 }
 
@@ -26,7 +27,7 @@ static inline int32_t gprojt_add_group(gproj_system *s, const char *name, gproj_
     group.name = name;
     group.kind = kind;
     group.place = GPROJ_PLACE_VERTEX;
-    group.schedule.weight = weight;
+    group.schedule = gproj_keep(weight);
     return gproj_system_add_group(s, &group);
 }
 

@@ -333,7 +333,7 @@ GPROJT_TEST(wide_bounds) {
         gproj_group group;
         gproj_result result;
         memset(&group, 0, sizeof group);
-        group.name = "sum", group.kind = GPROJ_BOUND, group.global = kind == 1, group.schedule.weight = 1;
+        group.name = "sum", group.kind = GPROJ_BOUND, group.global = kind == 1, group.schedule = gproj_keep(1);
         gproj_system_add_group(s, &group);
         gprojt_add_plane(s, 0, N, ones, -N, 0);                   /* sum >= N */
         if (kind == 2) gprojt_add_plane(s, 0, N, ones, 5 * N, 1); /* holds everywhere near */

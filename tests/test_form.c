@@ -242,7 +242,7 @@ GPROJT_TEST(planarity_twice_and_normals) {
     GPROJT_CHECK(gproj_add_planarity(form, 0.5) == 0); /* the same group, with another weight */
     GPROJT_CHECK(gproj_system_group_count(gproj_form_system(form)) == 2);
     GPROJT_CHECK(gproj_form_group_info(form, 0).schedule.weight == 0.5 &&
-                 gproj_form_group_info(form, 0).schedule.last == 0);
+                 gproj_form_group_info(form, 0).schedule.last == INT32_MAX);
     GPROJT_CHECK(gproj_form_group_info(form, 0).rows == 5 * mesh->face_count);
     GPROJT_CHECK(gproj_system_variable_count(gproj_form_system(form)) == variables);
     gproj_solve(form, 10, NULL);

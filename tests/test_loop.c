@@ -242,7 +242,7 @@ GPROJT_TEST(failed_by_an_error_on_the_way) {
     gproj_result result;
     int calls = 0;
     memset(&group, 0, sizeof group);
-    group.name = "moving", group.schedule.weight = 1, group.refresh = gprojt_bad_refresh, group.refresh_user = &calls;
+    group.name = "moving", group.schedule = gproj_keep(1), group.refresh = gprojt_bad_refresh, group.refresh_user = &calls;
     gproj_system_add_group(s, &group);
     gprojt_add_linear(s, 0, 0, 1, 0, 0);
     result = gproj_system_solve(s, 9, NULL);
@@ -292,7 +292,7 @@ static void gprojt_check_meddler(gprojt_meddler m) {
     memset(&options, 0, sizeof options);
     memset(&group, 0, sizeof group);
     options.on_iteration = gprojt_meddling_iteration, options.user = &m;
-    group.name = "meddler", group.schedule.weight = 1, group.refresh = gprojt_meddling_refresh, group.refresh_user = &m;
+    group.name = "meddler", group.schedule = gproj_keep(1), group.refresh = gprojt_meddling_refresh, group.refresh_user = &m;
     gproj_system_add_group(s, &group);
     result = gproj_system_solve(s, 5, &options);
     GPROJT_CHECK(m.answer == -1 && result.outcome == GPROJ_FAILED && gproj_system_error(s)->code == GPROJ_ERROR_STATE);
@@ -705,7 +705,7 @@ GPROJT_TEST(a_group_goes_and_comes_back) {
     gproj_result result;
     int calls = 0, before;
     memset(&group, 0, sizeof group);
-    group.name = "watched", group.schedule.weight = 1, group.refresh = gprojt_count_refresh,
+    group.name = "watched", group.schedule = gproj_keep(1), group.refresh = gprojt_count_refresh,
     group.refresh_user = &calls;
     gproj_system_add_group(s, &group);
     memset(&watch, 0, sizeof watch);
@@ -861,7 +861,7 @@ GPROJT_TEST(words_for_every_place) {
         gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
         gproj_group group;
         memset(&group, 0, sizeof group);
-        group.name = "pull", group.place = places[i], group.schedule.weight = 1;
+        group.name = "pull", group.place = places[i], group.schedule = gproj_keep(1);
         gproj_system_add_group(s, &group);
         gprojt_add_linear(s, 0, 0, 1, -1, 17);
         GPROJT_CHECK(strstr(gproj_system_solve(s, 0, NULL).message, words[i]) != NULL);
@@ -1092,7 +1092,7 @@ static gproj_system *gprojt_rods(const gproj_host *host, int32_t points) {
     for (i = 0; i < points; ++i)
         for (k = 0; k < 3; ++k) x[3 * i + k] = (k == 0 ? i % 100 : k == 1 ? i / 100 : 0) + 0.2 * gprojt_uniform(&seed);
     memset(&group, 0, sizeof group);
-    group.name = "centre", group.global = true, group.schedule.weight = 1;
+    group.name = "centre", group.global = true, group.schedule = gproj_keep(1);
     gprojt_add_group(s, "rods", GPROJ_CONSTRAINT, 1);
     gprojt_add_group(s, "close", GPROJ_WISH, 0.05);
     gproj_system_add_group(s, &group);

@@ -164,7 +164,7 @@ GPROJT_TEST(global_rows) {
     group = gprojt_add_group(s, "closeness", GPROJ_WISH, 1);
     for (i = 0; i < COUNT; ++i) gprojt_add_linear(s, group, i, 1, -x[i], i);
     memset(&global, 0, sizeof global);
-    global.name = "mean", global.global = true, global.schedule.weight = 1;
+    global.name = "mean", global.global = true, global.schedule = gproj_keep(1);
     group = gproj_system_add_group(s, &global);
     for (i = 0; i < COUNT; ++i) term[i] = gprojt_term(i, -1, 1.0 / COUNT);
     gproj_system_add_row(s, group, COUNT, term, -2, 0);

@@ -804,7 +804,7 @@ GPROJT_TEST(best_forces_within_active_bounds) {
     double *w = gprojt_numbers(mesh->edge_count), none = 0;
     int32_t e, group, own, least = -1;
     gproj_form *form;
-    gproj_schedule schedule = {0, 1, 0};
+    gproj_schedule schedule = gproj_keep(0);
     gprojt_shake(mesh, 0.5, 3);
     loads.density = 1;
     form = gprojt_pinned_form(mesh, NULL, &loads);
@@ -1114,7 +1114,7 @@ GPROJT_TEST(weights_switch_groups_off_and_on) {
     gproj_loads loads = gprojt_no_loads();
     gproj_form *form = gproj_form_create(mesh, NULL);
     double *kept = gprojt_keep(mesh), *w = gprojt_numbers(mesh->edge_count), range[2];
-    gproj_schedule on = {1, 1, 0}, off = {0, 1, 0};
+    gproj_schedule on = gproj_guide(1), off = gproj_keep(0);
     int32_t equilibrium, compression, stress, e;
     loads.density = 1;
     equilibrium = gproj_add_equilibrium(form, &loads, &supports, 0);
@@ -1152,7 +1152,7 @@ GPROJT_TEST(weights_switch_groups_off_and_on) {
 }
 
 static bool gprojt_switch_on(void *user, gproj_system *s, const gproj_iteration *iteration) {
-    gproj_schedule on = {1, 1, 0};
+    gproj_schedule on = gproj_guide(1);
     if (iteration->number == 2) gproj_system_set_schedule(s, *(const int32_t *)user, on);
     return true;
 }

@@ -121,7 +121,7 @@ GPROJT_TEST(gradients_by_finite_differences) {
     for (k = 0; k < 30; ++k) gproj_system_values(s)[k] = 20 * gprojt_uniform(&seed) - 10;
     memset(&group, 0, sizeof group);
     group.name = "random";
-    group.schedule.weight = 1;
+    group.schedule = gproj_keep(1);
     group.refresh = gprojt_new_coefficients; /* coefficients that change from call to call are right ones, too */
     group.refresh_user = &refreshes;
     gproj_system_add_group(s, &group);
@@ -183,6 +183,8 @@ typedef enum gprojt_call {
     GPROJT_TOO_MUCH_WEIGHT,
     GPROJT_TOO_MUCH_ROW_WEIGHT,
     GPROJT_INFINITE_SCHEDULE,
+    GPROJT_ZERO_DECAY,
+    GPROJT_ZERO_LAST,
     GPROJT_CALLS
 } gprojt_call;
 
@@ -197,6 +199,7 @@ static int64_t gprojt_wrong_group(gproj_system *s, double weight, double decay, 
 
 /* Does what is wrong; the system has 6 variables, group 0 with the row x_0. Calls that return a number return -1. */
 static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
+    static const gproj_schedule zero_decay = {1, 0, 5}, zero_last = {1, 1, 0};
     static const double values[3] = {1, NAN, 2};
     gproj_term term = gprojt_term(0, -1, 1);
     switch (call) {
@@ -211,7 +214,7 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     case GPROJT_NEGATIVE_WEIGHT: return gprojt_wrong_group(s, -1, 0, 0, "wrong", true);
     case GPROJT_NAN_WEIGHT: return gprojt_wrong_group(s, NAN, 0, 0, "wrong", true);
     case GPROJT_DECAY_2: return gprojt_wrong_group(s, 1, 2, 0, "wrong", true);
-    case GPROJT_NEGATIVE_LAST: return gprojt_wrong_group(s, 1, 1, -1, "wrong", true);
+    case GPROJT_NEGATIVE_LAST: return gprojt_wrong_group(s, 1, 1, -2, "wrong", true);
     case GPROJT_ROW_OF_NO_GROUP: return gproj_system_add_row(s, 1, 1, &term, 0, 0);
     case GPROJT_NEGATIVE_TERMS: return gproj_system_add_row(s, 0, -1, &term, 0, 0);
     case GPROJT_TERM_I: term.i = 6; return gproj_system_add_row(s, 0, 1, &term, 0, 0);
@@ -230,6 +233,8 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     case GPROJT_TOO_MUCH_WEIGHT: return gprojt_wrong_group(s, 1.0000001e50, 0, 0, "wrong", true);
     case GPROJT_TOO_MUCH_ROW_WEIGHT:
         return -(gproj_system_set_row_weight(s, 0, 0, 1.0000001e50) == GPROJ_ERROR_ARGUMENT);
+    case GPROJT_ZERO_DECAY: return -(gproj_system_set_schedule(s, 0, zero_decay) == GPROJ_ERROR_ARGUMENT);
+    case GPROJT_ZERO_LAST: return -(gproj_system_set_schedule(s, 0, zero_last) == GPROJ_ERROR_ARGUMENT);
     default: return -(gproj_system_set_schedule(s, 0, gprojt_schedule(HUGE_VAL, 1, 0)) == GPROJ_ERROR_ARGUMENT);
     }
 }
@@ -266,10 +271,12 @@ static const gprojt_refusal gprojt_refusals[GPROJT_CALLS] = {
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 0, "weight -1 for row 0"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 0, "weight inf"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 1, "no group 1"},
-    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "'rows' (weight 1, decay -1, last 0)"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "'rows' (weight 1, decay -1, last -1)"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "needs 0 <= weight <= 1e50"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 0, "not in 0..1e50"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "'rows' (weight inf"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "weight 1, decay 0, last 5"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "gproj_keep, gproj_fade"},
 };
 
 static gproj_system *gprojt_small_system(void) {
@@ -773,7 +780,7 @@ static double gprojt_global_step(int32_t n, int32_t copies, double weight, doubl
     for (i = 0; i < n; ++i) x[i] = 0.5 + gprojt_uniform(&seed), term[i] = gprojt_term(i, i, 1);
     gproj_system_add_variables(s, n, 1, x);
     gprojt_add_group(s, "half", GPROJ_CONSTRAINT, 2);
-    group.name = "sphere", group.global = true, group.schedule.weight = weight;
+    group.name = "sphere", group.global = true, group.schedule = gproj_keep(weight);
     gproj_system_add_group(s, &group);
     for (i = 0; i < n; i += 2) gprojt_add_linear(s, 0, i, 1, -1, i);
     for (i = 0; i < copies; ++i) gproj_system_add_row(s, 1, n, term, -n, i);
@@ -804,7 +811,7 @@ static gproj_system *gprojt_flat_system(int32_t n, const double *c, double weigh
     gproj_group group;
     int32_t i;
     memset(&group, 0, sizeof group);
-    group.name = "plane", group.global = true, group.schedule.weight = 1;
+    group.name = "plane", group.global = true, group.schedule = gproj_keep(1);
     gproj_system_add_variables(s, n + 1, 1, NULL);
     gprojt_add_group(s, "nought", GPROJ_CONSTRAINT, 1);
     gproj_system_add_group(s, &group);
@@ -882,7 +889,7 @@ GPROJT_TEST(a_sphere_of_10000_dimensions) {
         int32_t i;
         memset(&options, 0, sizeof options);
         memset(&group, 0, sizeof group);
-        group.name = "sphere", group.global = true, group.schedule.weight = 1;
+        group.name = "sphere", group.global = true, group.schedule = gproj_keep(1);
         gproj_system_add_variables(s, n, 1, NULL);
         gproj_system_add_group(s, &group);
         for (i = 0; i < n; ++i) {
@@ -986,7 +993,7 @@ static bool gprojt_use_system(const gproj_host *host, void *user) {
     (void)user;
     if (!s) return false;
     memset(&group, 0, sizeof group);
-    group.name = "global", group.global = true, group.schedule.weight = 1;
+    group.name = "global", group.global = true, group.schedule = gproj_keep(1);
     gproj_system_add_variables(s, 24, 3, NULL);
     for (i = 0; i < 24 && gproj_system_values(s); ++i) gproj_system_values(s)[i] = gprojt_uniform(&seed);
     gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);

@@ -67,10 +67,9 @@ static void bench_add_statics(bench_form *f) {
 }
 
 static void bench_add_rows(bench_form *f, bench_task task) {
-    gproj_schedule always = {0.2, 1, INT32_MAX};
     gproj_add_planarity(f->form, 1);
     if (task == BENCH_STATICS) bench_add_statics(f);
-    if (task == BENCH_FAIRNESS) gproj_set_schedule(f->form, gproj_add_fairness(f->form, 0.2), always);
+    if (task == BENCH_FAIRNESS) gproj_set_schedule(f->form, gproj_add_fairness(f->form, 0.2), gproj_keep(0.2));
     f->task = task;
     if (task == BENCH_VOLUME) gproj_add_volume(f->form, gproj_volume(f->mesh), 1);
 }

@@ -1790,8 +1790,7 @@ static void schedule_wish(tool *t, const tool_demand *demand, int32_t group) {
     schedule.last = demand->last > 0 ? demand->last : t->equilibrium.weight > 0 ? 9 : 6;
     if (demand->last == 0 && schedule.last > t->iterations / 2)
         schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
-    if (t->nearest) schedule.decay = 0, schedule.last = 0;
-    gproj_set_schedule(t->form, group, schedule);
+    gproj_set_schedule(t->form, group, t->nearest ? gproj_keep(demand->weight) : schedule);
 }
 
 /* Adds what the option of this row asks for. */
@@ -1888,9 +1887,8 @@ static bool measure_forces(tool *t) {
 static void switch_moves(tool *t, bool on) {
     int32_t i;
     for (i = 0; i < t->move_count; ++i) {
-        gproj_schedule schedule = {0, 0, 0};
-        if (on) schedule.weight = t->move[i].weight;
-        if (t->move_group[i] >= 0) gproj_set_schedule(t->form, t->move_group[i], schedule);
+        double weight = on ? t->move[i].weight : 0;
+        if (t->move_group[i] >= 0) gproj_set_schedule(t->form, t->move_group[i], gproj_keep(weight));
     }
 }
 

@@ -83,7 +83,7 @@ static bool gprojx_history_keep(gprojx_history *history, const gproj_form *form,
         gproj_group_info info = gproj_system_group_info(system, i);
         group = &history->group[history->group_count++];
         group->weight = info.schedule.last > 0 && iteration->number > info.schedule.last ? 0 : info.schedule.weight;
-        group->weight *= pow(info.schedule.decay > 0 ? info.schedule.decay : 1, iteration->number);
+        group->weight *= pow(info.schedule.decay, iteration->number);
         group->norm = info.rms * sqrt((double)info.rows);
         group->max = info.max;
     }
@@ -255,7 +255,7 @@ static void gprojx_report_groups(gprojx_json *j, gproj_system *system) {
         gprojx_json_string(j, "name", group.name);
         gprojx_json_string(j, "kind", kind[group.kind == GPROJ_CONSTRAINT ? 0 : group.kind == GPROJ_BOUND ? 1 : 2]);
         gprojx_json_number(j, "weight", group.schedule.weight);
-        gprojx_json_number(j, "decay", group.schedule.decay > 0 ? group.schedule.decay : 1);
+        gprojx_json_number(j, "decay", group.schedule.decay);
         gprojx_json_number(j, "last_iteration", ends ? group.schedule.last : INFINITY);
         gprojx_json_integer(j, "rows", group.rows);
         gprojx_json_number(j, "norm", group.rms * sqrt((double)group.rows));

@@ -51,7 +51,7 @@ typedef struct suite_count {
 /* w_e - s_e^2 = 0 for every force (paper 3.1), s_e variables that start at 1. */
 static void add_squares(gproj_form *form, int32_t edges) {
     gproj_system *system = gproj_form_system(form);
-    gproj_group group = {"squares", GPROJ_CONSTRAINT, false, GPROJ_PLACE_EDGE, {1, 0, 0}, NULL, NULL};
+    gproj_group group = {"squares", GPROJ_CONSTRAINT, false, GPROJ_PLACE_EDGE, gproj_keep(1), NULL, NULL};
     int32_t number = gproj_system_add_group(system, &group), e;
     for (e = 0; e < edges; ++e) {
         double one = 1;
