@@ -258,7 +258,7 @@ static const gprojt_refusal gprojt_refusals[GPROJT_CALLS] = {
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "'wrong' (weight -1,"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "'wrong' (weight nan,"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "decay 2"},
-    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "last -1"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "last -2"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 1, "group 1 of 1 groups"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 0, "-1 terms"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "row 1 of group 'rows', term 0: there is no variable 6"},
