@@ -1673,24 +1673,19 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJ_ASSERT(condition) assert(condition)
 #endif
 
-/* GPROJI_INTERNAL: most functions. clang inlines none of them, or it would take nearly twice as long to compile and give
-   code of the same speed; gcc takes as long either way and chooses. GPROJI_INLINE: what is short, or called in inner
-   loops. GPROJI_NOINLINE: what is called from many places and seldom, so that gcc, too, compiles sooner and the rest
-   stays small. */
+/* GPROJI_INTERNAL: most functions. gcc and clang inline none of them, compile sooner, and give code of the same speed.
+   GPROJI_INLINE: what is short, or called in inner loops. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
-#define GPROJI_NOINLINE __attribute__((unused, noinline)) static
-#else
+#define GPROJI_INTERNAL __attribute__((unused, noinline)) static
+#elif defined(__TINYC__)
 #define GPROJI_INLINE static inline
-#define GPROJI_NOINLINE GPROJI_INTERNAL
-#endif
-#if defined(__clang__)
-#define GPROJI_INTERNAL GPROJI_NOINLINE
-#elif defined(__GNUC__) || defined(__TINYC__)
 #define GPROJI_INTERNAL __attribute__((unused)) static
 #else
+#define GPROJI_INLINE static inline
 #define GPROJI_INTERNAL static
 #endif
+#define GPROJI_NOINLINE GPROJI_INTERNAL
 
 /* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
 #if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
@@ -2229,7 +2224,7 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
 }
 
 /* Takes a block with undefined contents. NULL when there is no memory. */
-GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
     heap->account.allocations++;
@@ -2239,14 +2234,14 @@ GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) 
     return block;
 }
 
-GPROJI_NOINLINE void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
     void *block = gproji_take(heap, count, size);
     if (block) memset(block, 0, count * size);
     return block;
 }
 
 /* Gives a block back; NULL is allowed. */
-GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
+GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
     gproji_account(heap, bytes, 0);
@@ -2279,7 +2274,7 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
 
 /* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
    O(n). False when there is no memory; the array is then unchanged. */
-GPROJI_NOINLINE bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
     void *moved;
     if (needed <= *capacity) return true;
@@ -2309,7 +2304,7 @@ GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32
     return true;
 }
 
-GPROJI_NOINLINE void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
+GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
@@ -2360,7 +2355,7 @@ GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->count = 0;
 }
 
-GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
+GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
     while (pool->count > 0) {
         pool->count--;
         gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
@@ -2368,7 +2363,7 @@ GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
 }
 
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
-GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     size_t bytes;
     void *block;
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
@@ -2381,7 +2376,7 @@ GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t 
     return block;
 }
 
-GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
     if (block) memset(block, 0, pool->bytes[pool->count - 1]);
     return block;
@@ -2497,11 +2492,11 @@ GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error 
     return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
 
-GPROJI_NOINLINE gproj_code gproji_fail_memory(gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
 }
 
-GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
+GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
     error->index = -1;
