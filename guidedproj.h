@@ -1727,24 +1727,19 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJ_ASSERT(condition) assert(condition)
 #endif
 
-/* GPROJI_INTERNAL: most functions. clang inlines none of them, or it would take nearly twice as long to compile and give
-   code of the same speed; gcc takes as long either way and chooses. GPROJI_INLINE: what is short, or called in inner
-   loops. GPROJI_NOINLINE: what is called from many places and seldom, so that gcc, too, compiles sooner and the rest
-   stays small. */
+/* GPROJI_INTERNAL: most functions. gcc and clang inline none of them, compile sooner, and give code of the same speed.
+   GPROJI_INLINE: what is short, or called in inner loops. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GPROJI_INLINE __attribute__((unused)) static inline
-#define GPROJI_NOINLINE __attribute__((unused, noinline)) static
-#else
+#define GPROJI_INTERNAL __attribute__((unused, noinline)) static
+#elif defined(__TINYC__)
 #define GPROJI_INLINE static inline
-#define GPROJI_NOINLINE GPROJI_INTERNAL
-#endif
-#if defined(__clang__)
-#define GPROJI_INTERNAL GPROJI_NOINLINE
-#elif defined(__GNUC__) || defined(__TINYC__)
 #define GPROJI_INTERNAL __attribute__((unused)) static
 #else
+#define GPROJI_INLINE static inline
 #define GPROJI_INTERNAL static
 #endif
+#define GPROJI_NOINLINE GPROJI_INTERNAL
 
 /* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
 #if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
@@ -1776,9 +1771,8 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_SIMD 0
 #endif
 
-/* May code for vector units be compiled that the compiler's target lacks? On x86-64; but gcc for Windows does not align
-   long vectors on the stack (its bug 54412), and clang's headers for Microsoft's compiler leave out what the target
-   lacks. */
+/* May code be compiled for vector units that the target lacks? On x86-64; but gcc for Windows does not align long
+   vectors on the stack (bug 54412), and clang's headers for Microsoft's compiler leave out what the target lacks. */
 #if GPROJI_SIMD && defined(__x86_64__) && !defined(_MSC_VER) && \
     (defined(__clang__) || !(defined(_WIN32) || defined(__CYGWIN__)))
 #define GPROJI_CHOICE 1
@@ -1949,8 +1943,7 @@ GPROJI_INLINE double gproji_double_of_bits(uint64_t bits) {
     return value;
 }
 
-/* Rounds (m + s) 2^exponent to nearest even; m has the highest bit set, and 0 < s < 1 if sticky, else s = 0.
-   Returns the bits of the double. */
+/* The bits of (m + s) 2^exponent, rounded to nearest even; m has the highest bit set; 0 < s < 1 if sticky, or s = 0. */
 GPROJI_INTERNAL uint64_t gproji_round_significand(uint64_t m, int32_t exponent, bool sticky) {
     int32_t drop = 11; /* bits of m below the last one kept */
     uint64_t kept, rest, half;
@@ -2283,7 +2276,7 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
 }
 
 /* Takes a block with undefined contents. NULL when there is no memory. */
-GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
     heap->account.allocations++;
@@ -2293,14 +2286,14 @@ GPROJI_NOINLINE void *gproji_take(gproji_heap *heap, size_t count, size_t size) 
     return block;
 }
 
-GPROJI_NOINLINE void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
     void *block = gproji_take(heap, count, size);
     if (block) memset(block, 0, count * size);
     return block;
 }
 
 /* Gives a block back; NULL is allowed. */
-GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
+GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
     gproji_account(heap, bytes, 0);
@@ -2310,8 +2303,7 @@ GPROJI_NOINLINE void gproji_give(gproji_heap *heap, void *block, size_t count, s
         heap->hook.release(heap->hook.user, block, bytes);
 }
 
-/* Changes a block's count, keeping the elements that fit; `block` may be NULL with old_count 0. NULL when there is no
-   memory; the old block then stays. */
+/* Changes a block's count, keeping elements that fit; `block` may be NULL. NULL: no memory; the old block stays. */
 GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
     size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
     void *moved;
@@ -2333,7 +2325,7 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
 
 /* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
    O(n). False when there is no memory; the array is then unchanged. */
-GPROJI_NOINLINE bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
     void *moved;
     if (needed <= *capacity) return true;
@@ -2363,7 +2355,7 @@ GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32
     return true;
 }
 
-GPROJI_NOINLINE void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
+GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
@@ -2398,12 +2390,14 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task, or of one object; one call gives them all back. */
+/* A pool holds the blocks of one task, or of one object; one call gives them all back. Several can be taken before one
+   look at `failed`. */
 enum {
     GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
 typedef struct gproji_pool {
     gproji_heap *heap;
+    bool failed; /* some block could not be taken */
     int32_t count;
     void *block[GPROJI_POOL_BLOCKS];
     size_t bytes[GPROJI_POOL_BLOCKS];
@@ -2411,34 +2405,41 @@ typedef struct gproji_pool {
 
 GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->heap = heap;
+    pool->failed = false;
     pool->count = 0;
 }
 
-GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
+GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
     while (pool->count > 0) {
         pool->count--;
         gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
     }
+    pool->failed = false;
 }
 
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
-GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes;
-    void *block;
+GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
+    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
+    size_t bytes = possible ? gproji_bytes((size_t)count, size) : 0;
+    void *block = possible ? gproji_take(pool->heap, bytes, 1) : NULL;
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
-    bytes = gproji_bytes((size_t)count, size);
-    block = gproji_take(pool->heap, bytes, 1);
-    if (!block) return NULL;
+    if (!block) {
+        pool->failed = true;
+        return NULL;
+    }
     pool->block[pool->count] = block;
     pool->bytes[pool->count++] = bytes;
     return block;
 }
 
-GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
     if (block) memset(block, 0, pool->bytes[pool->count - 1]);
     return block;
+}
+
+GPROJI_INTERNAL int32_t *gproji_take_ints(gproji_pool *pool, int64_t count) {
+    return (int32_t *)gproji_pool_take(pool, count, sizeof(int32_t));
 }
 
 /* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
@@ -2531,8 +2532,7 @@ GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, 
     va_end(list);
 }
 
-/* Every failure of the library passes through here: a place for a breakpoint. The first error stays. `error` may be
-   NULL. Returns the code. */
+/* All failures of the library come here: a place for a breakpoint. The first error stays. `error` may be NULL. */
 GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
                                        const char *format, ...) {
     va_list list;
@@ -2551,11 +2551,11 @@ GPROJI_INTERNAL gproj_code gproji_pass_on(gproj_error *error, const gproj_error 
     return gproji_fail(error, other->code, other->place, other->index, "%s", other->message);
 }
 
-GPROJI_NOINLINE gproj_code gproji_fail_memory(gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
 }
 
-GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
+GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
     error->index = -1;
@@ -2564,9 +2564,10 @@ GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
 /* ============================================================================================================
    >>parallel   The host's threads. Uses platform. */
 
+/* Runs `count` tasks on the host's threads, or on this one alone. parallel may be NULL. */
 GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, gproj_task task, void *data) {
     int32_t i;
-    if (parallel->run && count > 1) {
+    if (parallel && parallel->run && count > 1) {
         parallel->run(parallel->user, count, task, data);
         return;
     }
@@ -2854,8 +2855,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_PAIRS_4(X, i, j) X(0, i, j) X(1, i, j) X(2, i, j) X(3, i, j)
 #define GPROJI_PAIRS_8(X, i, j) GPROJI_PAIRS_4(X, i, j) X(4, i, j) X(5, i, j) X(6, i, j) X(7, i, j)
 
-/* All columns; all that exist; forward substitution, in which S(j) finishes column j and E(i, j) subtracts it from
-   column i; backward substitution. */
+/* All columns; those that exist; substitution: S(j) finishes column j, and E(i, j) subtracts it from column i. */
 #define GPROJI_COLUMNS_4(R, X) R(X, 0) R(X, 1) R(X, 2) R(X, 3)
 #define GPROJI_COLUMNS_8(R, X) GPROJI_COLUMNS_4(R, X) R(X, 4) R(X, 5) R(X, 6) R(X, 7)
 #define GPROJI_EXISTS(j, text) if (skip <= (j)) { text }
@@ -2926,8 +2926,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                          \
     }
 
-/* See `factor`. The chain from pivot to pivot is as short as possible, 1 / pivot -> factor -> next pivot, with the
-   square roots beside it. */
+/* See `factor`. The chain 1 / pivot -> factor -> next pivot is as short as possible, with square roots beside it. */
 #define GPROJI_DEFINE_FACTOR(kind, L, B)                                                                               \
     GPROJI_KERNEL(kind) int32_t gproji_factor_##kind(double *tile, ptrdiff_t stride, double *inverse, int32_t skip) {  \
         GPROJI_BEGIN(L)                                                                                                \
@@ -3077,8 +3076,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         gproji_forward_##kind, gproji_forward_two_##kind, gproji_backward_##kind, gproji_add_##kind};
 
 #ifdef GPROJI_KIND_AVX512
-/* See `add`, with gaps: a vector spreads the rows of a piece. Each piece is added to all columns before the next one,
-   so that masks stay in registers. */
+/* See `add`, with gaps: a vector spreads a piece's rows. Each piece goes to all columns: masks stay in registers. */
 #define GPROJI_ADD_AT(d, v) _mm512_storeu_pd(d, _mm512_add_pd(_mm512_loadu_pd(d), v))
 GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t count, const double *source,
                                              ptrdiff_t stride, int32_t left, double *target, ptrdiff_t target_stride) {
@@ -3333,8 +3331,7 @@ GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, d
     }
 }
 
-/* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides it, but for the last one.
-   */
+/* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides all but the last one. */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
 }
@@ -3402,12 +3399,7 @@ GPROJI_INLINE bool gproji_is_shared(const gproj_parallel *parallel, double flops
 /* Runs tasks, on the host's threads if that is worth it. */
 GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flops, int32_t count, gproj_task task,
                                       void *data) {
-    int32_t i;
-    if (gproji_is_shared(parallel, flops)) {
-        gproji_for(parallel, count, task, data);
-        return;
-    }
-    for (i = 0; i < count; ++i) task(data, i);
+    gproji_for(gproji_is_shared(parallel, flops) ? parallel : NULL, count, task, data);
 }
 
 /* An upper bound on the pieces of a child's `below` rows in `groups` groups. */
@@ -3505,8 +3497,7 @@ GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t fro
 }
 
 #ifdef GPROJ_USE_CBLAS
-/* By a BLAS: dtrsm, dsyrk and dgemm after our own kernels have factored a chunk's pivot rows. Threads are left to
-   the BLAS. */
+/* A BLAS, with threads of its own, goes on after our kernels have factored a chunk's pivot rows. */
 GPROJI_INTERNAL void gproji_chunk_finish(const gproj_parallel *parallel, gproji_panel *panel) {
     int32_t first = panel->first, last = panel->last, stride = panel->shape.stride;
     double *pivots = gproji_panel_at(panel, first + panel->shift, first);
@@ -3566,8 +3557,7 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
 }
 #endif
 
-/* Factors a panel in place, chunk by chunk. Returns -1 or the first column whose pivot is not > 0. parallel: NULL
-   within a task. */
+/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
     int32_t block = kernels->block, start, failed;
@@ -3667,8 +3657,7 @@ GPROJI_INTERNAL void gproji_small_solve(const double *m, int32_t n, int32_t stri
    elimination); those with equal lists merge into supervariables, found by hashing (Ashcraft 1995).
    Invariant: the order depends on the graph alone; ties go to the variable that entered a degree list last. */
 
-/* A symmetric graph without loops: the neighbours of node i are adjacent[start[i]..start[i+1]-1], each once, and each
-   has i for a neighbour. */
+/* A symmetric graph without loops: node i's neighbours are adjacent[start[i]..start[i + 1] - 1], each once. */
 typedef struct gproji_graph {
     int32_t nodes;
     const int64_t *start;
@@ -3681,8 +3670,7 @@ GPROJI_INTERNAL double gproji_front_flops(double width, double below) {
     return width * below * below + width * (width + 1.0) * below + width * (width + 1.0) * (2.0 * width + 1.0) / 6.0;
 }
 
-/* Kinds of nodes during elimination. A variable's list has first `elements[i]` elements, then variables, `length[i]`
-   entries altogether. */
+/* Kinds of nodes. A variable's list has `elements[i]` elements, then variables, `length[i]` entries altogether. */
 enum {
     GPROJI_AMD_VARIABLE, /* not yet eliminated; stands for `weight` variables, negated while in the new element */
     GPROJI_AMD_ELEMENT,  /* a pivot; the list has the variables in that column of L that are not yet eliminated */
@@ -3796,9 +3784,8 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     amd->elements[pivot] = 0;
 }
 
-/* Rewrites the list of variable i in the new element: the new element, the other elements, the variables outside the
-   new element. Sets the degree bound without the new element's part. Returns a hash value of the list; -1 if nothing is
-   left outside the new element. */
+/* Rewrites the list of variable i in the new element: that one, other elements, variables outside it. Sets the degree
+   bound without the new element's part. Returns the list's hash value; -1 if nothing is left outside the element. */
 GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t i) {
     int32_t *list = amd->space + amd->list[i];
     int32_t k, to = 0, heads = amd->elements[i], own = amd->length[i], moved;
@@ -3949,17 +3936,14 @@ GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const 
     amd->buckets = total + 1;
     amd->stamp = 1;
     amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
-    amd->space = (int32_t *)gproji_pool_take(pool, amd->size, sizeof(int32_t));
+    amd->space = gproji_take_ints(pool, amd->size);
     amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
     amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
     amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
     amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    amd->head = (int32_t *)gproji_pool_take(pool, amd->buckets, sizeof(int32_t));
-    if (!amd->space || !amd->list || !amd->mark || !amd->elements || !amd->kind || !amd->head) return false;
-    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) {
-        *ints[a] = (int32_t *)gproji_pool_take(pool, n, sizeof(int32_t));
-        if (!*ints[a]) return false;
-    }
+    amd->head = gproji_take_ints(pool, amd->buckets);
+    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) *ints[a] = gproji_take_ints(pool, n);
+    if (pool->failed) return false;
     gproji_mark_dense(graph, total, amd->kind, GPROJI_AMD_DENSE);
     for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
     for (i = 0; i < n; ++i) {
@@ -4036,11 +4020,11 @@ GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproj
     int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
     int64_t e;
     unsigned char *taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1); /* chosen, or next to one */
-    degree = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    sorted = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->first = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    x->number = (int32_t *)gproji_pool_take(&x->pool, n, sizeof(int32_t));
-    if (!taken || !degree || !sorted || !x->first || !x->number) return false;
+    degree = gproji_take_ints(&x->pool, n);
+    sorted = gproji_take_ints(&x->pool, n);
+    x->first = gproji_take_ints(&x->pool, n);
+    x->number = gproji_take_ints(&x->pool, n);
+    if (x->pool.failed) return false;
     memset(start, 0, sizeof start);
     for (i = 0; i < n; ++i) {
         int64_t weight = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
@@ -4081,10 +4065,10 @@ GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, 
         room += degree * (degree - 2);
     }
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
-    adjacent = (int32_t *)gproji_pool_take(&x->pool, room, sizeof(int32_t));
-    weight = (int32_t *)gproji_pool_take(&x->pool, left, sizeof(int32_t));
-    mark = (int32_t *)gproji_pool_take(&x->pool, graph->nodes, sizeof(int32_t));
-    if (!start || !adjacent || !weight || !mark) return false;
+    adjacent = gproji_take_ints(&x->pool, room);
+    weight = gproji_take_ints(&x->pool, left);
+    mark = gproji_take_ints(&x->pool, graph->nodes);
+    if (x->pool.failed) return false;
     for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
     for (k = 0; k < left; ++k) {
         i = x->first[x->count + k];
@@ -4142,7 +4126,6 @@ enum {
     GPROJI_ND_THRESHOLDS = 5, /* tried along an axis */
     GPROJI_ND_EXACT = 400,    /* nodes in a part whose separators are counted before one is chosen, not guessed */
     GPROJI_ND_STARTS = 8,     /* nodes from which a closed mesh's coordinates are tried */
-    GPROJI_ND_SORTED = 64,    /* arcs that are sorted; no node in a mesh has more */
     GPROJI_ND_ROUNDS = 200    /* searches for a flow; no mesh needs more than some ten */
 };
 
@@ -4153,8 +4136,7 @@ typedef struct gproji_nd_part {
     double expected;  /* a good cut's cost over gproji_nd_rest; 0, -1: cut by new coordinates, see gproji_nd_cut_part */
 } gproji_nd_part;
 
-/* A copy of the graph, sorted by parts. The sides of a part are written into the other copy, at the part's own indices:
-   so no part overwrites another. */
+/* A copy of the graph, sorted by parts. A part's sides are written into the other copy, at the part's own indices. */
 typedef struct gproji_nd_nodes {
     int32_t *name; /* the node in the graph that is dissected */
     int32_t *weight;
@@ -4174,8 +4156,7 @@ typedef struct gproji_nd_halo {
     int32_t boundaries, *boundary; /* nodes in the part next to the halo */
 } gproji_nd_halo;
 
-/* Weights around thresholds: each entry is the difference to the threshold before, so that prefix sums give them all.
-   */
+/* Weights around thresholds: each entry is the difference to the threshold before, for prefix sums. */
 typedef struct gproji_nd_profile {
     int32_t *halo_low, *halo_high; /* halo nodes next to nodes below; to subtract: no longer next to nodes above */
     int32_t *low, *high;           /* nodes below next to others above, and the other way round */
@@ -4202,7 +4183,6 @@ typedef struct gproji_band {
     int32_t *start;      /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
     int32_t *unit;       /* nodes + 1: room for units unit[i]..unit[i + 1] - 1, */
     int32_t *load;       /* nodes: of which the first `load` are in use */
-    int32_t *ahead;      /* nodes: arcs before that one lead to higher coordinates */
     int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
     int32_t *turn;       /* states: the next step to try; see gproji_band_next */
     int32_t *queue;      /* states; also the path that is searched */
@@ -4267,20 +4247,16 @@ GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
         &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
         &profile->halo_high};
     size_t k;
-    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) {
-        *ints[k] = (int32_t *)gproji_pool_take(pool, n + 1, sizeof(int32_t));
-        if (!*ints[k]) return false;
-    }
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(pool, n + 1);
     for (k = 0; k < 2; ++k) {
         nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-        nd->copy[k].adjacent = (int32_t *)gproji_pool_take(pool, arcs, sizeof(int32_t));
+        nd->copy[k].adjacent = gproji_take_ints(pool, arcs);
         nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
-        if (!nd->copy[k].from || !nd->copy[k].adjacent || !nd->side[k]) return false;
     }
     halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
     profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
     nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    return halo->index && profile->nearby && nd->kind;
+    return !pool->failed;
 }
 
 /* -- parts -- */
@@ -4477,8 +4453,7 @@ GPROJI_INTERNAL double gproji_nd_rest(const gproji_nd *nd, double n, double h) {
     return c * (30.4 * c * c * n * r + 6.38 * c * n * h + 1.55 * r * h * h);
 }
 
-/* Estimates the flops for a cut with weights below, above and s = separator. halo: the sides' halo weights without it.
-   */
+/* Estimates the flops for a cut with weights below, above and s = separator. halo: sides' halo weights without it. */
 GPROJI_INTERNAL double gproji_nd_cost(const gproji_nd *nd, double below, double above, double s, const double halo[2]) {
     double h = nd->halo.weight;
     if (below <= 0 || above <= 0 || s > below + above) return HUGE_VAL;
@@ -4608,8 +4583,7 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
     const int32_t *x = nd->here.x, *y = nd->here.y;
     int32_t step = nd->nodes / GPROJI_ND_SAMPLES + 1, i, axis, k, count = 0, found[4][5];
     double reach[4][4];
-    /* The lengths of edges along the axes: in a sample, a fraction reach[axis][k] of the nodes has a neighbour more
-       than k higher. */
+    /* Edge lengths along the axes: a fraction reach[axis][k] of a sample has a neighbour more than k higher. */
     memset(found, 0, sizeof found);
     for (i = step / 2; i < nd->nodes; i += step, ++count) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4635,31 +4609,6 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
 
 GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
-}
-
-/* Finds a first flow by depth-first search upwards only: in most bands little is missing then. level, turn: here by
-   node; level -1: a dead end. */
-GPROJI_INTERNAL void gproji_band_ascend(gproji_band *band) {
-    int32_t *path = band->queue, i, k, depth;
-    for (i = 0; i < band->nodes; ++i) band->level[i] = 0, band->turn[i] = band->start[i];
-    for (i = 0; i < band->nodes; ++i) {
-        if (!(band->ends[i] & GPROJI_BAND_SOURCE)) continue;
-        for (path[0] = i, depth = 0; depth >= 0 && gproji_band_has_room(band, i);) {
-            int32_t v = path[depth], c = band->turn[v], end = band->ahead[v];
-            if (band->ends[v] & GPROJI_BAND_SINK) { /* send a unit, and begin again */
-                for (k = 0; k <= depth; ++k)
-                    band->origin[band->unit[path[k]] + band->load[path[k]]++] = k > 0 ? path[k - 1] : -1;
-                depth = 0;
-                continue;
-            }
-            while (c < end && (band->level[band->to[c]] < 0 || !gproji_band_has_room(band, band->to[c]))) ++c;
-            band->turn[v] = c;
-            if (c < end)
-                path[++depth] = band->to[c];
-            else
-                band->level[path[depth--]] = -1;
-        }
-    }
 }
 
 /* Does a unit come to band node v from u? */
@@ -4793,48 +4742,18 @@ GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigne
 
 /* -- the smallest separator in a band -- */
 
-/* Lists band node i's arcs from number e on. Those to higher coordinates come first, the highest before others: a
-   search then goes ahead first, and leaves nodes free for other paths. Returns the end of the arcs. */
-GPROJI_INTERNAL int32_t gproji_nd_band_arcs(gproji_nd *nd, const int32_t *coordinate, int32_t low, int32_t i,
-                                            int32_t e) {
-    gproji_band *band = &nd->band;
-    const int32_t v = band->id[i], *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
-    int32_t back = e + nd->here.inner[v], stop = back, k;
-    bool few = nd->here.inner[v] <= GPROJI_ND_SORTED;
-    band->start[i] = e;
-    band->ends[i] = 0;
-    for (; list < end; ++list) {
-        int32_t u = nd->number[*list];
-        if (u < 0) {
-            band->ends[i] |= coordinate[*list] < low ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
-        } else if (coordinate[*list] > coordinate[v]) {
-            for (k = e++; few && k > band->start[i] && coordinate[band->id[band->to[k - 1]]] < coordinate[*list]; --k)
-                band->to[k] = band->to[k - 1];
-            band->to[k] = u;
-        } else {
-            band->to[--back] = u; /* backward arcs fill the node's room from the end */
-        }
-    }
-    band->ahead[i] = e;
-    while (back < stop) band->to[e++] = band->to[back++];
-    return e;
-}
-
-/* Converts a weight to a capacity: in units of the weights' common divisor or, if these are many, in fractions of the
-   largest weight. */
+/* A weight as a capacity: in units of the common divisor or, if these are many, in fractions of the largest weight. */
 GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
     if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
     return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
 }
 
-/* Builds the network for the band of coordinates from[0]..from[1]-1. False when there is no memory, or when arcs are
-   more than their type can count. */
+/* Builds the network for the band of coordinates from[0]..from[1]-1. False: no memory, or arcs beyond their type. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
     int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
     int64_t arcs = 0, units = 0, n;
-    /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below the band belong to it if they
-       are next to nodes above it. */
+    /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below, next to nodes above, belong to it. */
     for (i = 0; i < nd->nodes; ++i) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
         int32_t p = cut->coordinate[i], a = nd->here.weight[i], b = divisor, rest;
@@ -4856,7 +4775,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     /* 2. Lay the arrays out in one block, which serves all bands. */
     n = count;
     if (!gproji_reserve(nd->heap, &band->block, &band->block_size,
-                        (size_t)(11 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
+                        (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
         nd->failed = true;
         return false;
     }
@@ -4864,7 +4783,6 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     band->id = at, at += n;
     band->start = at, at += n + 1;
     band->unit = at, at += n + 1;
-    band->ahead = at, at += n;
     band->load = at, at += n;
     band->level = at, at += 2 * n;
     band->turn = at, at += 2 * n;
@@ -4877,18 +4795,25 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     band->nodes = count;
     memcpy(band->id, nd->queue, (size_t)count * sizeof(int32_t));
     for (i = 0; i < count; ++i) {
-        band->load[i] = 0;
+        int32_t v = band->id[i], next;
+        const int32_t *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
+        band->load[i] = band->ends[i] = 0;
         band->unit[i] = u;
-        u += gproji_band_capacity(nd->here.weight[band->id[i]], divisor, largest);
-        e = gproji_nd_band_arcs(nd, cut->coordinate, from[0], i, e);
+        u += gproji_band_capacity(nd->here.weight[v], divisor, largest);
+        for (band->start[i] = e; list < end; ++list) {
+            next = nd->number[*list];
+            if (next >= 0)
+                band->to[e++] = next;
+            else
+                band->ends[i] |= cut->coordinate[*list] < from[0] ? GPROJI_BAND_SOURCE : GPROJI_BAND_SINK;
+        }
     }
     band->start[count] = e;
     band->unit[count] = u;
     return true;
 }
 
-/* Returns a node's side by a minimum cut. In the band: 1 unless the cut's lower side reaches the node's entry, else
-   separator unless it reaches the exit. */
+/* A node's side by a minimum cut. In the band: 1 unless the lower side reaches the entry, 0 if it reaches the exit. */
 GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t high, int32_t i,
                                        unsigned char mark) {
     const int32_t k = nd->number[i];
@@ -4932,8 +4857,7 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band *band = &nd->band;
     int32_t from[2], i, tail = 0, open = 0, rounds = 0, use = 0;
     double most = gproji_fmin(12.0 * cut->separator, 0.3 * nd->weight), inside = 0, below = 0, above, best;
-    /* 1. Widen the band on the heavier side, up to the weight of a dozen separators or 0.3 of the part; about a
-       quarter stays outside on each side. */
+    /* 1. Widen the band on the heavier side, up to a dozen separators or 0.3 of the part; a quarter stays outside. */
     from[0] = cut->at > 1 ? cut->at - 1 : cut->at, from[1] = cut->at < cut->range - 1 ? cut->at + 1 : cut->at;
     for (i = 0; i < from[0]; ++i) below += cut->sum[i];
     for (; i < from[1]; ++i) inside += cut->sum[i];
@@ -4952,7 +4876,6 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
     }
     /* 2. Maximum flow. */
     if (!gproji_nd_build_band(nd, cut, from)) return HUGE_VAL;
-    gproji_band_ascend(band);
     while (gproji_band_augment(band))
         if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
     /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is
@@ -5073,9 +4996,9 @@ GPROJI_INTERNAL void gproji_nd_order_whole(gproji_nd *nd, int32_t position) {
     gproji_pool_start(&pool, nd->heap);
     for (i = 0; i < nd->nodes; ++i) arcs += here->inner[i];
     start = (int64_t *)gproji_pool_take(&pool, (int64_t)nd->nodes + 1, sizeof(int64_t));
-    adjacent = (int32_t *)gproji_pool_take(&pool, arcs, sizeof(int32_t));
-    order = (int32_t *)gproji_pool_take(&pool, nd->nodes, sizeof(int32_t));
-    nd->failed = nd->failed || !start || !adjacent || !order;
+    adjacent = gproji_take_ints(&pool, arcs);
+    order = gproji_take_ints(&pool, nd->nodes);
+    nd->failed = nd->failed || pool.failed;
     if (!nd->failed) {
         for (i = 0, arcs = 0; i < nd->nodes; ++i) {
             start[i] = arcs;
@@ -5209,8 +5132,7 @@ GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
         gproji_nd_cut_part(nd, &part);
 }
 
-/* Finds the order (nodes entries: the node that is eliminated k-th). total: the weight of all nodes, fewer than
-   2^29. False when there is no memory. */
+/* Finds the order (the node that is eliminated k-th). total: the weight of all nodes, < 2^29. False: no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
     int32_t a, b, k, count = 0;
     int64_t e;
@@ -5328,10 +5250,6 @@ typedef struct gproji_analysis {
     int32_t *super_parent, *child, *sibling;
 } gproji_analysis;
 
-GPROJI_INTERNAL int32_t *gproji_take_ints(gproji_pool *pool, int64_t count) {
-    return (int32_t *)gproji_pool_take(pool, count, sizeof(int32_t));
-}
-
 GPROJI_INTERNAL void gproji_invert(int32_t count, const int32_t *order, int32_t *position) {
     int32_t k;
     for (k = 0; k < count; ++k) position[order[k]] = k;
@@ -5345,8 +5263,7 @@ GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const in
     }
 }
 
-/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` positions are not adjacent to each other. ancestor: work,
-   shortcuts towards the root. */
+/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` positions are not adjacent. ancestor: shortcuts, work. */
 GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t apart, const int32_t *order,
                                              const int32_t *position, int32_t *parent, int32_t *ancestor) {
     int32_t k, i, above;
@@ -5491,8 +5408,7 @@ enum {
     GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
-/* Orders condensed nodes first and the others by dissection, and counts the factor. Condenses the graph unless that has
-   been done. */
+/* Orders condensed nodes first, the others by dissection, and counts the factor. Condenses the graph if needed. */
 GPROJI_INTERNAL bool gproji_dissect_order(gproji_analysis *an, gproji_condensation *condensed) {
     gproji_heap *heap = an->keep->heap;
     int32_t *order = an->out->order, *rest, k, total = an->out->columns;
@@ -5694,9 +5610,8 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     out->row_node = gproji_take_ints(an->keep, total);
     out->row_at = gproji_take_ints(an->keep, total);
     out->relative = gproji_take_ints(an->keep, total);
-    if (!out->row_node || !out->row_at || !out->relative) return false;
-    /* 1. Row i belongs to all fronts on the paths from A's entries in that row up to the front that eliminates i.
-       Ascending i sorts the lists. */
+    if (an->keep->failed) return false;
+    /* 1. Row i belongs to the fronts from A's entries there up to the one that eliminates i; ascending i sorts them. */
     for (i = 0; i < out->nodes; ++i) {
         int32_t node = out->order[i], own = out->front_of[i];
         gproji_expect_neighbours(graph, out->order, i);
@@ -5745,8 +5660,7 @@ enum {
     GPROJI_FAMILY_TRIES = 64 /* gaps that are tried before the end is taken */
 };
 
-/* Gives the children of front f the first gap that is large enough. Their `update` becomes the distance to their far
-   ends. task: for each front. */
+/* Gives the children of front f the first gap that is large enough; `update` becomes the distance to their far ends. */
 GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
     int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, level, c;
     int64_t size = 0;
@@ -5806,8 +5720,7 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     return most;
 }
 
-/* Cuts the fronts into tasks, schedules them, and gives panels and update matrices their memory. concurrent: may tasks
-   overlap in time? */
+/* Cuts the fronts into tasks, schedules them, and lays the memory out. concurrent: may tasks overlap in time? */
 GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     gproji_symbolic *out = an->out;
     int32_t count = out->fronts, f, k, level, *sequence = an->a, *parent = an->b, *task = an->c, *start;
@@ -5824,9 +5737,8 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     for (f = 0; f < count; ++f)
         if (parent[f] >= 0) flops[parent[f]] += flops[f];
     gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
-    /* 2. Tasks: on each level whole subtrees that stay within a share of all flops, small ones together. Threads on one
-       front must pass it to each other, which pays for large fronts only; the second level has several smaller tasks
-       instead. Small problems are one task. */
+    /* 2. Tasks: on each level whole subtrees within a share of all flops, small ones together. Threads on a front pass
+       it to each other, which pays for large fronts only: hence the second level. Small problems are one task. */
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
     share[1] = gproji_fmin(sum / 4, 5e8); /* some milliseconds */
     out->tasks = 0;
@@ -5870,9 +5782,13 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     gproji_analysis an;
     gproji_condensation condensed;
     gproj_ordering ordering = options->ordering;
-    int32_t **part[16], *space, k;
+    int32_t i;
+    int32_t **const ints[] = {&an.parent, &an.count,   &an.rows,        &an.a,           &an.b,     &an.c,
+                              &an.d,      &an.chain,   &an.head,        &an.tail,        &an.width, &an.below,
+                              &an.child,  &an.sibling, &an.below_nodes, &an.super_parent};
     int64_t n = graph->nodes;
     bool done;
+    size_t k;
     memset(&an, 0, sizeof an);
     memset(&condensed, 0, sizeof condensed);
     memset(out, 0, sizeof *out);
@@ -5886,13 +5802,8 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     out->position = gproji_take_ints(keep, n);
     out->column = gproji_take_ints(keep, n + 1);
     out->front_of = gproji_take_ints(keep, n);
-    space = gproji_take_ints(&an.pool, 16 * n);
-    done = out->order && out->position && out->column && out->front_of && space;
-    part[0] = &an.parent, part[1] = &an.count, part[2] = &an.rows, part[3] = &an.a, part[4] = &an.b, part[5] = &an.c;
-    part[6] = &an.d, part[7] = &an.chain, part[8] = &an.head, part[9] = &an.tail, part[10] = &an.width;
-    part[11] = &an.below, part[12] = &an.below_nodes, part[13] = &an.super_parent, part[14] = &an.child;
-    part[15] = &an.sibling;
-    for (k = 0; done && k < 16; ++k) *part[k] = space + k * n;
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(&an.pool, n);
+    done = !keep->failed && !an.pool.failed;
     /* 2. Order, elimination tree, column counts. */
     if (ordering == GPROJ_ORDERING_DISSECTION && n > GPROJI_DISSECT_MOST) ordering = GPROJ_ORDERING_AMD;
     if (done && ordering == GPROJ_ORDERING_BEST) {
@@ -5903,7 +5814,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
         if (ordering == GPROJ_ORDERING_AMD)
             done = gproji_amd_order(keep->heap, graph, columns, out->order, NULL);
         else
-            for (k = 0; k < n; ++k) out->order[k] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[k] : k;
+            for (i = 0; i < n; ++i) out->order[i] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[i] : i;
         if (done) gproji_count_factor(&an, 0);
     }
     gproji_pool_give_all(&condensed.pool);
@@ -6075,7 +5986,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
-    if (!c->permutation || !start || !c->piece) return false;
+    if (c->kept.failed) return false;
     for (k = 0; k < sy->nodes; ++k)
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
@@ -6193,8 +6104,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     x->hash = (uint32_t *)gproji_pool_take(&x->pool, n, sizeof(uint32_t));
     x->mark = gproji_take_ints(&x->pool, n);
     x->order = given || natural ? gproji_take_ints(&x->pool, n) : NULL;
-    if (!x->start || !x->neighbour || !x->hash || !x->mark || ((given || natural) && !x->order))
-        return gproji_fail_memory(error);
+    if (x->pool.failed) return gproji_fail_memory(error);
     /* 1. Counting sort: start[j + 1] is where column j's next neighbour goes. */
     for (j = 0; j < n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p)
@@ -6253,7 +6163,7 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     weight = gproji_take_ints(&x->pool, n);
     adjacent = gproji_take_ints(&x->pool, x->start[n]);
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
-    if (!x->node_of || !x->member || !x->member_start || !weight || !adjacent || !start) return false;
+    if (x->pool.failed) return false;
     /* 1. Nodes: an order to keep allows contiguous columns only, else all with the same neighbours. */
     for (j = 0; j < n; ++j) x->mark[j] = x->node_of[j] = -1;
     for (k = 0; k < n; ++k) {
@@ -6309,7 +6219,7 @@ GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_com
     to->number = (int64_t *)gproji_pool_take(&c->kept, to->count, sizeof(int64_t));
     to->target = (int64_t *)gproji_pool_take(&c->kept, to->count, sizeof(int64_t));
     to->start = (int64_t *)gproji_pool_take_zeroed(&c->kept, (int64_t)sy->fronts + 2, sizeof(int64_t));
-    if (!to->number || !to->target || !to->start) return false;
+    if (c->kept.failed) return false;
     gproji_invert(x->n, c->permutation, column_of);
     for (f = 0; f < sy->fronts; ++f)
         for (k = 0; k < sy->front[f].width; ++k) front_of[sy->front[f].first + k] = f;
@@ -6388,7 +6298,7 @@ GPROJI_INTERNAL bool gproji_cholesky_take_numeric(gproj_cholesky *c) {
     c->failed = gproji_take_ints(&c->numeric, tasks);
     c->values = gproji_take_aligned(&c->numeric, sy->values_size + sy->work_size);
     c->room = c->batch;
-    if (c->inverse && c->rows && c->solution && c->side && c->failed && c->values) return true;
+    if (!c->numeric.failed) return true;
     gproji_pool_give_all(&c->numeric);
     c->values = NULL;
     gproji_fail_memory(&c->error);
@@ -6755,8 +6665,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
        (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
    + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block
    principal pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the
-   interior-point method goes on to a better guess. So the method cannot cycle, and it ends at a limit for
-   factorisations in any case. */
+   interior-point method goes on to a better guess. So nothing can cycle; factorisations have a limit besides. */
 enum {
     GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
     GPROJI_SQUARES_ROUNDS = 12, /* exchanges, one factorisation each */
@@ -6899,30 +6808,30 @@ GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double
 GPROJI_INTERNAL void gproji_squares_begin(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
     gproji_interior *in = &s->interior;
-    int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0, at = 0;
-    double *space, **by_column[12], **by_pair[7];
-    int32_t j, k;
+    int64_t n = s->columns, m = p->rows, entries = n ? p->start[n] : 0;
+    double **const by_column[] = {&s->lower,    &s->upper,          &s->diagonal,     &s->unit,
+                                  &s->gradient, &s->trial,          &s->step,         &s->best,
+                                  &in->x,       &s->normal.barrier, &in->direction.x, &in->other.x};
+    double **const by_pair[] = {&in->sign,           &in->slack,        &in->dual,      &in->direction.target,
+                                &in->direction.dual, &in->other.target, &in->other.dual};
+    size_t k;
+    int32_t j;
     s->rows.start = (int64_t *)gproji_pool_take_zeroed(&s->pool, m + 1, sizeof(int64_t));
     s->rows.column = gproji_take_ints(&s->pool, entries);
     s->rows.value = (double *)gproji_pool_take(&s->pool, entries, sizeof(double));
     s->normal.start = (int64_t *)gproji_pool_take(&s->pool, n + 1, sizeof(int64_t));
     in->variable = gproji_take_ints(&s->pool, 2 * n);
     s->state = (unsigned char *)gproji_pool_take(&s->pool, n, 1);
-    space = (double *)gproji_pool_take(&s->pool, 12 * n + 7 * 2 * n + 2 * m, sizeof(double));
-    if (!s->normal.cholesky || !s->rows.start || !s->rows.column || !s->rows.value || !s->normal.start ||
-        !in->variable || !s->state || !space) {
+    s->residual = (double *)gproji_pool_take(&s->pool, m, sizeof(double));
+    s->magnitude = (double *)gproji_pool_take(&s->pool, m, sizeof(double));
+    for (k = 0; k < sizeof by_column / sizeof by_column[0]; ++k)
+        *by_column[k] = (double *)gproji_pool_take(&s->pool, n, sizeof(double));
+    for (k = 0; k < sizeof by_pair / sizeof by_pair[0]; ++k)
+        *by_pair[k] = (double *)gproji_pool_take(&s->pool, 2 * n, sizeof(double));
+    if (!s->normal.cholesky || s->pool.failed) {
         s->code = gproji_fail_memory(s->error);
         return;
     }
-    by_column[0] = &s->lower, by_column[1] = &s->upper, by_column[2] = &s->diagonal, by_column[3] = &s->unit;
-    by_column[4] = &s->gradient, by_column[5] = &s->trial, by_column[6] = &s->step, by_column[7] = &s->best;
-    by_column[8] = &s->normal.barrier, by_column[9] = &in->x;
-    by_column[10] = &in->direction.x, by_column[11] = &in->other.x;
-    by_pair[0] = &in->sign, by_pair[1] = &in->slack, by_pair[2] = &in->dual, by_pair[3] = &in->direction.target;
-    by_pair[4] = &in->direction.dual, by_pair[5] = &in->other.target, by_pair[6] = &in->other.dual;
-    for (k = 0; k < 12; ++k, at += n) *by_column[k] = space + at;
-    for (k = 0; k < 7; ++k, at += 2 * n) *by_pair[k] = space + at;
-    s->residual = space + at, s->magnitude = space + at + m;
     for (j = 0; j < n && s->code == GPROJ_OK; ++j) {
         bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
         good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
@@ -7097,8 +7006,7 @@ GPROJI_INTERNAL bool gproji_squares_judge(gproji_squares *s) {
 
 /* -- Newton steps and exchanges -- */
 
-/* step = the displacement that makes the gradient 0 at the free variables. Returns the gradient's largest scaled entry
-   there. */
+/* step = the displacement that makes the gradient 0 at the free variables. Returns the largest scaled entry there. */
 GPROJI_INTERNAL double gproji_squares_newton(gproji_squares *s) {
     double largest = 0;
     int32_t j;
@@ -7256,8 +7164,7 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     for (j = 0; j < s->columns; ++j) s->normal.barrier[j] = 0;
     for (c = 0; c < in->pairs; ++c) s->normal.barrier[in->variable[c]] += in->dual[c] / in->slack[c];
     if (!gproji_squares_factor(s)) return false;
-    /* 1. Mehrotra's predictor aims at s z = 0. The further it gets, the less the corrector aims at; the corrector also
-       makes up for the predictor's ds dz. */
+    /* 1. Mehrotra's predictor aims at s z = 0; the further it gets, the less the corrector, with ds dz, aims at. */
     mean = gproji_squares_mean(in, 0);
     for (c = 0; c < in->pairs; ++c) d->target[c] = -in->slack[c] * in->dual[c];
     gproji_squares_direct(s, d);
@@ -7265,8 +7172,7 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     aim = 0.1 * ratio * ratio * mean;
     for (c = 0; c < in->pairs; ++c) d->target[c] += aim - in->sign[c] * d->x[in->variable[c]] * d->dual[c];
     gproji_squares_direct(s, d);
-    /* 2. Gondzio's correctors: new targets for products that a longer step would leave too far from the aim. Each costs
-       a solve, and saves factorisations. */
+    /* 2. Gondzio's correctors, a solve each: new targets for products that a longer step leaves far from the aim. */
     for (round = 0; round < GPROJI_SQUARES_CORRECTORS && d->reach < 1.005; ++round) {
         a = gproji_fmin(1, d->reach + 0.1);
         for (c = 0; c < in->pairs; ++c) {
