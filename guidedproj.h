@@ -2344,13 +2344,15 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task, or of one object; one call gives them all back. */
+/* A pool holds the blocks of one task, or of one object; one call gives them all back. A failure sticks, so it can be
+   asked for once after many takes. */
 enum {
     GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
 typedef struct gproji_pool {
     gproji_heap *heap;
     int32_t count;
+    bool failed; /* a block was refused since the start */
     void *block[GPROJI_POOL_BLOCKS];
     size_t bytes[GPROJI_POOL_BLOCKS];
 } gproji_pool;
@@ -2358,6 +2360,7 @@ typedef struct gproji_pool {
 GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->heap = heap;
     pool->count = 0;
+    pool->failed = false;
 }
 
 GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
@@ -2369,12 +2372,11 @@ GPROJI_NOINLINE void gproji_pool_give_all(gproji_pool *pool) {
 
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes;
-    void *block;
+    bool countable = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
+    size_t bytes = countable ? gproji_bytes((size_t)count, size) : 0;
+    void *block = countable ? gproji_take(pool->heap, bytes, 1) : NULL;
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (count < 0 || (uint64_t)count > SIZE_MAX / 2 / size) return NULL;
-    bytes = gproji_bytes((size_t)count, size);
-    block = gproji_take(pool->heap, bytes, 1);
+    if (!block) pool->failed = true;
     if (!block) return NULL;
     pool->block[pool->count] = block;
     pool->bytes[pool->count++] = bytes;
@@ -2384,6 +2386,13 @@ GPROJI_NOINLINE void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t 
 GPROJI_NOINLINE void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
     if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    return block;
+}
+
+/* Takes a copy of `count` elements. */
+GPROJI_NOINLINE void *gproji_pool_copy(gproji_pool *pool, const void *elements, int64_t count, size_t size) {
+    void *block = gproji_pool_take(pool, count, size);
+    if (block && count) memcpy(block, elements, (size_t)count * size);
     return block;
 }
 
@@ -2479,17 +2488,32 @@ GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, 
 
 /* Every failure of the library passes through here: a place for a breakpoint. The first error stays. `error` may be
    NULL. Returns the code. */
-GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
-                                       const char *format, ...) {
-    va_list list;
+GPROJI_INTERNAL gproj_code gproji_fail_list(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
+                                            const char *format, va_list list) {
     if (!error || error->code != GPROJ_OK) return code;
     error->code = code;
     error->place = place;
     error->index = index;
-    va_start(list, format);
     gproji_format_list(error->message, sizeof error->message, format, list);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
+                                       const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    gproji_fail_list(error, code, place, index, format, list);
     va_end(list);
     return code;
+}
+
+/* Refuses an argument that belongs to no element. */
+GPROJI_INTERNAL gproj_code gproji_refuse(gproj_error *error, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    gproji_fail_list(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, format, list);
+    va_end(list);
+    return GPROJ_ERROR_ARGUMENT;
 }
 
 /* Copies another object's error to the caller's, which may be NULL. */
@@ -2505,6 +2529,20 @@ GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
     error->index = -1;
+}
+
+/* Begins a public function: clears the error; false, and an error about `noun`, if the argument is NULL. */
+GPROJI_NOINLINE bool gproji_given(const void *argument, const char *noun, gproj_error *error) {
+    gproji_error_clear(error);
+    if (!argument) gproji_refuse(error, "the %s is NULL", noun);
+    return argument != NULL;
+}
+
+/* Takes an object's struct from a new heap, as gproji_create_object does; fails without memory. */
+GPROJI_NOINLINE void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
+    void *object = gproji_create_object(host, size);
+    if (!object) gproji_fail_memory(error);
+    return object;
 }
 
 /* ============================================================================================================
@@ -11932,32 +11970,50 @@ enum {
     GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
 };
 
-/* Owns a gproj_mesh: the arrays that `mesh` shows read-only, whose lengths follow from the counts there. */
+/* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     gproj_mesh mesh;
-    int32_t *vertex_halfedge;
-    int32_t *face_halfedge;
-    int32_t *face_degree;
-    int32_t *loop_halfedge;
-    int32_t *halfedge; /* 6 * halfedge_count: twin, next, prev, origin, face, edge one after the other */
-    int32_t *polyline_start;
-    int32_t *polyline_vertex;
+    int32_t *links; /* from vertex_halfedge to edge, one after the other: see gproji_mesh_show */
 } gproji_mesh_object;
 
 GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
     return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
 }
 
-/* Polygons without adjacency: the builder's input. */
+/* Polygons without adjacency, and polylines: the builder's input. */
 typedef struct gproji_soup {
     int32_t vertex_count;
     int32_t face_count;
     int32_t corner_count; /* set by gproji_mesh_build */
+    int32_t polyline_count;
     const double *position;
     const int32_t *face_degree;
     const int32_t *face_vertex;
+    const int32_t *polyline_start; /* polyline_count + 1, the first one 0 */
+    const int32_t *polyline_vertex;
 } gproji_soup;
+
+/* A soup in arrays of its own, for those who make polygons. */
+typedef struct gproji_draft {
+    gproji_soup soup; /* shows the arrays; counts begin at 0 */
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+} gproji_draft;
+
+/* Takes room for at most these counts; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, int64_t vertices, int64_t faces,
+                                       int64_t corners, int64_t polylines, int64_t polyline_vertices) {
+    memset(draft, 0, sizeof *draft);
+    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
+    draft->soup.face_degree = draft->degree = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
+    draft->soup.face_vertex = draft->corner = (int32_t *)gproji_pool_take(pool, corners, sizeof(int32_t));
+    draft->soup.polyline_start = draft->start = (int32_t *)gproji_pool_take(pool, polylines + 1, sizeof(int32_t));
+    draft->soup.polyline_vertex = draft->vertex = (int32_t *)gproji_pool_take(pool, polyline_vertices, sizeof(int32_t));
+    if (draft->start) draft->start[0] = 0;
+    return !pool->failed;
+}
 
 /* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
@@ -12122,24 +12178,24 @@ GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_me
 
 /* -- half-edges -- */
 
-/* Takes the arrays whose lengths are known, and shows them in the public struct. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
+/* Counts the integers in `links`. */
+GPROJI_INLINE int64_t gproji_mesh_links(const gproj_mesh *mesh) {
+    return mesh->vertex_count + 2 * (int64_t)mesh->face_count + 6 * (int64_t)mesh->halfedge_count;
+}
+
+/* Shows `links` in the public struct. */
+GPROJI_INTERNAL void gproji_mesh_show(gproji_mesh_object *object) {
     gproj_mesh *mesh = &object->mesh;
-    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, n = (size_t)mesh->halfedge_count;
-    mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
-    mesh->vertex_halfedge = object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
-    mesh->face_halfedge = object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    mesh->face_degree = object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    mesh->twin = object->halfedge = (int32_t *)gproji_take(&object->heap, n, 6 * sizeof(int32_t));
-    if (!mesh->position || !mesh->vertex_halfedge || !mesh->face_halfedge || !mesh->face_degree || !mesh->twin) {
-        return false;
-    }
+    size_t n = (size_t)mesh->halfedge_count;
+    mesh->vertex_halfedge = object->links;
+    mesh->face_halfedge = mesh->vertex_halfedge + mesh->vertex_count;
+    mesh->face_degree = mesh->face_halfedge + mesh->face_count;
+    mesh->twin = mesh->face_degree + mesh->face_count;
     mesh->next = mesh->twin + n;
     mesh->prev = mesh->next + n;
     mesh->origin = mesh->prev + n;
     mesh->face = mesh->origin + n;
     mesh->edge = mesh->face + n;
-    return true;
 }
 
 /* The half-edge of corner c: even at the first corner of the edge, odd at the second. */
@@ -12163,9 +12219,10 @@ GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) 
 GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gproji_mesh_work *work,
                                             gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h, f, c, v, *out = object->vertex_halfedge, *outgoing = work->mark;
-    int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
-            *edge = face + n;
+    int32_t n = mesh->halfedge_count, h, f, c, v, *outgoing = work->mark;
+    int32_t *out = object->links, *face_halfedge = out + mesh->vertex_count;
+    int32_t *face_degree = face_halfedge + mesh->face_count, *twin = face_degree + mesh->face_count;
+    int32_t *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n, *edge = face + n;
     /* 1. Half-edges in faces. Their twins at the boundary keep face -1 and get an origin only. */
     for (h = 0; h < n; ++h) {
         twin[h] = h ^ 1;
@@ -12173,8 +12230,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
         next[h] = prev[h] = face[h] = -1;
     }
     for (f = 0; f < mesh->face_count; ++f) {
-        object->face_degree[f] = work->face_start[f + 1] - work->face_start[f];
-        object->face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
+        face_degree[f] = work->face_start[f + 1] - work->face_start[f];
+        face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
         for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
             int32_t following = gproji_corner_halfedge(work, work->corner_next[c]);
             h = gproji_corner_halfedge(work, c);
@@ -12225,7 +12282,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
 GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
                                                gproji_mesh_work *work, gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
-    int32_t h, i, f, k, c = 0, *loop = work->slot;
+    gproji_pool *pool = &object->pool;
+    int32_t h, i, f, k, c = 0, *loop = work->slot, polylines = soup->polyline_count;
     gproj_code code;
     /* 1. Corners. mark[v] is the last face that named vertex v. */
     gproji_fill(work->mark, soup->vertex_count, -1);
@@ -12257,22 +12315,26 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
-    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
-    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
+    mesh->position = (double *)gproji_pool_copy(pool, soup->position, soup->vertex_count, 3 * sizeof(double));
+    object->links = (int32_t *)gproji_pool_take(pool, gproji_mesh_links(mesh), sizeof(int32_t));
+    if (pool->failed) return gproji_fail_memory(error);
+    gproji_mesh_show(object);
     code = gproji_mesh_link(object, work, error);
     if (code) return code;
-    /* 3. Boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
+    /* 3. Boundary loops by their lowest half-edges, and polylines. A vertex is in one loop at most, so `slot` has room for all. */
     gproji_fill(work->mark, mesh->vertex_count, 0);
     for (h = 0; h < mesh->halfedge_count; ++h) {
         if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
         for (i = h; !work->mark[mesh->origin[i]]; i = mesh->next[i]) work->mark[mesh->origin[i]] = 1;
         loop[mesh->loop_count++] = h;
     }
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!object->loop_halfedge) return gproji_fail_memory(error);
-    memcpy(object->loop_halfedge, loop, (size_t)mesh->loop_count * sizeof(int32_t));
-    mesh->loop_halfedge = object->loop_halfedge;
-    return GPROJ_OK;
+    mesh->loop_halfedge = (int32_t *)gproji_pool_copy(pool, loop, mesh->loop_count, sizeof(int32_t));
+    mesh->polyline_count = polylines;
+    mesh->polyline_start =
+        (int32_t *)gproji_pool_copy(pool, soup->polyline_start, (int64_t)polylines + 1, sizeof(int32_t));
+    mesh->polyline_vertex =
+        (int32_t *)gproji_pool_copy(pool, soup->polyline_vertex, soup->polyline_start[polylines], sizeof(int32_t));
+    return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
 /* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
@@ -12316,61 +12378,20 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
     work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
     work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
-    code = work.corner_vertex && work.corner_face && work.corner_next && work.corner_edge && work.corner_order &&
-                   work.edge_corner && work.face_start && work.face_state && work.mark && work.slot
-               ? gproji_mesh_connect(object, soup, &work, error)
-               : gproji_fail_memory(error);
+    code = pool.failed ? gproji_fail_memory(error) : gproji_mesh_connect(object, soup, &work, error);
     gproji_pool_give_all(&pool);
     return code;
 }
 
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
     gproji_mesh_object *object;
-    gproji_heap *heap;
-    size_t vertices, faces;
     if (!mesh) return;
     object = gproji_mesh_owner(mesh);
-    heap = &object->heap;
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
-    if (object->polyline_start) {
-        size_t corners = (size_t)object->polyline_start[mesh->polyline_count];
-        gproji_give(heap, object->polyline_vertex, corners, sizeof(int32_t));
-        gproji_give(heap, object->polyline_start, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
-    }
-    gproji_give(heap, mesh->position, vertices, 3 * sizeof(double));
-    gproji_give(heap, object->vertex_halfedge, vertices, sizeof(int32_t));
-    gproji_give(heap, object->face_halfedge, faces, sizeof(int32_t));
-    gproji_give(heap, object->face_degree, faces, sizeof(int32_t));
-    gproji_give(heap, object->loop_halfedge, (size_t)mesh->loop_count, sizeof(int32_t));
-    gproji_give(heap, object->halfedge, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
+    gproji_pool_give_all(&object->pool);
     gproji_destroy_object(object, sizeof *object);
 }
 
-/* Stores polylines: `start` has count + 1 entries, start[0] = 0. */
-GPROJI_INTERNAL gproj_code gproji_mesh_set_polylines(gproji_mesh_object *object, int32_t count, const int32_t *start,
-                                                     const int32_t *vertex, gproj_error *error) {
-    gproj_mesh *mesh = &object->mesh;
-    size_t total = count ? (size_t)start[count] : 0;
-    object->polyline_vertex = (int32_t *)gproji_take(&object->heap, total, sizeof(int32_t));
-    if (!object->polyline_vertex) return gproji_fail_memory(error);
-    object->polyline_start = (int32_t *)gproji_take(&object->heap, (size_t)count + 1, sizeof(int32_t));
-    if (!object->polyline_start) {
-        /* gproj_mesh_destroy cannot give polyline_vertex back, for polyline_start has the length */
-        gproji_give(&object->heap, object->polyline_vertex, total, sizeof(int32_t));
-        object->polyline_vertex = NULL;
-        return gproji_fail_memory(error);
-    }
-    object->polyline_start[0] = 0;
-    if (count) {
-        memcpy(object->polyline_start, start, ((size_t)count + 1) * sizeof(int32_t));
-        memcpy(object->polyline_vertex, vertex, total * sizeof(int32_t));
-    }
-    mesh->polyline_count = count;
-    mesh->polyline_start = object->polyline_start, mesh->polyline_vertex = object->polyline_vertex;
-    return GPROJ_OK;
-}
-
-/* Ends every function that makes a mesh: returns the mesh, or NULL and keeps nothing. */
+/* Ends every function that makes a mesh from a soup: returns the mesh, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
     if (!code) return &object->mesh;
     gproj_mesh_destroy(&object->mesh);
@@ -12378,68 +12399,53 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
 }
 
 GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object));
-    gproji_error_clear(error);
-    if (!object) gproji_fail_memory(error);
+    gproji_mesh_object *object = (gproji_mesh_object *)gproji_begin_object(host, sizeof(gproji_mesh_object), error);
+    if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error) {
+    static const int32_t none = 0;
     gproji_soup soup;
     gproji_mesh_object *object;
-    gproj_code code;
     gproji_error_clear(error);
     if (vertex_count < 1 || face_count < 0) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+        gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
+                      face_count);
         return NULL;
     }
     if (!position || (face_count && (!face_degree || !face_vertex))) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "an array of the mesh is NULL");
+        gproji_refuse(error, "an array of the mesh is NULL");
         return NULL;
     }
-    soup.vertex_count = vertex_count, soup.face_count = face_count, soup.corner_count = 0;
+    memset(&soup, 0, sizeof soup);
+    soup.vertex_count = vertex_count, soup.face_count = face_count, soup.polyline_start = &none;
     soup.position = position, soup.face_degree = face_degree, soup.face_vertex = face_vertex;
     object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
-    code = gproji_mesh_build(object, &soup, error);
-    if (!code) code = gproji_mesh_set_polylines(object, 0, NULL, NULL, error);
-    return gproji_mesh_done(object, code);
+    return object ? gproji_mesh_done(object, gproji_mesh_build(object, &soup, error)) : NULL;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
+    gproji_pool *pool;
     gproj_mesh *copy;
-    gproj_code code;
-    size_t vertices, faces, loops;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to copy is NULL");
-        return NULL;
-    }
+    int64_t polylines;
+    if (!gproji_given(mesh, "mesh to copy", error)) return NULL;
     object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
-    copy = &object->mesh;
+    copy = &object->mesh, pool = &object->pool;
     *copy = *mesh;
-    copy->polyline_count = 0; /* set below, when there is memory for them */
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, loops = (size_t)mesh->loop_count;
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, loops, sizeof(int32_t));
-    copy->loop_halfedge = object->loop_halfedge;
-    code = gproji_mesh_take(object) && object->loop_halfedge
-               ? gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex,
-                                           error)
-               : gproji_fail_memory(error);
-    if (!code) {
-        memcpy(copy->position, mesh->position, vertices * 3 * sizeof(double));
-        memcpy(object->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
-        memcpy(object->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
-        memcpy(object->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-        memcpy(object->loop_halfedge, mesh->loop_halfedge, loops * sizeof(int32_t));
-        memcpy(object->halfedge, mesh->twin, (size_t)mesh->halfedge_count * 6 * sizeof(int32_t));
-    }
-    return gproji_mesh_done(object, code);
+    polylines = mesh->polyline_count;
+    copy->position = (double *)gproji_pool_copy(pool, mesh->position, mesh->vertex_count, 3 * sizeof(double));
+    object->links = (int32_t *)gproji_pool_copy(pool, mesh->vertex_halfedge, gproji_mesh_links(mesh), sizeof(int32_t));
+    copy->loop_halfedge = (int32_t *)gproji_pool_copy(pool, mesh->loop_halfedge, mesh->loop_count, sizeof(int32_t));
+    copy->polyline_start = (int32_t *)gproji_pool_copy(pool, mesh->polyline_start, polylines + 1, sizeof(int32_t));
+    copy->polyline_vertex =
+        (int32_t *)gproji_pool_copy(pool, mesh->polyline_vertex, mesh->polyline_start[polylines], sizeof(int32_t));
+    if (!pool->failed) gproji_mesh_show(object);
+    return gproji_mesh_done(object, pool->failed ? gproji_fail_memory(error) : GPROJ_OK);
 }
 
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
@@ -13128,7 +13134,7 @@ GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const
 }
 
 GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
-    gproj_code code = gproji_push(reader, &reader->polyline_start, 0);
+    gproj_code code = GPROJ_OK;
     bool more = true;
     /* Lines that begin with v, f or l; all others are passed over. */
     for (; more && !code; more = gproji_next_line(reader)) {
@@ -13335,7 +13341,8 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
         format =
             gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
     }
-    code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
+    code = gproji_push(reader, &reader->polyline_start, 0);
+    if (!code) code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
     if (code) return code;
     if (!reader->vertex_count) {
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
@@ -13345,6 +13352,8 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
     soup.face_degree = reader->face_degree.data, soup.face_vertex = reader->face_vertex.data;
+    soup.polyline_count = (int32_t)reader->polyline_line.count;
+    soup.polyline_start = reader->polyline_start.data, soup.polyline_vertex = reader->polyline_vertex.data;
     code = gproji_mesh_build(object, &soup, error);
     if (code && error && (error->place == GPROJ_PLACE_VERTEX || error->place == GPROJ_PLACE_FACE)) {
         const gproji_ints *lines = error->place == GPROJ_PLACE_VERTEX ? &reader->vertex_line : &reader->face_line;
@@ -13352,9 +13361,7 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
         gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
         memcpy(error->message, message, sizeof message);
     }
-    if (code) return code;
-    return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
-                                     reader->polyline_vertex.data, error);
+    return code;
 }
 
 /* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
@@ -13392,8 +13399,7 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
     gproji_mesh_object *object;
     gproji_error_clear(error);
     if ((!text && size) || format < GPROJ_FORMAT_DETECT || format > GPROJ_FORMAT_OFF) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    text ? "unknown text format" : "the text is NULL");
+        gproji_refuse(error, text ? "unknown text format" : "the text is NULL");
         return NULL;
     }
     object = gproji_mesh_begin(host, error);
@@ -13576,7 +13582,7 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
     gproji_mesh_object *object;
     gproji_error_clear(error);
     if (!path) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the path to load from is NULL");
+        gproji_refuse(error, "the path to load from is NULL");
         return NULL;
     }
     object = gproji_mesh_begin(host, error);
@@ -13590,12 +13596,11 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !path) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the %s to save is NULL",
-                           mesh ? "path" : "mesh");
+        return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
     }
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "'%s' says no format; let the name end with .obj or .off", gproji_quote_path(path, quote));
+        return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
+                             gproji_quote_path(path, quote));
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
@@ -13915,27 +13920,22 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
                                               gproji_heap *heap, const gproj_host *host, gproj_error *error) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
-    int32_t p, i, f, h, k, c = 0, d = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    int32_t p, i, f, h, k, c = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_mesh_object *object;
-    gproji_soup soup;
+    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
-    double *position;
-    int32_t *degree, *corner, *start, *vertex;
+    int32_t *corner, *vertex;
+    if (!object) return NULL;
     gproji_pool_start(&pool, heap);
-    position = (double *)gproji_pool_take(&pool, next.vertices, 3 * sizeof(double));
-    degree = (int32_t *)gproji_pool_take(&pool, next.faces, sizeof(int32_t));
-    corner = (int32_t *)gproji_pool_take(&pool, next.corners, sizeof(int32_t));
-    start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    vertex = (int32_t *)gproji_pool_take(&pool, next.polyline_vertices, sizeof(int32_t));
-    object = position && degree && corner && start && vertex ? gproji_mesh_begin(host, error) : NULL;
-    if (!object) {
+    if (!gproji_draft_take(&draft, &pool, next.vertices, next.faces, next.corners, mesh->polyline_count,
+                           next.polyline_vertices)) {
         gproji_pool_give_all(&pool);
-        gproji_fail_memory(error);
-        return NULL;
+        return gproji_mesh_done(object, gproji_fail_memory(error));
     }
-    gproj_stencil_apply(stencil, 3, mesh->position, position);
+    corner = draft.corner, vertex = draft.vertex;
+    gproj_stencil_apply(stencil, 3, mesh->position, draft.position);
     /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
     for (f = 0; f < mesh->face_count; ++f) {
         h = mesh->face_halfedge[f];
@@ -13944,27 +13944,24 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
             corner[c++] = edges + h / 2;
             if (!loop) corner[c++] = faces + f;
             corner[c++] = edges + mesh->prev[h] / 2;
-            degree[d++] = loop ? 3 : 4;
+            draft.degree[draft.soup.face_count++] = loop ? 3 : 4;
         }
         if (!loop) continue;
         for (k = 0; k < 3; ++k, h = mesh->next[h]) corner[c++] = edges + h / 2;
-        degree[d++] = 3;
+        draft.degree[draft.soup.face_count++] = 3;
     }
     /* 2. Polylines: a vertex more between two that have an edge. */
     for (p = 0; p < mesh->polyline_count; ++p) {
-        start[p] = count;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
             bool last = i + 1 == mesh->polyline_start[p + 1];
             vertex[count++] = mesh->polyline_vertex[i];
             h = last ? -1 : gproji_halfedge_between(mesh, mesh->polyline_vertex[i], mesh->polyline_vertex[i + 1]);
             if (h >= 0) vertex[count++] = edges + h / 2;
         }
+        draft.start[p + 1] = count;
     }
-    start[p] = count;
-    soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
-    soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
-    code = gproji_mesh_build(object, &soup, error);
-    if (!code) code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    draft.soup.vertex_count = (int32_t)next.vertices, draft.soup.polyline_count = mesh->polyline_count;
+    code = gproji_mesh_build(object, &draft.soup, error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(object, code);
 }
@@ -13976,7 +13973,7 @@ GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, c
     gproj_stencil *transposed;
     gproji_error_clear(error);
     if (!stencil) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the stencil to transpose is NULL");
+        gproji_refuse(error, "the stencil to transpose is NULL");
         return NULL;
     }
     transposed = gproji_transposed(stencil, host);
@@ -13992,13 +13989,13 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
     int32_t i;
     gproji_error_clear(error);
     if (!fine || !coarse) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a stencil to multiply is NULL");
+        gproji_refuse(error, "a stencil to multiply is NULL");
         return NULL;
     }
     if (fine->column_count != coarse->row_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
-                    fine->column_count, coarse->row_count);
+        gproji_refuse(
+            error, "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
+            fine->column_count, coarse->row_count);
         return NULL;
     }
     gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
@@ -14028,8 +14025,8 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
                                                 gproj_error *error) {
     int32_t k;
     if (options->crease_count < 0 || options->corner_count < 0) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: %d creases and %d corners",
-                           options->crease_count, options->corner_count);
+        return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
+                             options->corner_count);
     }
     for (k = 0; k < options->crease_count; ++k) {
         int32_t e = options->creases ? options->creases[k] : k;
@@ -14060,18 +14057,15 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     int32_t level, f;
     gproj_code code;
     if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
-                           (int32_t)options->scheme);
+        return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
     }
     if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
-                           (int32_t)GPROJI_LEVELS_MAX);
+        return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                             (int32_t)GPROJI_LEVELS_MAX);
     }
     if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "subdivide: a stencil from level %d to level %d; take 0 to %d", options->stencil_level,
-                           options->levels, options->levels - 1);
+        return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
+                             options->stencil_level, options->levels, options->levels - 1);
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
@@ -14172,7 +14166,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     gproji_error_clear(error);
     if (stencil) *stencil = NULL;
     if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to subdivide is NULL");
+        gproji_refuse(error, "the mesh to subdivide is NULL");
         return NULL;
     }
     memset(&given, 0, sizeof given);
@@ -14543,8 +14537,8 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
     gproj_curve *curve;
     gproji_error_clear(error);
     if (count < 2 || count > GPROJI_VERTICES_MAX || !points) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL", count);
+        gproji_refuse(error, points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL",
+                      count);
         return NULL;
     }
     curve = gproji_curve_begin(closed ? count : count - 1, host, error);
@@ -14560,9 +14554,9 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
     int32_t start, h, count = 0;
     gproji_error_clear(error);
     if (!mesh || loop < 0 || loop >= mesh->loop_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "boundary loop %d of a mesh that has %d of them" : "the mesh of the boundary loop is NULL",
-                    loop, mesh ? mesh->loop_count : 0);
+        gproji_refuse(error,
+                      mesh ? "boundary loop %d of a mesh that has %d of them" : "the mesh of the boundary loop is NULL",
+                      loop, mesh ? mesh->loop_count : 0);
         return NULL;
     }
     start = mesh->loop_halfedge[loop];
@@ -14586,9 +14580,8 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     int32_t segments, i;
     gproji_error_clear(error);
     if (!mesh || polyline < 0 || polyline >= mesh->polyline_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "polyline %d of a mesh that has %d of them" : "the mesh of the polyline is NULL", polyline,
-                    mesh ? mesh->polyline_count : 0);
+        gproji_refuse(error, mesh ? "polyline %d of a mesh that has %d of them" : "the mesh of the polyline is NULL",
+                      polyline, mesh ? mesh->polyline_count : 0);
         return NULL;
     }
     vertex = mesh->polyline_vertex + mesh->polyline_start[polyline];
@@ -14849,8 +14842,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     bool complete;
     gproji_error_clear(error);
     if (!mesh || !mesh->face_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "the mesh of the surface has no faces" : "the mesh of the surface is NULL");
+        gproji_refuse(error, mesh ? "the mesh of the surface has no faces" : "the mesh of the surface is NULL");
         return NULL;
     }
     if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
@@ -15151,7 +15143,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
     gproji_error_clear(error);
     if (!edit) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the edit is NULL");
+        gproji_refuse(error, "the edit is NULL");
         return NULL;
     }
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
@@ -15425,7 +15417,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     int32_t kind, i;
     gproji_error_clear(error);
     if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
+        gproji_refuse(error, "the mesh to edit is NULL");
         return NULL;
     }
     object = (gproji_edit_object *)gproji_create_object(host, sizeof *object);
@@ -15469,59 +15461,48 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* The polygons and polylines for gproj_edit_mesh. */
-typedef struct gproji_edit_out {
-    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
-    gproji_soup soup;
-    int32_t polyline_count, *start, *vertex;
-} gproji_edit_out;
-
 /* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
-GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
+GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_draft *draft,
+                                       int32_t *number[GPROJI_EDIT_KINDS]) {
     const gproji_edit_store *s = &object->now;
-    gproji_soup *soup = &out->soup;
-    double *position;
-    int32_t *degree, *corner, *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
+    gproji_soup *soup = &draft->soup;
+    int32_t *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
     bool complete = true;
-    memset(out, 0, sizeof *out);
     /* 1. Room, as large as can be needed. */
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
+        number[kind] = NULL;
         if (kind == GPROJI_EDIT_HALFEDGE) continue;
-        out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        complete = complete && out->number[kind];
+        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        complete = complete && number[kind];
     }
-    position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
-    out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
-    out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
-    if (!(complete && position && degree && corner && out->start && out->vertex)) return false;
+    if (!gproji_draft_take(draft, pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->polyline_room) ||
+        !complete)
+        return false;
     /* 2. Vertices; a merged one gets the number that the lower one has already. */
-    vertex = out->number[GPROJI_EDIT_VERTEX], face = out->number[GPROJI_EDIT_FACE];
+    vertex = number[GPROJI_EDIT_VERTEX], face = number[GPROJI_EDIT_FACE];
     for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
         if (s->vertex_into[v] != v) continue;
-        memcpy(position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+        gproji_copy3(s->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count++);
     }
     /* 3. Faces. */
     for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         h = s->face_halfedge[f];
         face[f] = h < 0 ? -1 : soup->face_count;
         if (h < 0) continue;
-        degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) corner[corners++] = vertex[s->origin[h]];
+        draft->degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft->corner[corners++] = vertex[s->origin[h]];
     }
-    soup->position = position, soup->face_degree = degree, soup->face_vertex = corner;
     /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
-    out->start[0] = 0;
     for (p = 0; p < s->polyline_count; ++p) {
         begin = end;
         for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
             v = vertex[s->polyline_vertex[i]];
-            if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
+            if (end == begin || draft->vertex[end - 1] != v) draft->vertex[end++] = v;
         }
         if (end < begin + 2) end = begin;
-        if (end > begin) out->start[++out->polyline_count] = end;
+        if (end > begin) draft->start[++soup->polyline_count] = end;
     }
     return true;
 }
@@ -15530,30 +15511,30 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
     gproji_mesh_object *made;
-    gproji_edit_out out;
+    gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
+    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
     int32_t kind, f, e, h, k, i, *edge;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_write(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
-    if (!code) code = gproji_mesh_build(made, &out.soup, error);
-    if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
+    code = gproji_edit_write(object, &pool, &draft, number) ? gproji_mesh_build(made, &draft.soup, error)
+                                                            : gproji_fail_memory(error);
     /* The mesh has numbered the edges: both are walked side by side. */
-    edge = out.number[GPROJI_EDIT_EDGE];
+    edge = number[GPROJI_EDIT_EDGE];
     for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[out.number[GPROJI_EDIT_FACE][f]];
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[number[GPROJI_EDIT_FACE][f]];
         for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
-        int32_t *other = code ? out.number[kind] : object->number[kind];
+        int32_t *other = code ? number[kind] : object->number[kind];
         gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
-        if (!code) object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
+        if (!code) object->number[kind] = number[kind], object->number_count[kind] = s->count[kind];
     }
     gproji_edit_publish(object);
     gproji_pool_give_all(&pool);
@@ -15921,21 +15902,18 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* Work arrays for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
+/* Work for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
 typedef struct gproji_dual {
-    gproji_soup soup;
-    double *position;
-    int32_t *degree, *corner;
+    gproji_draft draft;
     int32_t *vertex;   /* vertex_count: a vertex's number in the dual, or -1 */
     int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
     int32_t *seen;     /* face_count: the last face that met it as a neighbour */
-    int32_t *start, *polyline;
 } gproji_dual;
 
 /* Adds a vertex at the mean over `count` half-edges' origins, h and those that follow it. */
 GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
-    int32_t number = dual->soup.vertex_count++, k;
-    double *x = dual->position + 3 * (size_t)number;
+    int32_t number = dual->draft.soup.vertex_count++, k;
+    double *x = dual->draft.position + 3 * (size_t)number;
     gproji_set3(0, 0, 0, x);
     for (k = 0; k < count; ++k, h = mesh->next[h])
         gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
@@ -15944,16 +15922,16 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
 
 /* Numbers a vertex that is in the dual, too. */
 GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    int32_t number = dual->soup.vertex_count++;
-    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
+    int32_t number = dual->draft.soup.vertex_count++;
+    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->draft.position + 3 * (size_t)number);
     dual->vertex[vertex] = number;
 }
 
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
-    gproji_soup *soup = &dual->soup;
-    int32_t f, e, v, k, h, g, p, i, begin, end = 0, polylines = 0;
-    gproj_code code;
+    gproji_draft *draft = &dual->draft;
+    gproji_soup *soup = &draft->soup;
+    int32_t f, e, v, k, h, g, p, i, begin, end = 0;
     /* 1. No two faces may have two edges in common. */
     gproji_fill(dual->seen, mesh->face_count, -1);
     for (f = 0; f < mesh->face_count; ++f)
@@ -15981,29 +15959,26 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (last < 0) continue;
         begin = soup->corner_count;
         h = boundary ? gproji_rotate(mesh, last) : last;
-        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[h / 2];
         do {
-            dual->corner[soup->corner_count++] = mesh->face[h];
+            draft->corner[soup->corner_count++] = mesh->face[h];
             h = gproji_rotate(mesh, h);
         } while (h != last);
-        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
-        if (dual->vertex[v] >= 0) dual->corner[soup->corner_count++] = dual->vertex[v];
-        dual->degree[soup->face_count++] = soup->corner_count - begin;
+        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[last / 2];
+        if (dual->vertex[v] >= 0) draft->corner[soup->corner_count++] = dual->vertex[v];
+        draft->degree[soup->face_count++] = soup->corner_count - begin;
     }
     /* 4. Polylines that are in the dual as a whole. */
-    dual->start[0] = 0;
     for (p = 0; p < mesh->polyline_count; ++p) {
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
             v = dual->vertex[mesh->polyline_vertex[i]];
             if (v < 0) break;
-            dual->polyline[end++] = v;
+            draft->vertex[end++] = v;
         }
-        if (i == mesh->polyline_start[p + 1]) dual->start[++polylines] = end;
-        end = dual->start[polylines];
+        if (i == mesh->polyline_start[p + 1]) draft->start[++soup->polyline_count] = end;
+        end = draft->start[soup->polyline_count];
     }
-    soup->position = dual->position, soup->face_degree = dual->degree, soup->face_vertex = dual->corner;
-    code = gproji_mesh_build(made, soup, error);
-    return code ? code : gproji_mesh_set_polylines(made, polylines, dual->start, dual->polyline, error);
+    return gproji_mesh_build(made, soup, error);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
@@ -16013,26 +15988,16 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     gproji_pool pool;
     gproj_code code;
     int64_t vertices, edges, faces;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
-        return NULL;
-    }
+    if (!gproji_given(mesh, "mesh", error)) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    memset(&dual, 0, sizeof dual);
-    dual.position = (double *)gproji_pool_take(&pool, faces + edges + vertices, 3 * sizeof(double));
-    dual.corner = (int32_t *)gproji_pool_take(&pool, 2 * edges + 3 * vertices, sizeof(int32_t));
-    dual.degree = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
     dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
     dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
     dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
-    dual.start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    dual.polyline = (int32_t *)gproji_pool_take(&pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
-    code = dual.position && dual.corner && dual.degree && dual.vertex && dual.midpoint && dual.seen && dual.start &&
-                   dual.polyline
+    code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
+                             mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
                ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
                : gproji_fail_memory(error);
     gproji_pool_give_all(&pool);
@@ -17030,15 +16995,15 @@ GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b)
 
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
-    gproj_mesh *support = NULL;
+    gproji_mesh_object *object;
+    gproji_draft draft;
     gproji_pool pool;
-    double *position;
-    int32_t *degree, *corner, e;
+    gproj_code code = GPROJ_OK;
+    int32_t e;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
+        gproji_refuse(
+            error, "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
         return NULL;
     }
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
@@ -17046,26 +17011,25 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    gproji_pool_start(&pool, &heap);
-    position = (double *)gproji_pool_take(&pool, mesh->edge_count, 12 * sizeof *position);
-    degree = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, sizeof *degree);
-    corner = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, 4 * sizeof *corner);
-    if (position && degree && corner) {
-        for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
-            double *out = position + 12 * (size_t)e;
-            gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
-            gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
-            gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
-            gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
-            degree[e] = 4;
-        }
-        for (e = 0; e < 4 * mesh->edge_count; ++e) corner[e] = e;
-        support = gproj_mesh_create(4 * mesh->edge_count, position, mesh->edge_count, degree, corner, host, error);
-    } else {
-        gproji_fail_memory(error);
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
+    gproji_pool_start(&pool, &object->heap);
+    if (!gproji_draft_take(&draft, &pool, 4 * (int64_t)mesh->edge_count, mesh->edge_count,
+                           4 * (int64_t)mesh->edge_count, 0, 0))
+        code = gproji_fail_memory(error);
+    for (e = 0; !code && e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+        double *out = draft.position + 12 * (size_t)e;
+        gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
+        gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
+        gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
+        gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
+        draft.degree[e] = 4;
     }
+    for (e = 0; !code && e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
+    draft.soup.vertex_count = 4 * mesh->edge_count, draft.soup.face_count = mesh->edge_count;
+    if (!code) code = gproji_mesh_build(object, &draft.soup, error);
     gproji_pool_give_all(&pool);
-    return support;
+    return gproji_mesh_done(object, code);
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
@@ -17581,10 +17545,10 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     gproj_code code;
     /* 1. Points are finite, and no two neighbours coincide. */
     if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           f->points ? "a closed curve of %d points; it needs at least 3"
-                                     : "the points of the curve are NULL",
-                           f->count);
+        return gproji_refuse(f->error,
+                             f->points ? "a closed curve of %d points; it needs at least 3"
+                                       : "the points of the curve are NULL",
+                             f->count);
     code = gproji_check_positions(f->count, f->points, "point", f->error);
     if (code) return code;
     for (i = 0; i < f->count; ++i) {
@@ -17622,11 +17586,8 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                            i, j);
     /* 3. Options. */
     if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
-                           (int32_t)GPROJI_FILL_RINGS);
-    if (o->variant < 0)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
-                           o->variant);
+        return gproji_refuse(f->error, "%d rings; give 0 to %d", o->rings, (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0) return gproji_refuse(f->error, "variant %d; the first is 0", o->variant);
     if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
         return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
@@ -17649,9 +17610,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     int32_t i, n;
     bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "%d corners%s; give at least 2, or none to have them found", o->corner_count,
-                           o->corner_count > 1 ? " in an array that is NULL" : "");
+        return gproji_refuse(f->error, "%d corners%s; give at least 2, or none to have them found", o->corner_count,
+                             o->corner_count > 1 ? " in an array that is NULL" : "");
     for (i = 0; i < o->corner_count; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -17683,9 +17643,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     }
     f->sides = (int32_t)f->corner.count;
     if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
-                           o->subdivisions ? "" : " by a NULL array", f->sides);
+        return gproji_refuse(f->error, "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
+                             o->subdivisions ? "" : " by a NULL array", f->sides);
     return taken ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
@@ -18375,25 +18334,19 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
 
 /* Makes the mesh: positions in space, faces, and the sides as polylines. */
 GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
-    int32_t faces = (int32_t)f->quad.count / 4, side, i, v;
-    gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
-    gproji_soup soup;
+    int32_t faces = (int32_t)f->quad.count / 4, side, i, v, end = 0;
+    gproji_draft draft;
     gproji_pool pool;
-    double *height, *position;
-    int32_t *degree;
-    bool taken;
-    gproj_code code;
+    double *height;
+    gproj_code code = GPROJ_OK;
     gproji_pool_start(&pool, f->heap);
     height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
-    position = (double *)gproji_pool_take(&pool, 3 * (int64_t)f->vertices, sizeof *position);
-    degree = (int32_t *)gproji_pool_take(&pool, faces, sizeof *degree);
-    taken = height && position && degree && gproji_ints_add(f->heap, &start, 0);
-    for (side = 0; taken && side < f->sides; ++side) {
-        for (i = f->start.data[side]; taken && i <= f->start.data[side + 1]; ++i)
-            taken = gproji_ints_add(f->heap, &line, i % f->boundary);
-        taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
+    if (!gproji_draft_take(&draft, &pool, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides))
+        code = gproji_fail_memory(f->error);
+    for (side = 0; !code && side < f->sides; ++side) {
+        for (i = f->start.data[side]; i <= f->start.data[side + 1]; ++i) draft.vertex[end++] = i % f->boundary;
+        draft.start[side + 1] = end;
     }
-    code = taken ? GPROJ_OK : gproji_fail_memory(f->error);
     /* Heights over the plane: the curve's, harmonic inside. */
     for (v = 0; !code && v < f->boundary; ++v) {
         double d[3];
@@ -18401,23 +18354,20 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
         height[v] = gproji_dot3(d, f->normal);
     }
     if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    if (!code) memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    if (!code) memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
     for (v = f->boundary; !code && v < f->vertices; ++v) {
-        double *out = position + 3 * (size_t)v;
+        double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
         gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
         gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
     if (!code) {
-        gproji_fill(degree, faces, 4);
-        soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
-        soup.position = position, soup.face_degree = degree, soup.face_vertex = f->quad.data;
-        code = gproji_mesh_build(object, &soup, f->error);
+        gproji_fill(draft.degree, faces, 4);
+        memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
+        draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
+        code = gproji_mesh_build(object, &draft.soup, f->error);
     }
-    if (!code) code = gproji_mesh_set_polylines(object, f->sides, start.data, line.data, f->error);
-    gproji_ints_give(f->heap, &line);
-    gproji_ints_give(f->heap, &start);
     gproji_pool_give_all(&pool);
     return code;
 }
@@ -18505,10 +18455,12 @@ GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
 
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_mesh_object *object;
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
+    gproji_error_clear(error);
+    object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
     memset(&f, 0, sizeof f);
     memset(&found, 0, sizeof found);
