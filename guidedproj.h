@@ -12928,6 +12928,7 @@ typedef struct gproji_reader {
     const char *word; /* the last word scanned, not NUL-terminated */
     size_t word_size;
     gproji_heap *heap;
+    gproj_code code; /* the first failure; nothing is read after it */
     gproj_error *error;
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
@@ -12935,6 +12936,17 @@ typedef struct gproji_reader {
     gproji_ints face_vertex; /* from 0; in an OBJ they may point forward until all is read */
     gproji_ints polyline_start, polyline_vertex, polyline_line;
 } gproji_reader;
+
+/* Stops reading with an error at a line, which begins the sentence. */
+GPROJI_INTERNAL void gproji_stop(gproji_reader *reader, gproj_code code, int32_t line, const char *format, ...) {
+    char sentence[GPROJ_MESSAGE_SIZE];
+    va_list list;
+    if (reader->code) return;
+    va_start(list, format);
+    gproji_format_list(sentence, sizeof sentence, format, list);
+    va_end(list);
+    reader->code = gproji_fail(reader->error, code, GPROJ_PLACE_LINE, line, "line %d: %s", line, sentence);
+}
 
 /* -- words and lines -- */
 
@@ -13017,167 +13029,138 @@ GPROJI_INTERNAL const char *gproji_quote(const gproji_reader *reader, char quote
 /* -- numbers and elements -- */
 
 /* Reads the word as a number. */
-GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *value) {
+GPROJI_INTERNAL double gproji_word_number(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
-    size_t used = gproj_number_read(reader->word, reader->word_size, value);
-    if (used && used == reader->word_size) return GPROJ_OK;
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: '%s' is not a number%s", reader->line, gproji_quote(reader, quote),
-                       used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
+    double value = 0;
+    size_t used = gproj_number_read(reader->word, reader->word_size, &value);
+    if (!used || used != reader->word_size)
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' is not a number%s", gproji_quote(reader, quote),
+                    used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
+    return value;
 }
 
 /* Reads the word as an integer, clamped to +-10^12. With `slashes`, texture and normal behind a '/' are passed over. */
-GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes, int64_t *value) {
+GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
     const char *word = reader->word;
     char quote[GPROJI_QUOTE_SIZE];
-    size_t i = 0, digits;
-    bool negative = word[0] == '-';
-    if (word[0] == '-' || word[0] == '+') ++i;
-    *value = 0;
-    for (digits = i; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
-        if (*value < INT64_C(100000000000)) *value = *value * 10 + (word[i] - '0');
+    size_t i = word[0] == '-' || word[0] == '+', digits = i;
+    int64_t value = 0;
+    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
+        if (value < INT64_C(100000000000)) value = value * 10 + (word[i] - '0');
     }
-    if (i > digits && (i == reader->word_size || (slashes && word[i] == '/'))) {
-        if (negative) *value = -*value;
+    if (i > digits && slashes && i < reader->word_size && word[i] == '/') {
         while (i < reader->word_size && (gproji_is_digit(word[i]) || word[i] == '/' || word[i] == '-')) ++i;
-        if (i == reader->word_size) return GPROJ_OK;
     }
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line, "line %d: '%s' is not %s",
-                       reader->line, gproji_quote(reader, quote),
-                       slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
+    if (i == digits || i < reader->word_size)
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' is not %s", gproji_quote(reader, quote),
+                    slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
+    return word[0] == '-' ? -value : value;
 }
 
 /* Appends to one of the reader's arrays. */
-GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
-    if (gproji_ints_add(reader->heap, ints, value)) return GPROJ_OK;
-    if (ints->count < GPROJI_INTS_MAX) return gproji_fail_memory(reader->error);
-    return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text has too many elements; split the mesh", reader->line);
+GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
+    if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
+    if (ints->count < GPROJI_INTS_MAX)
+        reader->code = gproji_fail_memory(reader->error);
+    else
+        gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "the text has too many elements; split the mesh");
 }
 
-GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
+GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
     void *block = reader->position;
-    if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, line,
-                           "line %d: more than %d vertices; split the mesh", line, (int32_t)GPROJI_VERTICES_MAX);
-    }
+    if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX)
+        gproji_stop(reader, GPROJ_ERROR_SIZE, line, "more than %d vertices; split the mesh",
+                    (int32_t)GPROJI_VERTICES_MAX);
+    gproji_push(reader, &reader->vertex_line, line);
+    if (reader->code) return;
     if (!gproji_reserve(reader->heap, &block, &reader->position_capacity, reader->vertex_count + 1,
                         3 * sizeof(double))) {
-        return gproji_fail_memory(reader->error);
+        reader->code = gproji_fail_memory(reader->error);
+        return;
     }
     reader->position = (double *)block;
-    gproji_copy3(x, reader->position + 3 * reader->vertex_count);
-    reader->vertex_count++;
-    return gproji_push(reader, &reader->vertex_line, line);
+    gproji_copy3(x, reader->position + 3 * reader->vertex_count++);
 }
 
 /* Appends a face; the caller appends the corners. */
-GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
-    gproj_code code;
-    if (degree < 3) {
-        return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                           "line %d: a face with %d corners; a face needs at least 3", line,
-                           (int32_t)(degree < -9 ? -9 : degree));
-    }
+GPROJI_INTERNAL void gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
+    if (degree < 3)
+        gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a face with %d corners; a face needs at least 3",
+                    (int32_t)(degree < -9 ? -9 : degree));
     /* no text has the corners for a degree beyond int32_t, so a wrong number here is never used */
-    code = gproji_push(reader, &reader->face_degree, (int32_t)degree);
-    return code ? code : gproji_push(reader, &reader->face_line, line);
+    gproji_push(reader, &reader->face_degree, (int32_t)degree);
+    gproji_push(reader, &reader->face_line, line);
 }
 
 /* -- OBJ -- */
 
-/* Appends the indices in an f or l line, counted from 0, to `ints`; *count is their number. */
-GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
-    int64_t index, vertices = (int64_t)reader->vertex_count;
-    gproj_code code;
-    *count = 0;
-    while (gproji_next_word(reader)) {
-        code = gproji_word_index(reader, true, &index);
-        if (code) return code;
-        if (index == 0) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index 0; the vertices of an OBJ text count from 1", reader->line);
-        }
-        if (index < 0 && index + vertices < 0) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index %l, but only %l vertices stand above", reader->line, index, vertices);
-        }
+/* Appends the indices in an f or l line, counted from 0, to `ints`. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_obj_indices(gproji_reader *reader, gproji_ints *ints) {
+    int64_t vertices = (int64_t)reader->vertex_count;
+    int32_t count = 0;
+    for (; !reader->code && gproji_next_word(reader); ++count) {
         /* negative ones count back from here; positive ones may point forward: gproji_obj_check_indices */
-        index = index < 0 ? index + vertices : index - 1;
-        if (index >= GPROJI_VERTICES_MAX) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index %l is larger than any number of vertices can be", reader->line,
-                               index + 1);
-        }
-        code = gproji_push(reader, ints, (int32_t)index);
-        if (code) return code;
-        ++*count;
+        int64_t index = gproji_word_index(reader, true), place = index < 0 ? index + vertices : index - 1;
+        if (index == 0)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index 0; the vertices of an OBJ text count from 1");
+        if (place < 0)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but only %l vertices stand above", index,
+                        vertices);
+        if (place >= GPROJI_VERTICES_MAX)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line,
+                        "index %l is larger than any number of vertices can be", index);
+        gproji_push(reader, ints, (int32_t)place);
     }
-    return GPROJ_OK;
+    return count;
 }
 
 /* Refuses indices beyond the vertices. Element e has degree[e] of them, or ends before number end[e + 1]. */
-GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints,
-                                                    const gproji_ints *line, const int32_t *degree,
-                                                    const int32_t *end) {
+GPROJI_INTERNAL void gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints, const gproji_ints *line,
+                                              const int32_t *degree, const int32_t *end) {
     size_t e, c = 0;
-    for (e = 0; e < line->count; ++e) {
+    for (e = 0; e < line->count && !reader->code; ++e) {
         size_t stop = degree ? c + (size_t)degree[e] : (size_t)end[e + 1];
-        for (; c < stop; ++c) {
-            if ((size_t)ints->data[c] < reader->vertex_count) continue;
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, line->data[e],
-                               "line %d: index %d, but the text has %d vertices", line->data[e], ints->data[c] + 1,
-                               (int32_t)reader->vertex_count);
-        }
+        for (; c < stop; ++c)
+            if ((size_t)ints->data[c] >= reader->vertex_count)
+                gproji_stop(reader, GPROJ_ERROR_INDEX, line->data[e], "index %d, but the text has %d vertices",
+                            ints->data[c] + 1, (int32_t)reader->vertex_count);
     }
-    return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
-    gproj_code code = GPROJ_OK;
+GPROJI_INTERNAL void gproji_read_obj(gproji_reader *reader) {
     bool more = true;
     /* Lines that begin with v, f or l; all others are passed over. */
-    for (; more && !code; more = gproji_next_line(reader)) {
+    for (; more && !reader->code; more = gproji_next_line(reader)) {
         int32_t count = 0, line;
         if (!gproji_next_word(reader)) continue;
         line = reader->line;
         if (gproji_word_is(reader, "v")) {
             /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
-            double number = 0, x[3] = {0, 0, 0};
-            while (!code && gproji_next_word(reader)) {
-                code = gproji_word_number(reader, &number);
+            double x[3] = {0, 0, 0};
+            while (!reader->code && gproji_next_word(reader)) {
+                double number = gproji_word_number(reader);
                 if (count < 3) x[count] = number;
                 if (count < 8) ++count;
             }
-            if (!code && count != 3 && count != 4 && count != 6 && count != 7) {
-                code = gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                                   "line %d: a vertex with %s%d numbers; write 'v x y z'", line,
-                                   count == 8 ? "more than " : "", count == 8 ? 7 : count);
-            }
-            if (!code) code = gproji_push_vertex(reader, x, line);
+            if (count != 3 && count != 4 && count != 6 && count != 7)
+                gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %s%d numbers; write 'v x y z'",
+                            count == 8 ? "more than " : "", count == 8 ? 7 : count);
+            gproji_push_vertex(reader, x, line);
         } else if (gproji_word_is(reader, "f")) {
-            code = gproji_obj_indices(reader, &reader->face_vertex, &count);
-            if (!code) code = gproji_push_face(reader, count, line);
+            gproji_push_face(reader, gproji_obj_indices(reader, &reader->face_vertex), line);
         } else if (gproji_word_is(reader, "l")) {
-            code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
-            if (!code && count < 2) {
-                code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                                   "line %d: a polyline with %d points; it needs at least 2", line, count);
-            }
-            if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
-            if (!code) code = gproji_push(reader, &reader->polyline_line, line);
+            count = gproji_obj_indices(reader, &reader->polyline_vertex);
+            if (count < 2)
+                gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a polyline with %d points; it needs at least 2",
+                            count);
+            gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
+            gproji_push(reader, &reader->polyline_line, line);
         }
     }
     /* Indices may point forward, so they are compared with the vertex count when that is known. */
-    if (!code) {
-        code =
-            gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
-    }
-    if (!code) {
-        code = gproji_obj_check_indices(reader, &reader->polyline_vertex, &reader->polyline_line, NULL,
-                                        reader->polyline_start.data);
-    }
-    return code;
+    gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
+    gproji_obj_check_indices(reader, &reader->polyline_vertex, &reader->polyline_line, NULL,
+                             reader->polyline_start.data);
 }
 
 /* -- OFF -- */
@@ -13195,90 +13178,76 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
     return size - i == 3 && !memcmp(word + i, "OFF", 3);
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t promised,
-                                               const char *noun) {
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count,
-                       promised, noun);
+/* Goes to the next word anywhere; stops if the text ends after `count` elements. */
+GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64_t promised, const char *noun) {
+    if (!reader->code && !gproji_next_word_anywhere(reader))
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "the text ends after %l of %l %s; it seems to be cut off",
+                    count, promised, noun);
+    return !reader->code;
+}
+
+/* Reads a vertex's line: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
+GPROJI_INTERNAL void gproji_off_vertex(gproji_reader *reader) {
+    double x[3] = {0, 0, 0};
+    int32_t k, line = reader->line;
+    for (k = 0; k < 3 && !reader->code; ++k) {
+        if (k && !gproji_next_word(reader))
+            gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
+        else
+            x[k] = gproji_word_number(reader);
+    }
+    gproji_next_line(reader);
+    gproji_push_vertex(reader, x, line);
 }
 
 /* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree, index, k, vertices = (int64_t)reader->vertex_count;
-    gproj_code code = gproji_word_index(reader, false, &degree);
-    if (!code) code = gproji_push_face(reader, degree, reader->line);
-    for (k = 0; !code && k < degree; ++k) {
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
-        code = gproji_word_index(reader, false, &index);
-        if (code) return code;
-        if (index < 0 || index >= vertices) {
+GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
+    int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
+    gproji_push_face(reader, degree, reader->line);
+    for (k = 0; k < degree && gproji_off_word(reader, face, faces, "faces"); ++k) {
+        index = gproji_word_index(reader, false);
+        if (!reader->code && (index < 0 || index >= vertices)) {
             /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
             bool from_one = index == vertices;
             size_t c;
             for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
-            return gproji_fail(
-                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index, vertices - 1,
-                from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index" : "");
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
+                        vertices - 1,
+                        from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
+                                 : "");
         }
-        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
+        gproji_push(reader, &reader->face_vertex, (int32_t)index);
     }
-    if (!code) gproji_next_line(reader);
-    return code;
+    gproji_next_line(reader);
 }
 
-GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
+GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
     int64_t count[2] = {0, 0}, i;
     bool plain, have_word = gproji_next_word_anywhere(reader);
-    int32_t k, line;
-    gproj_code code = GPROJ_OK;
+    int32_t k;
     /* 1. The word OFF, which may be missing if the counts are there. */
     if (have_word && gproji_is_off_word(reader, &plain)) {
         have_word = gproji_next_word_anywhere(reader);
-        if (!plain || (have_word && gproji_word_is(reader, "BINARY"))) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: %s; save it as plain OFF", reader->line,
-                               plain ? "a binary OFF file" : "an OFF file of another dimension than 3");
-        }
+        if (!plain || (have_word && gproji_word_is(reader, "BINARY")))
+            gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "%s; save it as plain OFF",
+                        plain ? "a binary OFF file" : "an OFF file of another dimension than 3");
     } else if (have_word && !gproji_is_digit(reader->word[0])) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                           "line %d: '%s' where an OFF text says OFF", reader->line, gproji_quote(reader, quote));
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' where an OFF text says OFF",
+                    gproji_quote(reader, quote));
     }
     /* 2. Counts of vertices and faces; that of edges, which many writers leave 0, is passed over. */
-    for (k = 0; k < 2; ++k) {
-        if (k) have_word = gproji_next_word_anywhere(reader);
-        if (!have_word) return gproji_fail_cut_off(reader, k, 2, "counts");
-        code = gproji_word_index(reader, false, &count[k]);
-        if (code) return code;
-        if (count[k] < 0 || count[k] > GPROJI_VERTICES_MAX) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: a count of %l %s", reader->line, count[k], k ? "faces" : "vertices");
-        }
+    for (k = 0; k < 2 && ((have_word && k == 0) || gproji_off_word(reader, k, 2, "counts")); ++k) {
+        count[k] = gproji_word_index(reader, false);
+        if (count[k] < 0 || count[k] > GPROJI_VERTICES_MAX)
+            gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "a count of %l %s", count[k], k ? "faces" : "vertices");
     }
     gproji_next_line(reader);
-    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
-    for (i = 0; i < count[0] && !code; ++i) {
-        double x[3];
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, i, count[0], "vertices");
-        line = reader->line;
-        for (k = 0; k < 3; ++k) {
-            if (k && !gproji_next_word(reader)) {
-                return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                                   "line %d: a vertex with %d numbers; write x y z on one line", line, k);
-            }
-            code = gproji_word_number(reader, &x[k]);
-            if (code) return code;
-        }
-        gproji_next_line(reader);
-        code = gproji_push_vertex(reader, x, line);
-    }
+    /* 3. Vertices, a line each. */
+    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) gproji_off_vertex(reader);
     /* 4. Faces: the degree, then the corners. */
-    for (i = 0; i < count[1] && !code; ++i) {
-        code = gproji_next_word_anywhere(reader) ? gproji_off_face(reader, i, count[1])
-                                                 : gproji_fail_cut_off(reader, i, count[1], "faces");
-    }
-    return code;
+    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
+        gproji_off_face(reader, i, count[1]);
 }
 
 /* -- reading -- */
@@ -13329,9 +13298,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
             else
                 reader->at++;
         }
-        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                           "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text",
-                           reader->line);
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line,
+                    "a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text");
+        return reader->code;
     }
     /* 2. Polygons, after the byte order mark if there is one. */
     if (reader->size >= 3 && !memcmp(reader->text, "\xef\xbb\xbf", 3)) reader->at = 3;
@@ -13341,9 +13310,12 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
         format =
             gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
     }
-    code = gproji_push(reader, &reader->polyline_start, 0);
-    if (!code) code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
-    if (code) return code;
+    gproji_push(reader, &reader->polyline_start, 0);
+    if (format == GPROJ_FORMAT_OFF)
+        gproji_read_off(reader);
+    else
+        gproji_read_obj(reader);
+    if (reader->code) return reader->code;
     if (!reader->vertex_count) {
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
@@ -13580,11 +13552,7 @@ GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const ch
 
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
-    gproji_error_clear(error);
-    if (!path) {
-        gproji_refuse(error, "the path to load from is NULL");
-        return NULL;
-    }
+    if (!gproji_given(path, "path to load from", error)) return NULL;
     object = gproji_mesh_begin(host, error);
     return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
 }
