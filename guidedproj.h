@@ -14293,30 +14293,22 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
     }
 }
 
-GPROJI_INTERNAL void gproji_hierarchy_give(gproji_heap *heap, gproji_hierarchy *tree) {
-    gproji_give(heap, tree->item, (size_t)tree->item_count, sizeof(int32_t));
-    gproji_give(heap, tree->node, (size_t)tree->item_count, sizeof(gproji_node));
-    tree->item = NULL, tree->node = NULL;
-}
-
-/* Builds the tree over `count` >= 1 items; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy *tree, int32_t count,
+/* Builds the tree over `count` >= 1 items; `keep` holds the arrays. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy *tree, int32_t count,
                                             gproji_item_box item_box, const void *user) {
     gproji_hierarchy_work work;
     gproji_pool pool;
     int32_t i, axis;
     bool complete;
-    memset(tree, 0, sizeof *tree);
-    tree->item_count = count;
-    tree->item = (int32_t *)gproji_take(heap, (size_t)count, sizeof(int32_t));
-    tree->node = (gproji_node *)gproji_take(heap, (size_t)count, sizeof(gproji_node));
-    gproji_pool_start(&pool, heap);
+    tree->item_count = count, tree->node_count = 0;
+    tree->item = (int32_t *)gproji_pool_take(keep, count, sizeof(int32_t));
+    tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
+    gproji_pool_start(&pool, keep->heap);
     work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
     work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
     work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
     for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
-    complete = tree->item && tree->node && work.box && work.spare && work.left && work.order[0] && work.order[1] &&
-               work.order[2];
+    complete = !keep->failed && !pool.failed;
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
         for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
@@ -14325,7 +14317,6 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy 
         memcpy(tree->item, work.order[0], (size_t)count * sizeof(int32_t));
     }
     gproji_pool_give_all(&pool);
-    if (!complete) gproji_hierarchy_give(heap, tree);
     return complete;
 }
 
@@ -14389,6 +14380,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
    tangent is a unit vector: a segment without length has the tangent of the segment before it. */
 struct gproj_curve {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     int32_t segment_count;
     double *point;         /* 3 * (segment_count + 1) */
     double *tangent;       /* 3 * segment_count */
@@ -14437,40 +14429,37 @@ GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, c
 
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     if (!curve) return;
-    gproji_hierarchy_give(&curve->heap, &curve->tree);
-    gproji_give(&curve->heap, curve->tangent, (size_t)curve->segment_count, 3 * sizeof(double));
-    gproji_give(&curve->heap, curve->point, (size_t)curve->segment_count + 1, 3 * sizeof(double));
+    gproji_pool_give_all(&curve->pool);
     gproji_destroy_object(curve, sizeof *curve);
 }
 
 /* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
-    gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve));
-    if (curve) {
-        curve->segment_count = segment_count;
-        curve->point = (double *)gproji_take(&curve->heap, (size_t)segment_count + 1, 3 * sizeof(double));
-        curve->tangent = (double *)gproji_take(&curve->heap, (size_t)segment_count, 3 * sizeof(double));
-        if (curve->point && curve->tangent) return curve;
-        gproj_curve_destroy(curve);
-    }
+    gproj_curve *curve = (gproj_curve *)gproji_begin_object(host, sizeof(gproj_curve), error);
+    if (!curve) return NULL;
+    gproji_pool_start(&curve->pool, &curve->heap);
+    curve->segment_count = segment_count;
+    curve->point = (double *)gproji_pool_take(&curve->pool, (int64_t)segment_count + 1, 3 * sizeof(double));
+    curve->tangent = (double *)gproji_pool_take(&curve->pool, segment_count, 3 * sizeof(double));
+    if (!curve->pool.failed) return curve;
     gproji_fail_memory(error);
+    gproj_curve_destroy(curve);
     return NULL;
 }
 
-/* Checks the points and builds the rest; on failure destroys the curve and returns NULL. */
-GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
+/* Checks the points, and finds the tangents and the hierarchy. */
+GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, gproj_error *error) {
     const double zero[3] = {0, 0, 0};
-    double extent = 0, last[3] = {0, 0, 0}, *t;
+    const double *x = curve->point, *last;
+    double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    gproj_code code = gproji_check_positions(count + 1, curve->point, "point", error);
+    gproj_code code = gproji_check_positions(count + 1, x, "point", error);
+    if (code) return code;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
-    for (s = 0; s <= count && !code; ++s) {
-        for (k = 0; k < 3; ++k)
-            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
-    }
-    for (s = 0; s < count && !code; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
+    for (s = 0; s <= count; ++s)
+        for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
+    for (s = 0; s < count; ++s, t += 3, x += 3) {
+        gproji_sub3(x + 3, x, t);
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
         else
@@ -14478,24 +14467,22 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
-    if (!code && from < 0) {
-        code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+    if (from < 0)
+        return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "all %d points of the curve are the same; it needs two different ones",
                            count + (closed ? 0 : 1));
-    }
     /* 2. Zeros take over the direction before them. */
-    if (!code) gproji_copy3(curve->tangent + 3 * (size_t)from, last);
-    for (s = 0; s < count && !code; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        if (gproji_dot3(t, t) > 0)
-            gproji_copy3(t, last);
-        else
-            gproji_copy3(last, t);
-    }
-    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, count, gproji_segment_box, curve)) {
-        code = gproji_fail_memory(error);
-    }
-    if (!code) return curve;
+    last = curve->tangent + 3 * (size_t)from;
+    for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
+        if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
+    return gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)
+               ? GPROJ_OK
+               : gproji_fail_memory(error);
+}
+
+/* Ends every function that makes a curve: returns it, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
+    if (!gproji_curve_build(curve, closed, error)) return curve;
     gproj_curve_destroy(curve);
     return NULL;
 }
@@ -14519,20 +14506,14 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
 GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
                                              gproj_error *error) {
     gproj_curve *curve;
-    int32_t start, h, count = 0;
-    gproji_error_clear(error);
-    if (!mesh || loop < 0 || loop >= mesh->loop_count) {
-        gproji_refuse(error,
-                      mesh ? "boundary loop %d of a mesh that has %d of them" : "the mesh of the boundary loop is NULL",
-                      loop, mesh ? mesh->loop_count : 0);
+    int32_t start, h, count;
+    if (!gproji_given(mesh, "mesh of the boundary loop", error)) return NULL;
+    if (loop < 0 || loop >= mesh->loop_count) {
+        gproji_refuse(error, "boundary loop %d of a mesh that has %d of them", loop, mesh->loop_count);
         return NULL;
     }
     start = mesh->loop_halfedge[loop];
-    h = start;
-    do {
-        ++count;
-        h = mesh->prev[h];
-    } while (h != start);
+    for (count = 1, h = mesh->prev[start]; h != start; h = mesh->prev[h]) ++count;
     curve = gproji_curve_begin(count, host, error);
     if (!curve) return NULL;
     /* with the faces' edges, that is against the boundary half-edges */
@@ -14546,10 +14527,9 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     gproj_curve *curve;
     const int32_t *vertex;
     int32_t segments, i;
-    gproji_error_clear(error);
-    if (!mesh || polyline < 0 || polyline >= mesh->polyline_count) {
-        gproji_refuse(error, mesh ? "polyline %d of a mesh that has %d of them" : "the mesh of the polyline is NULL",
-                      polyline, mesh ? mesh->polyline_count : 0);
+    if (!gproji_given(mesh, "mesh of the polyline", error)) return NULL;
+    if (polyline < 0 || polyline >= mesh->polyline_count) {
+        gproji_refuse(error, "polyline %d of a mesh that has %d of them", polyline, mesh->polyline_count);
         return NULL;
     }
     vertex = mesh->polyline_vertex + mesh->polyline_start[polyline];
@@ -14587,6 +14567,7 @@ GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const do
    Invariant: the triangles of a face stand together, in the order of the faces. */
 struct gproj_surface {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     int32_t vertex_count, triangle_count;
     double *position;       /* 3 * vertex_count */
     double *normal;         /* 3 * vertex_count: unit, or 0 if no face gives one */
@@ -14599,14 +14580,22 @@ struct gproj_surface {
 
 /* Work on one face: the corners in a plane, as a ring from which ears are cut. */
 typedef struct gproji_polygon {
-    double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
-    int32_t *vertex;  /* capacity: vertices in the mesh */
-    int32_t *next;    /* capacity: the ring of corners that are left */
-    int32_t *prev;    /* capacity */
-    int32_t capacity; /* the largest degree of a face */
+    double *xy;      /* 2 a corner: relative to the first, in the plane orthogonal to the vectorial area */
+    int32_t *vertex; /* 1 a corner: vertices in the mesh */
+    int32_t *next;   /* 1 a corner: the ring of corners that are left */
+    int32_t *prev;
     int32_t count;
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
+
+/* Takes the arrays for faces up to a degree; false without memory. */
+GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *pool, int32_t degree) {
+    polygon->xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
+    polygon->vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    return !pool->failed;
+}
 
 /* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
 GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
@@ -14767,14 +14756,8 @@ GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, 
 /* -- the object -- */
 
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
-    size_t vertices, triangles;
     if (!surface) return;
-    vertices = (size_t)surface->vertex_count, triangles = (size_t)surface->triangle_count;
-    gproji_hierarchy_give(&surface->heap, &surface->tree);
-    gproji_give(&surface->heap, surface->triangle_face, triangles, sizeof(int32_t));
-    gproji_give(&surface->heap, surface->triangle, triangles, 3 * sizeof(int32_t));
-    gproji_give(&surface->heap, surface->normal, vertices, 3 * sizeof(double));
-    gproji_give(&surface->heap, surface->position, vertices, 3 * sizeof(double));
+    gproji_pool_give_all(&surface->pool);
     gproji_destroy_object(surface, sizeof *surface);
 }
 
@@ -14783,7 +14766,6 @@ GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_
     const double zero[3] = {0, 0, 0};
     double n[3], a[3], b[3], cross[3];
     int32_t f, h, v;
-    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
     for (f = 0; f < mesh->face_count; ++f) {
         gproj_mesh_face_area_vector(mesh, f, n);
         if (!gproji_normalise3(n, zero)) continue;
@@ -14805,45 +14787,31 @@ GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproj_surface *surface;
     gproji_polygon polygon;
-    gproji_pool pool;
-    int32_t f, vertices, triangles = 0;
+    gproji_pool pool, *keep;
+    int32_t f, triangles = 0, degree = 0;
     bool complete;
-    gproji_error_clear(error);
-    if (!mesh || !mesh->face_count) {
-        gproji_refuse(error, mesh ? "the mesh of the surface has no faces" : "the mesh of the surface is NULL");
-        return NULL;
-    }
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
-    surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface));
-    if (!surface) {
-        gproji_fail_memory(error);
-        return NULL;
-    }
-    memset(&polygon, 0, sizeof polygon);
+    if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
+    if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
+    if (!mesh->face_count || gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    surface = (gproj_surface *)gproji_begin_object(host, sizeof(gproj_surface), error);
+    if (!surface) return NULL;
+    keep = &surface->pool;
+    gproji_pool_start(keep, &surface->heap);
+    gproji_pool_start(&pool, &surface->heap);
     for (f = 0; f < mesh->face_count; ++f) {
         triangles += mesh->face_degree[f] - 2;
-        polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
+        degree = gproji_max(degree, mesh->face_degree[f]);
     }
-    surface->vertex_count = vertices = mesh->vertex_count, surface->triangle_count = triangles;
-    surface->position = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
-    surface->normal = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
-    surface->triangle = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, sizeof(int32_t));
-    gproji_pool_start(&pool, &surface->heap);
-    polygon.xy = (double *)gproji_pool_take(&pool, polygon.capacity, 2 * sizeof(double));
-    polygon.vertex = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    polygon.next = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    polygon.prev = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    complete = surface->position && surface->normal && surface->triangle && surface->triangle_face && polygon.xy &&
-               polygon.vertex && polygon.next && polygon.prev;
-    if (complete) {
-        memcpy(surface->position, mesh->position, (size_t)vertices * 3 * sizeof(double));
-        gproji_surface_normals(surface, mesh);
-        surface->triangle_count = 0; /* counted up again by cutting */
-        for (f = 0; f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
-    }
+    surface->vertex_count = mesh->vertex_count;
+    surface->position = (double *)gproji_pool_copy(keep, mesh->position, mesh->vertex_count, 3 * sizeof(double));
+    surface->normal = (double *)gproji_pool_take_zeroed(keep, mesh->vertex_count, 3 * sizeof(double));
+    surface->triangle = (int32_t *)gproji_pool_take(keep, triangles, 3 * sizeof(int32_t));
+    surface->triangle_face = (int32_t *)gproji_pool_take(keep, triangles, sizeof(int32_t));
+    complete = gproji_polygon_take(&polygon, &pool, degree) && !keep->failed;
+    if (complete) gproji_surface_normals(surface, mesh);
+    for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
-    if (complete && gproji_hierarchy_build(&surface->heap, &surface->tree, triangles, gproji_triangle_box, surface)) {
+    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface)) {
         return surface;
     }
     gproji_fail_memory(error);
@@ -15567,8 +15535,8 @@ enum {
 /* Work arrays for cutting faces into triangles. */
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
-    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part that is left */
-    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order they are cut */
+    int32_t *halfedge; /* 1 a corner: from it on, in the part that is left */
+    int32_t *ear;      /* 2 a corner: the corners before and after each ear, in the order they are cut */
     int32_t ear_count;
     int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
@@ -15682,7 +15650,7 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool pool;
     gproj_code code;
     int64_t cuts = 0, side;
-    int32_t f, first = face, last = face, degree = 3, *ints;
+    int32_t f, first = face, last = face, degree = 3;
     bool saved = false;
     if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
     if (face == -1) first = 0, last = edit->face_count - 1;
@@ -15695,17 +15663,11 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    memset(&work, 0, sizeof work);
-    work.polygon.capacity = degree;
-    work.polygon.xy = (double *)gproji_pool_take(&pool, degree, 2 * sizeof(double));
-    ints = (int32_t *)gproji_pool_take(&pool, degree, 6 * sizeof *ints);
+    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.ear = (int32_t *)gproji_pool_take(&pool, degree, 2 * sizeof(int32_t));
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
     work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
-    if (!code && !(work.polygon.xy && ints && work.least && work.apex)) code = gproji_fail_memory(error);
-    if (!code) {
-        work.polygon.vertex = ints, work.polygon.next = ints + degree, work.polygon.prev = ints + 2 * (size_t)degree;
-        work.halfedge = ints + 3 * (size_t)degree, work.ear = ints + 4 * (size_t)degree;
-    }
+    if (!code && !gproji_polygon_take(&work.polygon, &pool, degree)) code = gproji_fail_memory(error);
     if (!code && face == -1) { /* all faces or none: a later one may be refused */
         saved = gproji_edit_save(object, &copy);
         if (!saved) code = gproji_fail_memory(error);
@@ -17466,9 +17428,12 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
                                           int32_t *second) {
     gproji_hierarchy tree;
     gproji_ring2 ring;
+    gproji_pool pool;
+    bool built;
     ring.xy = xy, ring.count = count;
-    if (!gproji_hierarchy_build(heap, &tree, count, gproji_ring_box, &ring)) return false;
-    for (*first = 0, *second = count; *first < count; ++*first) {
+    gproji_pool_start(&pool, heap);
+    built = gproji_hierarchy_build(&pool, &tree, count, gproji_ring_box, &ring);
+    for (*first = 0, *second = count; built && *first < count; ++*first) {
         int32_t stack[GPROJI_TREE_DEPTH], depth = 1, k;
         double low[3], high[3];
         gproji_ring_box(&ring, *first, low, high);
@@ -17489,8 +17454,8 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
         }
         if (*second < count) break;
     }
-    gproji_hierarchy_give(heap, &tree);
-    return true;
+    gproji_pool_give_all(&pool);
+    return built;
 }
 
 /* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
