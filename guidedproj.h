@@ -14858,26 +14858,35 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
    lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
-    GPROJI_EDIT_HALFEDGE,
     GPROJI_EDIT_EDGE,
-    GPROJI_EDIT_FACE,
+    GPROJI_EDIT_FACE, /* these three are numbered */
+    GPROJI_EDIT_HALFEDGE,
+    GPROJI_EDIT_POSITION,
+    GPROJI_EDIT_POLYLINE_START,
+    GPROJI_EDIT_POLYLINE_VERTEX,
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
+enum {
+    GPROJI_EDIT_NUMBERED = GPROJI_EDIT_FACE + 1
+};
 
-/* Integers in each element: every one is an array below. */
-static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
+/* Arrays of each kind, one after the other in a block, and the size of their elements. */
+static const struct {
+    size_t rows, size;
+} gproji_edit_block[GPROJI_EDIT_KINDS] = {{4, sizeof(int32_t)}, {1, sizeof(int32_t)},    {4, sizeof(int32_t)},
+                                          {4, sizeof(int32_t)}, {1, 3 * sizeof(double)}, {1, sizeof(int32_t)},
+                                          {1, sizeof(int32_t)}};
 
 /* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
-    int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
-    double *position;                  /* 3 * room for vertices */
+    void *block[GPROJI_EDIT_KINDS]; /* rows * room elements: the arrays below */
     int32_t polyline_count;
-    int32_t polyline_room;
-    int32_t *polyline_start;  /* polyline_count + 1 */
-    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for those they were merged into */
 
+    double *position;
+    int32_t *polyline_start;  /* polyline_count + 1 */
+    int32_t *polyline_vertex; /* merged vertices already stand for those they were merged into */
     int32_t *vertex_halfedge;
     int32_t *vertex_into; /* itself, or the vertex it was merged into */
     int32_t *vertex_mark; /* the last stamp that met it */
@@ -14894,8 +14903,8 @@ typedef struct gproji_edit_object {
     gproj_edit edit;
     gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
-    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
-    int32_t number_count[GPROJI_EDIT_KINDS];
+    int32_t *number[GPROJI_EDIT_NUMBERED]; /* of vertices, edges, faces in the last mesh made */
+    int32_t number_count[GPROJI_EDIT_NUMBERED];
     int32_t stamp;
 } gproji_edit_object;
 
@@ -14908,12 +14917,14 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     gproj_mesh *view = &object->view;
     size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
            faces = (size_t)s->room[GPROJI_EDIT_FACE];
-    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_halfedge = (int32_t *)s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
     s->vertex_mark = s->vertex_into + vertices, s->on_polyline = s->vertex_mark + vertices;
-    s->next = s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
+    s->next = (int32_t *)s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
     s->origin = s->prev + halfedges, s->face = s->origin + halfedges;
-    s->edge_into = s->block[GPROJI_EDIT_EDGE];
-    s->face_halfedge = s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
+    s->edge_into = (int32_t *)s->block[GPROJI_EDIT_EDGE], s->position = (double *)s->block[GPROJI_EDIT_POSITION];
+    s->polyline_start = (int32_t *)s->block[GPROJI_EDIT_POLYLINE_START];
+    s->polyline_vertex = (int32_t *)s->block[GPROJI_EDIT_POLYLINE_VERTEX];
+    s->face_halfedge = (int32_t *)s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
     s->face_parent = s->face_degree + faces, s->face_mark = s->face_parent + faces;
     edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
     edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
@@ -14933,43 +14944,34 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
 GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
     int32_t kind;
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(heap, s->block[kind], (size_t)s->room[kind], (size_t)gproji_edit_rows[kind] * sizeof(int32_t));
-    gproji_give(heap, s->position, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    gproji_give(heap, s->polyline_start, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
+        gproji_give(heap, s->block[kind], (size_t)s->room[kind],
+                    gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
 }
 
-/* Takes the blocks for a store's counts and rooms; after a failure those that were taken can be given back. */
+/* Takes the blocks for a store's rooms; after a failure those that were taken can be given back. */
 GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     bool complete = true;
     int32_t kind;
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
-        s->block[kind] = (int32_t *)gproji_take_zeroed(heap, (size_t)s->room[kind], size);
+        size_t size = gproji_edit_block[kind].rows * gproji_edit_block[kind].size;
+        s->block[kind] = gproji_take_zeroed(heap, (size_t)s->room[kind], size);
         complete = complete && s->block[kind];
     }
-    s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
-    return complete && s->position && s->polyline_start && s->polyline_vertex;
+    return complete;
 }
 
 /* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
     const gproji_edit_store *s = &object->now;
+    bool complete;
     int32_t kind;
     *copy = *s;
-    if (!gproji_edit_take(&object->heap, copy)) {
-        gproji_edit_give(&object->heap, copy);
-        return false;
-    }
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+    complete = gproji_edit_take(&object->heap, copy);
+    for (kind = 0; complete && kind < GPROJI_EDIT_KINDS; ++kind)
         memcpy(copy->block[kind], s->block[kind],
-               (size_t)gproji_edit_rows[kind] * (size_t)s->room[kind] * sizeof(int32_t));
-    memcpy(copy->position, s->position, (size_t)s->count[GPROJI_EDIT_VERTEX] * 3 * sizeof(double));
-    memcpy(copy->polyline_start, s->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(copy->polyline_vertex, s->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
-    return true;
+               (size_t)s->room[kind] * gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (!complete) gproji_edit_give(&object->heap, copy);
+    return complete;
 }
 
 /* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
@@ -14980,36 +14982,33 @@ GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji
     return code;
 }
 
-/* Makes room for new elements, so that the operators cannot fail. */
+/* Makes room for new elements and polyline vertices, so that the operators cannot fail. */
 GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
-                                               int64_t faces, gproj_error *error) {
+                                               int64_t faces, int64_t polyline_vertices, gproj_error *error) {
     gproji_edit_store *s = &object->now;
-    int64_t more[GPROJI_EDIT_KINDS];
-    int32_t kind, r;
+    const int64_t more[GPROJI_EDIT_KINDS] = {vertices, edges, faces, 2 * edges, vertices, 0, polyline_vertices};
+    int32_t kind;
+    size_t r;
     if (s->count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
         s->count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    more[GPROJI_EDIT_VERTEX] = vertices, more[GPROJI_EDIT_HALFEDGE] = 2 * edges;
-    more[GPROJI_EDIT_EDGE] = edges, more[GPROJI_EDIT_FACE] = faces;
+    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > INT32_MAX / 2)
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room, *block;
-        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room;
+        size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
+        char *block;
         if (needed <= old) continue;
         room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old) : needed; /* doubles: n additions cost O(n) */
-        block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, size);
-        if (block && kind == GPROJI_EDIT_VERTEX) {
-            double *position =
-                (double *)gproji_retake(&object->heap, s->position, (size_t)old, (size_t)room, 3 * sizeof(double));
-            if (position) s->position = position;
-            if (!position) gproji_give(&object->heap, block, (size_t)room, size), block = NULL;
-        }
+        block = (char *)gproji_take_zeroed(&object->heap, (size_t)room, rows * size);
         if (!block) return gproji_fail_memory(error);
-        for (r = 0; r < gproji_edit_rows[kind]; ++r)
-            memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old,
-                   (size_t)s->count[kind] * sizeof(int32_t));
-        gproji_give(&object->heap, s->block[kind], (size_t)old, size);
+        for (r = 0; r < rows; ++r)
+            memcpy(block + r * (size_t)room * size, (char *)s->block[kind] + r * (size_t)old * size,
+                   (size_t)s->count[kind] * size);
+        gproji_give(&object->heap, s->block[kind], (size_t)old, rows * size);
         s->block[kind] = block, s->room[kind] = room;
         gproji_edit_publish(object);
     }
@@ -15017,6 +15016,14 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
 }
 
 /* -- elements -- */
+
+/* Adds a vertex; the position is not set. */
+GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
+    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
+    s->count[GPROJI_EDIT_POSITION]++;
+    s->vertex_into[v] = v;
+    return v;
+}
 
 /* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
@@ -15077,11 +15084,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
 /* -- checks on arguments -- */
 
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
-    gproji_error_clear(error);
-    if (!edit) {
-        gproji_refuse(error, "the edit is NULL");
-        return NULL;
-    }
+    if (!gproji_given(edit, "edit", error)) return NULL;
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
@@ -15095,11 +15098,11 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
     return false;
 }
 
-/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. */
+/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. -1 without an object. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
     gproj_code code = GPROJ_OK;
     int32_t root;
-    if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
     if (root < 0)
         code =
@@ -15146,31 +15149,13 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
     return count;
 }
 
-/* Makes room for `more` polyline vertices. */
-GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int64_t needed = s->polyline_start[s->polyline_count] + more;
-    int32_t *moved, room;
-    if (needed <= s->polyline_room) return GPROJ_OK;
-    if (needed > INT32_MAX / 2)
-        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
-    room = 2 * (int32_t)needed;
-    moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
-                                     sizeof(int32_t));
-    if (!moved) return gproji_fail_memory(error);
-    s->polyline_vertex = moved, s->polyline_room = room;
-    return GPROJ_OK;
-}
-
 /* -- the three operators; there is room -- */
 
 /* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
     int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
-    s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
     s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
     s->face[onward] = s->face[h], s->face[back] = s->face[g];
@@ -15186,7 +15171,7 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
         for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
             int32_t *place = s->polyline_vertex + i + 1;
             if (!gproji_polyline_runs(s, i, a, b)) continue;
-            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
+            memmove(place + 1, place, (size_t)(s->count[GPROJI_EDIT_POLYLINE_VERTEX]++ - i - 1) * sizeof(int32_t));
             *place = x;
             s->on_polyline[x] = 1;
             for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
@@ -15270,7 +15255,7 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
         if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
     if (!s->on_polyline[gone]) return kept;
     s->on_polyline[kept] = 1;
-    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+    for (i = 0; i < s->count[GPROJI_EDIT_POLYLINE_VERTEX]; ++i)
         if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
     return kept;
 }
@@ -15341,7 +15326,7 @@ GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     int32_t kind;
     if (!object) return;
     gproji_edit_give(&object->heap, &object->now);
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind)
         gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
     gproji_destroy_object(object, sizeof *object);
 }
@@ -15350,23 +15335,17 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     gproji_edit_object *object;
     gproji_edit_store *s;
     size_t vertices, halfedges, faces;
-    int32_t kind, i;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_refuse(error, "the mesh to edit is NULL");
-        return NULL;
-    }
-    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object);
-    if (!object) {
-        gproji_fail_memory(error);
-        return NULL;
-    }
+    int32_t polylines, i;
+    if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
+    object = (gproji_edit_object *)gproji_begin_object(host, sizeof *object, error);
+    if (!object) return NULL;
     s = &object->now;
-    s->count[GPROJI_EDIT_VERTEX] = mesh->vertex_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
-    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_FACE] = mesh->face_count;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) s->room[kind] = s->count[kind];
-    s->polyline_count = mesh->polyline_count;
-    s->polyline_room = mesh->polyline_start[mesh->polyline_count];
+    s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
+    s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
+    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
+    s->count[GPROJI_EDIT_FACE] = mesh->face_count, s->count[GPROJI_EDIT_POLYLINE_START] = s->polyline_count + 1;
+    s->count[GPROJI_EDIT_POLYLINE_VERTEX] = polylines;
+    memcpy(s->room, s->count, sizeof s->room);
     if (!gproji_edit_take(&object->heap, s)) {
         gproji_fail_memory(error);
         gproj_edit_destroy(&object->edit);
@@ -15383,11 +15362,11 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
     memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
     memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)polylines * sizeof(int32_t));
     for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
     for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
     for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
-    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
+    for (i = 0; i < polylines; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
     return &object->edit;
 }
 
@@ -15399,20 +15378,18 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
 GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_draft *draft,
-                                       int32_t *number[GPROJI_EDIT_KINDS]) {
+                                       int32_t *number[GPROJI_EDIT_NUMBERED]) {
     const gproji_edit_store *s = &object->now;
     gproji_soup *soup = &draft->soup;
     int32_t *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
     bool complete = true;
     /* 1. Room, as large as can be needed. */
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        number[kind] = NULL;
-        if (kind == GPROJI_EDIT_HALFEDGE) continue;
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
         number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
         complete = complete && number[kind];
     }
     if (!gproji_draft_take(draft, pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
-                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->polyline_room) ||
+                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]) ||
         !complete)
         return false;
     /* 2. Vertices; a merged one gets the number that the lower one has already. */
@@ -15450,7 +15427,7 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
-    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
+    int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
     int32_t kind, f, e, h, k, i, *edge;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
@@ -15467,7 +15444,7 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     }
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) { /* new numbers replace the old ones, or are given back */
         int32_t *other = code ? number[kind] : object->number[kind];
         gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
         if (!code) object->number[kind] = number[kind], object->number_count[kind] = s->count[kind];
@@ -15492,10 +15469,8 @@ GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t othe
 
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
-    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
-        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error))
-        return -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
+    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, gproji_polyline_count_runs(&object->now, h), error)) return -1;
     return object->now.origin[gproji_edit_split(object, h, t)];
 }
 
@@ -15516,13 +15491,13 @@ GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t 
                            "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
                            other);
     else
-        code = gproji_edit_reserve(object, 0, 1, 1, error);
+        code = gproji_edit_reserve(object, 0, 1, 1, 0, error);
     return code ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
     return h < 0 || gproji_check_collapse(object, h, error) ? -1 : gproji_edit_collapse(object, h, t);
 }
 
@@ -15661,7 +15636,7 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     }
     if (!cuts) return 0;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_reserve(object, 0, cuts, cuts, error);
+    code = gproji_edit_reserve(object, 0, cuts, cuts, 0, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
     work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
     work.ear = (int32_t *)gproji_pool_take(&pool, degree, 2 * sizeof(int32_t));
@@ -15751,7 +15726,7 @@ GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, i, last;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error), i, last;
     int64_t count, runs = 0;
     gproji_strip strip;
     gproji_pool pool;
@@ -15766,9 +15741,8 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
                            "would be two edges between the new vertices",
                            strip.rung[0] / 2, strip.rung[1] / 2);
     /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
-    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
     for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
-    if (!code) code = gproji_polyline_reserve(object, runs, error);
+    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, runs, error);
     if (!code) {
         for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
         if (!strip.closed) {
@@ -15809,7 +15783,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
 
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
     char message[GPROJ_MESSAGE_SIZE];
     gproji_edit_store copy;
     gproji_strip strip;
