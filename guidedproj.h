@@ -13757,14 +13757,19 @@ GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *e
 
 /* -- rules -- */
 
-/* A mesh to be refined, and the data that the rules need besides. */
-typedef struct gproji_level {
-    const gproj_mesh *mesh;
+/* A level of a subdivision, and the way to the next one. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* gives sharpness and corner */
+    const gproj_host *host;
+    gproj_error *error;
     gproj_scheme scheme;
-    double *sharpness;    /* edge_count: > 1 at the boundary */
-    const bool *corner;   /* corner_count: vertices that stay */
-    int32_t corner_count; /* vertices on the first level; later ones are no corners */
-} gproji_level;
+    const gproj_mesh *mesh; /* to be refined */
+    gproj_mesh *own;        /* the same, unless it is the caller's */
+    double *sharpness;      /* edge_count: > 1 at the boundary */
+    bool *corner;           /* corner_count: vertices that stay */
+    int32_t corner_count;   /* vertices on the first level; later ones are no corners */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
 
 /* Adds `share` times the mean of a face's corners. */
 GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
@@ -13774,7 +13779,7 @@ GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, 
 }
 
 /* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
-GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int32_t vertex, double least, double share,
                                             gproji_rows *rows) {
     const gproj_mesh *mesh = level->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
@@ -13838,14 +13843,13 @@ GPROJI_INTERNAL gproji_counts gproji_count_levels(const gproj_mesh *mesh, gproj_
 }
 
 /* Creates the stencil from a level to the next, with rows in the order vertices, edges, faces. */
-GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
-                                                    const gproj_host *host, gproj_error *error) {
+GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(gproji_subdivision *level) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     gproji_rows rows;
     int32_t i, h;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, &level->heap, level->host);
     /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
        mean sharpness over edges that are sharp now and smooth then. */
     for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
@@ -13880,27 +13884,26 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, g
     /* 3. Faces. */
     for (i = 0; !rows.failed && !loop && i < mesh->face_count; ++i, gproji_rows_next(&rows))
         gproji_add_face_rule(mesh, i, 1, &rows);
-    return gproji_rows_end(&rows, error);
+    return gproji_rows_end(&rows, level->error);
 }
 
 /* Builds the next level's mesh. */
-GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
-                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const gproj_stencil *stencil) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     int32_t p, i, f, h, k, c = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_mesh_object *object = gproji_mesh_begin(level->host, level->error);
     gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
     int32_t *corner, *vertex;
     if (!object) return NULL;
-    gproji_pool_start(&pool, heap);
+    gproji_pool_start(&pool, &level->heap);
     if (!gproji_draft_take(&draft, &pool, next.vertices, next.faces, next.corners, mesh->polyline_count,
                            next.polyline_vertices)) {
         gproji_pool_give_all(&pool);
-        return gproji_mesh_done(object, gproji_fail_memory(error));
+        return gproji_mesh_done(object, gproji_fail_memory(level->error));
     }
     corner = draft.corner, vertex = draft.vertex;
     gproj_stencil_apply(stencil, 3, mesh->position, draft.position);
@@ -13929,7 +13932,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
         draft.start[p + 1] = count;
     }
     draft.soup.vertex_count = (int32_t)next.vertices, draft.soup.polyline_count = mesh->polyline_count;
-    code = gproji_mesh_build(object, &draft.soup, error);
+    code = gproji_mesh_build(object, &draft.soup, level->error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(object, code);
 }
@@ -13939,11 +13942,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error) {
     gproj_stencil *transposed;
-    gproji_error_clear(error);
-    if (!stencil) {
-        gproji_refuse(error, "the stencil to transpose is NULL");
-        return NULL;
-    }
+    if (!gproji_given(stencil, "stencil to transpose", error)) return NULL;
     transposed = gproji_transposed(stencil, host);
     if (!transposed) gproji_fail_memory(error);
     return transposed;
@@ -14072,22 +14071,11 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
 
 /* -- all levels -- */
 
-/* The state between two levels. Meshes and stencils have their own memory. */
-typedef struct gproji_subdivision {
-    gproji_heap heap; /* gives level.sharpness and level.corner */
-    const gproj_host *host;
-    gproj_error *error;
-    gproji_level level;
-    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
-    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
-} gproji_subdivision;
-
 /* Goes from a level to the next one. */
 GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
-    gproji_level *level = &s->level;
-    const gproj_mesh *mesh = level->mesh;
-    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error), *both;
-    gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
+    const gproj_mesh *mesh = s->mesh;
+    gproj_stencil *step = gproji_level_stencil(s), *both;
+    gproj_mesh *fine = step ? gproji_level_mesh(s, step) : NULL;
     double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
     int32_t f, k, at = 0;
     if (!sharpness) {
@@ -14101,16 +14089,16 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
             int32_t half = fine->face_halfedge[at];
-            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
-            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+            sharpness[half / 2] = gproji_fmax(s->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(s->sharpness[mesh->prev[h] / 2] - 1, 0);
         }
-        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+        if (s->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
     }
     /* 2. The fine mesh takes the coarse one's place. */
-    gproji_give(&s->heap, level->sharpness, (size_t)mesh->edge_count, sizeof(double));
+    gproji_give(&s->heap, s->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
-    level->sharpness = sharpness;
-    level->mesh = s->own = fine;
+    s->sharpness = sharpness;
+    s->mesh = s->own = fine;
     /* 3. The stencil from stencil_level to here. */
     if (keep_stencil && !s->stencil) {
         s->stencil = step;
@@ -14131,12 +14119,8 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     double *sharpness;
     bool *corner;
     int32_t level, k;
-    gproji_error_clear(error);
     if (stencil) *stencil = NULL;
-    if (!mesh) {
-        gproji_refuse(error, "the mesh to subdivide is NULL");
-        return NULL;
-    }
+    if (!gproji_given(mesh, "mesh to subdivide", error)) return NULL;
     memset(&given, 0, sizeof given);
     if (options) given = *options;
     if (given.levels == 0) given.levels = 1;
@@ -14144,9 +14128,9 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     memset(&s, 0, sizeof s);
     s.heap = gproji_heap_of(host);
     s.host = host, s.error = error;
-    s.level.mesh = mesh, s.level.scheme = given.scheme, s.level.corner_count = mesh->vertex_count;
-    s.level.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
-    s.level.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
+    s.mesh = mesh, s.scheme = given.scheme, s.corner_count = mesh->vertex_count;
+    s.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
+    s.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
     if (!sharpness || !corner) code = gproji_fail_memory(error);
     /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
     for (k = 0; !code && k < mesh->edge_count; ++k)
@@ -14162,7 +14146,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
     gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
-    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof(double));
+    gproji_give(&s.heap, s.sharpness, (size_t)s.mesh->edge_count, sizeof(double));
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
@@ -14584,6 +14568,8 @@ typedef struct gproji_polygon {
     int32_t *vertex; /* 1 a corner: vertices in the mesh */
     int32_t *next;   /* 1 a corner: the ring of corners that are left */
     int32_t *prev;
+    int32_t *ear; /* 3 a corner: the ears cut so far, each with the corners before and after it */
+    int32_t ears;
     int32_t count;
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
@@ -14594,6 +14580,7 @@ GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *p
     polygon->vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
     polygon->next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
     polygon->prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->ear = (int32_t *)gproji_pool_take(pool, degree, 3 * sizeof(int32_t));
     return !pool->failed;
 }
 
@@ -14612,7 +14599,7 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     gproji_normalise3(n, up);
     gproji_tangents3(n, u, v);
     first = mesh->position + 3 * (size_t)mesh->origin[h];
-    polygon->count = mesh->face_degree[face];
+    polygon->count = mesh->face_degree[face], polygon->ears = 0;
     for (i = 0; i < polygon->count; ++i, h = mesh->next[h]) {
         gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[h], first, d);
         polygon->xy[2 * (size_t)i] = gproji_dot3(d, u);
@@ -14642,6 +14629,30 @@ GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int
     return true;
 }
 
+/* Cuts ears, from corner b on, until `least` corners are left; returns one of them, or -1 if all ways to go on need a
+   diagonal that `mesh` has as an edge already (NULL: that does no harm). If no corner is an ear (the face crosses
+   itself), or 512 looks a corner are used up (so that time is linear in the mesh), any is cut off. */
+GPROJI_INTERNAL int32_t gproji_cut_ears(gproji_polygon *polygon, int32_t b, int32_t least, const gproj_mesh *mesh) {
+    int64_t budget = 512 * (int64_t)polygon->count;
+    int32_t left = polygon->count, refused = 0;
+    bool any = false;
+    while (left > least) {
+        int32_t a = polygon->prev[b], c = polygon->next[b], *ear = polygon->ear + 3 * (size_t)polygon->ears;
+        any = any || refused >= left || budget <= 0;
+        if (refused >= 2 * left) return -1;
+        if ((mesh && gproji_halfedge_between(mesh, polygon->vertex[a], polygon->vertex[c]) >= 0) ||
+            (!any && !gproji_is_ear(polygon, b, &budget))) {
+            ++refused, b = c;
+            continue;
+        }
+        ear[0] = a, ear[1] = b, ear[2] = c;
+        polygon->next[a] = c, polygon->prev[c] = a;
+        ++polygon->ears, --left, refused = 0, any = false;
+        b = c;
+    }
+    return b;
+}
+
 /* Appends the triangle a b c of corners. */
 GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *polygon, int32_t face, int32_t a, int32_t b,
                               int32_t c) {
@@ -14654,8 +14665,7 @@ GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *poly
 GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
                                      int32_t face) {
     double least;
-    int64_t budget;
-    int32_t i, left, b = 1, refused = 0;
+    int32_t i, left, b;
     bool convex = true;
     gproji_polygon_set(polygon, mesh, face);
     /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
@@ -14666,20 +14676,11 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     }
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;
-    /* 2. Others: cut ears until three corners are left. If none is an ear (the face crosses itself), or 512 looks a
-       corner are used up (so that time is linear in the mesh), a corner is cut off all the same. */
-    budget = 512 * (int64_t)polygon->count;
-    while (left > 3) {
-        int32_t a = polygon->prev[b], c = polygon->next[b];
-        if (refused < left && budget > 0 && !gproji_is_ear(polygon, b, &budget)) {
-            ++refused;
-            b = c;
-            continue;
-        }
-        gproji_cut(surface, polygon, face, a, b, c);
-        polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0;
-        b = c;
+    /* 2. Others: ears until three corners are left. */
+    b = gproji_cut_ears(polygon, 1, 3, NULL);
+    for (i = 0; i < polygon->ears; ++i) {
+        const int32_t *ear = polygon->ear + 3 * (size_t)i;
+        gproji_cut(surface, polygon, face, ear[0], ear[1], ear[2]);
     }
     gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
 }
@@ -15511,45 +15512,11 @@ enum {
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
     int32_t *halfedge; /* 1 a corner: from it on, in the part that is left */
-    int32_t *ear;      /* 2 a corner: the corners before and after each ear, in the order they are cut */
-    int32_t ear_count;
     int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
     double *least; /* ring_count^2: the least sum for the ring from i to j */
     int32_t *apex; /* ring_count^2: the third corner with which the triangle at i and j attains it */
 } gproji_triangulation;
-
-GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
-                                         int32_t b) {
-    return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
-}
-
-/* Cuts ears from a large polygon, as faces of surfaces are cut, until it is small enough. Without ears, takes any corner
-   whose neighbours have no edge yet; false without such a corner. */
-GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
-    gproji_polygon *polygon = &work->polygon;
-    int64_t budget = 512 * (int64_t)polygon->count;
-    int32_t left = polygon->count, b = 0, refused = 0, i;
-    bool any = false;
-    work->ear_count = 0;
-    while (left > GPROJI_KLINCSEK_MAX) {
-        int32_t a = polygon->prev[b], c = polygon->next[b];
-        any = any || refused >= left || budget <= 0;
-        if (refused >= 2 * left) return false;
-        if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
-            ++refused, b = c;
-            continue;
-        }
-        work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
-        ++work->ear_count;
-        polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0, any = false;
-        b = c;
-    }
-    for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
-    work->ring_count = left;
-    return true;
-}
 
 /* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-6 to triangles turned over. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
@@ -15563,7 +15530,8 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
 }
 
 /* Finds the ring's cheapest triangulation (Klincsek 1980). False if each needs a diagonal that is an edge already. */
-GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
+GPROJI_INTERNAL bool gproji_plan_ring(const gproj_mesh *mesh, gproji_triangulation *work) {
+    const gproji_polygon *polygon = &work->polygon;
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
     for (gap = 2; gap < n; ++gap) {
@@ -15572,11 +15540,13 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
             j = i + gap;
             *least = HUGE_VAL;
             work->apex[i * n + j] = -1;
-            if (gap < n - 1 && gproji_corners_joined(object, &work->polygon, work->ring[i], work->ring[j])) continue;
+            if (gap < n - 1 &&
+                gproji_halfedge_between(mesh, polygon->vertex[work->ring[i]], polygon->vertex[work->ring[j]]) >= 0)
+                continue;
             for (k = i + 1; k < j; ++k) {
                 double sum = work->least[i * n + k] + work->least[k * n + j];
                 if (!(sum < *least)) continue;
-                sum += gproji_triangle_cost(&work->polygon, work->ring[i], work->ring[k], work->ring[j]);
+                sum += gproji_triangle_cost(polygon, work->ring[i], work->ring[k], work->ring[j]);
                 if (!(sum < *least)) continue;
                 *least = sum;
                 work->apex[i * n + j] = k;
@@ -15589,18 +15559,20 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
 /* Cuts one face into triangles; there is room. Nothing is changed after an error. */
 GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
                                                    gproj_error *error) {
-    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i, h, n;
+    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, b, i, h, n;
     gproji_polygon_set(&work->polygon, &object->view, face);
     for (i = 0, h = object->now.face_halfedge[face]; i < work->polygon.count; ++i, h = object->now.next[h])
         halfedge[i] = h;
-    if (!gproji_plan_ears(object, work) || !gproji_plan_ring(object, work))
+    b = gproji_cut_ears(&work->polygon, 0, GPROJI_KLINCSEK_MAX, &object->view);
+    n = work->ring_count = work->polygon.count - work->polygon.ears;
+    for (i = 0; b >= 0 && i < n; ++i, b = work->polygon.next[b]) work->ring[i] = b;
+    if (b < 0 || !gproji_plan_ring(&object->view, work))
         return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
                            "face %d cannot be cut into triangles: its diagonals are edges already", face);
-    for (i = 0; i < work->ear_count; ++i) {
-        int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
-        halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
+    for (i = 0; i < work->polygon.ears; ++i) {
+        const int32_t *ear = work->polygon.ear + 3 * (size_t)i;
+        halfedge[ear[0]] = gproji_edit_cut(object, halfedge[ear[0]], halfedge[ear[2]]);
     }
-    n = work->ring_count;
     stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
@@ -15639,7 +15611,6 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     code = gproji_edit_reserve(object, 0, cuts, cuts, 0, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
     work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
-    work.ear = (int32_t *)gproji_pool_take(&pool, degree, 2 * sizeof(int32_t));
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
     work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
     if (!code && !gproji_polygon_take(&work.polygon, &pool, degree)) code = gproji_fail_memory(error);
@@ -16689,7 +16660,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
     work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
     work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
     work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
-    for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
+    for (v = 0; !pool.failed && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
         /* 1. Reflections along a breadth-first tree, which keeps their products short. */
@@ -16718,7 +16689,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
         }
     }
     gproji_pool_give_all(&pool);
-    return work.image && work.queue && work.reached;
+    return !pool.failed;
 }
 
 /* -- the field for a face offset -- */
@@ -16819,7 +16790,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
     p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
     p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
     p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
-    taken = p.normal && p.direction && p.slope && p.step && p.image;
+    taken = !pool.failed;
     for (i = 0; taken && i < mesh->face_count; ++i)
         gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
     for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
@@ -17046,6 +17017,7 @@ typedef struct gproji_patch {
 
 typedef struct gproji_filling {
     gproji_heap *heap;
+    gproji_pool pool; /* holds `seen` and `border` */
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
@@ -17354,10 +17326,12 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
 
 /* -- the plane -- */
 
-GPROJI_INTERNAL double gproji_distance2(const double *xy, int32_t i, int32_t j) {
-    double x = xy[2 * (size_t)j] - xy[2 * (size_t)i], y = xy[2 * (size_t)j + 1] - xy[2 * (size_t)i + 1];
-    return sqrt(x * x + y * y);
+/* The product (q - p)'(r - p) of points in the plane; see also gproji_turn2. */
+GPROJI_INLINE double gproji_dot2(const double *xy, int32_t p, int32_t q, int32_t r) {
+    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
+    return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]);
 }
+GPROJI_INLINE double gproji_distance2(const double *xy, int32_t i, int32_t j) { return sqrt(gproji_dot2(xy, i, j, j)); }
 
 /* Do the segments a b and c d have a common point? */
 GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b, int32_t c, int32_t d) {
@@ -17377,8 +17351,7 @@ GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32
     int32_t b = (i + 1) % count, d = (j + 1) % count;
     if (b == j || d == i) { /* neighbours meet if they fold back */
         int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
-        const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
-        double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
+        double along = gproji_dot2(xy, at, from, to);
         return along >= 0 && fabs(gproji_turn2(xy, at, from, to)) <= 1e-12 * along;
     }
     return gproji_segments_meet(xy, i, b, j, d);
@@ -17434,10 +17407,7 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
 
 /* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
 GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q, int32_t r) {
-    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
-    double u[2], v[2], angle;
-    u[0] = b[0] - a[0], u[1] = b[1] - a[1], v[0] = c[0] - a[0], v[1] = c[1] - a[1];
-    angle = atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    double angle = atan2(gproji_turn2(xy, p, q, r), gproji_dot2(xy, p, q, r));
     return angle < 0 ? angle + 2 * GPROJI_PI : angle;
 }
 
@@ -17465,7 +17435,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                                "points %d and %d of the curve are the same; leave one out%s", i, j,
                                j == 0 ? " (the curve is closed without it)" : "");
     }
-    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    f->seen = (double *)gproji_pool_take(&f->pool, f->count, 2 * sizeof(double));
     if (!f->seen) return gproji_fail_memory(f->error);
     /* 2. The plane orthogonal to the vectorial area: the curve runs counter-clockwise in it. */
     gproji_set3(0, 0, 0, f->normal);
@@ -17666,7 +17636,7 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
 /* Places the boundary's vertices and makes the first outline, which follows it all. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     int32_t side, from, to, i, j;
-    f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
+    f->border = (double *)gproji_pool_take(&f->pool, f->boundary, 3 * sizeof(double));
     if (!f->border) return gproji_fail_memory(f->error);
     for (side = 0; side < f->sides; ++side) {
         int32_t edges = f->start.data[side + 1] - f->start.data[side];
@@ -17725,6 +17695,13 @@ typedef struct gproji_outline {
     int32_t count;
     double edge; /* mean edge length, for cuts */
 } gproji_outline;
+
+/* The outline from one place in f->polygon to another. */
+GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_t start, int32_t end) {
+    gproji_outline o;
+    o.f = f, o.entry = f->polygon.data + start, o.count = end - start, o.edge = 0;
+    return o;
+}
 
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
 
@@ -17797,9 +17774,7 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
         double along, off;
         if (p == a || p == b) continue;
         if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return;
-        along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
-                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
-                length;
+        along = gproji_dot2(xy, a, p, b) / length;
         off = fabs(gproji_turn2(xy, a, b, p)) / length;
         if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
     }
@@ -17839,18 +17814,17 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
 GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
+    gproji_outline o;
     for (k = i; k <= j; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
     to = (int32_t)f->polygon.count - 1;
     for (k = 0; k < inner; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
     if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    o = gproji_outline_of(f, from, (int32_t)f->polygon.count);
     for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
-        int32_t at = end ? to : from;
-        gproji_outline o;
-        o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
-        f->polygon.data[at] &= ~1;
-        f->polygon.data[at] |= gproji_outline_angle(&o, at - from) < GPROJI_OBTUSE;
+        int32_t at = end ? to - from : 0;
+        o.entry[at] = (o.entry[at] & ~1) | (gproji_outline_angle(&o, at) < GPROJI_OBTUSE);
     }
     return true;
 }
@@ -17860,10 +17834,9 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
     size_t at;
     int32_t start, k;
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-        gproji_outline o;
+        gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
         gproji_cut_line cut;
         int32_t a, b, first = f->vertices;
-        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
         for (k = 0; k < o.count; ++k)
             o.edge +=
                 gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
@@ -18321,10 +18294,8 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     /* 2. All cuts before the first patch: vertices on cuts are numbered before those inside. */
     if (!gproji_cut_outlines(f)) return gproji_fail_memory(f->error);
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-        gproji_outline o;
-        if (f->patch.data[at] < 0) continue;
-        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
-        if (!gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
+        gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
+        if (o.count > 0 && !gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
     /* 3. Valences inside, before the work on positions. */
     count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
@@ -18374,6 +18345,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
+    gproji_pool_start(&f.pool, f.heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_divide_sides(&f);
@@ -18381,8 +18353,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_fill_outline(&f);
     if (!code) code = gproji_build_filling(&f, object);
     if (!code) gproji_describe_filling(&f, &object->mesh, &found);
-    gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
-    gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
+    gproji_pool_give_all(&f.pool);
     gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
     gproji_ints_give(f.heap, &f.start);
