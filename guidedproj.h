@@ -2408,7 +2408,7 @@ GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_
 }
 
 /* ============================================================================================================
-   >>error   One door for all failures. Uses platform, number. */
+   >>error   One door for all failures. Uses platform, number, memory. */
 
 GPROJ_API const char *gproj_code_string(gproj_code code) {
     switch (code) { /* no default: compilers tell when a code is missing */
@@ -12321,7 +12321,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     gproji_mesh_show(object);
     code = gproji_mesh_link(object, work, error);
     if (code) return code;
-    /* 3. Boundary loops by their lowest half-edges, and polylines. A vertex is in one loop at most, so `slot` has room for all. */
+    /* 3. Boundary loops by their lowest half-edges (a vertex is in one at most, so `slot` has room), and polylines. */
     gproji_fill(work->mark, mesh->vertex_count, 0);
     for (h = 0; h < mesh->halfedge_count; ++h) {
         if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
@@ -12590,6 +12590,14 @@ typedef struct gproji_old_file {
 #endif
 } gproji_old_file;
 
+/* The length of a path's folder, with the separator at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *separators = GPROJI_FILES == 2 ? "/\\:" : "/";
+    size_t length = strlen(path);
+    while (length > 0 && !strchr(separators, path[length - 1])) --length;
+    return length;
+}
+
 #if GPROJI_FILES == 1
 
 #if defined(__STRICT_ANSI__) && !defined(__cplusplus) /* headers hide these under -std=c99 */
@@ -12659,12 +12667,6 @@ GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
 GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
     old->exists = stat(path, &old->info) == 0;
     old->regular = old->exists && S_ISREG(old->info.st_mode);
-}
-
-/* The length of a path's folder, with the slash at its end. */
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
 /* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
@@ -12780,19 +12782,6 @@ GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) 
     old->regular = old->exists && !(attributes & (directory | device));
 }
 
-/* The length of a path's folder, with the separator at its end. */
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    size_t length = strlen(path);
-    while (length > 0 && !strchr("/\\:", path[length - 1])) --length;
-    return length;
-}
-
-/* MoveFileEx replaces a link itself. */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
-    (void)path;
-    return true;
-}
-
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
 
 #else
@@ -12844,19 +12833,13 @@ GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) 
     old->exists = old->regular = false;
 }
 
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
-    (void)path;
-    return true;
-}
-
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
 
 #endif /* GPROJI_FILES */
+
+#if GPROJI_FILES != 1 /* MoveFileEx replaces a link itself; plain C knows none */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) { return path != NULL; }
+#endif
 
 /* A save under way. */
 typedef struct gproji_saving {
@@ -13701,25 +13684,23 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* A stencil that is made row by row; gproji_rows_end reports missing memory. */
 typedef struct gproji_rows {
-    gproji_heap *heap; /* gives `place` */
+    gproji_heap heap; /* gives `place` */
     const gproj_host *host;
     gproj_stencil *stencil;
     bool failed; /* no memory: nothing more is added */
     int32_t column_count;
     int32_t row;    /* the one that is being made */
     int64_t count;  /* all entries so far */
-    int64_t *place; /* column_count: the column's entry in this row; older than the row, or -1: none yet */
+    int64_t *place; /* column_count: the column's entry in this row, plus 1; not beyond the row's start: none yet */
 } gproji_rows;
 
-GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
+GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count,
                                        const gproj_host *host) {
-    int32_t j;
-    rows->heap = heap, rows->host = host;
+    rows->heap = gproji_heap_of(host), rows->host = host;
     rows->column_count = column_count, rows->row = 0, rows->count = 0;
-    rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
+    rows->place = (int64_t *)gproji_take_zeroed(&rows->heap, (size_t)column_count, sizeof *rows->place);
     rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
     rows->failed = !rows->place || !rows->stencil;
-    for (j = 0; !rows->failed && j < column_count; ++j) rows->place[j] = -1;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
@@ -13727,14 +13708,14 @@ GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double w
     gproji_stencil_object *object;
     if (rows->failed) return;
     object = gproji_stencil_owner(rows->stencil);
-    if (rows->place[column] < object->start[rows->row]) {
+    if (rows->place[column] <= object->start[rows->row]) {
         rows->failed = !gproji_stencil_reserve(object, (size_t)rows->count + 1);
         if (rows->failed) return;
         object->column[rows->count] = column;
         object->weight[rows->count] = 0;
-        rows->place[column] = rows->count++;
+        rows->place[column] = ++rows->count;
     }
-    object->weight[rows->place[column]] += weight;
+    object->weight[rows->place[column] - 1] += weight;
 }
 
 GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
@@ -13745,7 +13726,7 @@ GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
 /* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
-    gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    gproji_give(&rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
     /* transposing twice sorts the columns in all rows, in linear time */
     if (!rows->failed) turned = gproji_transposed(rows->stencil, rows->host);
     gproj_stencil_destroy(rows->stencil);
@@ -13849,7 +13830,7 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(gproji_subdivision *level) {
     gproji_rows rows;
     int32_t i, h;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, &level->heap, level->host);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, level->host);
     /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
        mean sharpness over edges that are sharp now and smooth then. */
     for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
@@ -13950,7 +13931,6 @@ GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, c
 
 GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
                                                 const gproj_host *host, gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
     gproji_rows rows;
     int64_t k, l;
     int32_t i;
@@ -13965,7 +13945,7 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
             fine->column_count, coarse->row_count);
         return NULL;
     }
-    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
+    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, host);
     for (i = 0; !rows.failed && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
             int32_t middle = fine->column[k];
@@ -15182,29 +15162,37 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
     return onward;
 }
 
-/* Cuts a face between the origins at two half-edges. Returns the half-edge from the first to the second origin: it is
-   in the part with `to`, the twin in the part with `from`. */
-GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+/* Cuts face `whole` between the origins at two half-edges. Returns the half-edge from the first to the second origin:
+   it is in the part with `to`, the twin in the part with `from`. With `ear` the latter is a triangle, and the
+   caller numbers the rest's half-edges after the last ear: this way n ears take O(n) steps. */
+GPROJI_INTERNAL int32_t gproji_edit_divide(gproji_edit_object *object, int32_t whole, int32_t from, int32_t to,
+                                           bool ear) {
     gproji_edit_store *s = &object->now;
-    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
-    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
+    int32_t d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
+    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0, label = part;
     bool first = false; /* is the whole's first corner in the part with `from`? */
     s->face_parent[part] = s->face_parent[whole];
     s->origin[d] = s->origin[from], s->origin[o] = s->origin[to];
     gproji_edit_insert(s, before_from, d, to);
     gproji_edit_insert(s, before_to, o, from);
     for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
+    s->face_halfedge[part] = start = first ? d : o; /* the part without the first corner becomes the new face */
     s->face[d] = s->face[o] = whole;
-    start = h = first ? d : o; /* the part without the first corner becomes the new face */
+    if (ear && first) s->face[d] = part, start = o, label = whole; /* the triangle stays, and is numbered alone */
+    h = start;
     do {
-        s->face[h] = part;
+        s->face[h] = label;
         ++count;
         h = s->next[h];
     } while (h != start);
-    s->face_halfedge[part] = start, s->face_degree[part] = count;
-    s->face_degree[whole] += 2 - count;
+    s->face_degree[part] = label == part ? count : s->face_degree[whole] + 2 - count;
+    s->face_degree[whole] += 2 - s->face_degree[part];
     gproji_edit_publish(object);
     return d;
+}
+
+GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+    return gproji_edit_divide(object, object->now.face[from], from, to, false);
 }
 
 /* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
@@ -15571,8 +15559,10 @@ GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, g
                            "face %d cannot be cut into triangles: its diagonals are edges already", face);
     for (i = 0; i < work->polygon.ears; ++i) {
         const int32_t *ear = work->polygon.ear + 3 * (size_t)i;
-        halfedge[ear[0]] = gproji_edit_cut(object, halfedge[ear[0]], halfedge[ear[2]]);
+        halfedge[ear[0]] = gproji_edit_divide(object, face, halfedge[ear[0]], halfedge[ear[2]], true);
+        face = object->now.face[halfedge[ear[0]]]; /* what is left */
     }
+    for (i = 0; i < n; ++i) object->now.face[halfedge[work->ring[i]]] = face;
     stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
